@@ -1,0 +1,305 @@
+#!/usr/bin/env python3
+"""Derive a small label map of one axial brain slice from the ICBM 152 (2009a) template.
+
+Labels: 0 outside, 1 brain, 2 lateral ventricles, 3 tumour (synthetic ellipse).
+Inputs are the T1, grey- and white-matter maps (1 mm) inside the nilearn wheel;
+nilearn itself is not imported.  All lengths are mm, all areas mm^2, points are in
+the template's MNI frame: RAS (x right, y anterior, z superior) unless said LPS.
+"""
+import argparse
+import gzip
+import hashlib
+import io
+import json
+import subprocess
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+
+import nibabel as nib
+import numpy as np
+from scipy import ndimage as ndi
+from scipy.spatial import cKDTree
+
+SCRIPT_VERSION = "1"
+HERE = Path(__file__).resolve().parent
+OUTPUTS = ("slice.nrrd", "slice.nii.gz", "slice.json")
+NILEARN_VERSION = "0.14.1"
+MEMBER = "nilearn/datasets/data/mni_icbm152_{}_tal_nlin_sym_09a_converted.nii.gz"
+INPUT_SHA256 = {
+    "t1": "421a10e872fd6cadae7f61d358dffbcc1795a497d61ee76c5dda2503e1a1e9e6",
+    "gm": "97a5ca69bd24db37a9cb7b32525e1733a209af904129bf1cd36da06d24243bed",
+    "wm": "382d92812de4744f9c86c7a0e4f680dc317a0a50e4da1f0153618a6798c7b7db",
+}
+NOTICE = "(C) 1993-2004 Louis Collins, McConnell BIC, MNI, McGill University; see COPYING"
+
+TISSUE_MIN = 0.4         # grey + white probability above which a voxel is tissue
+CSF_T1_MAX = 0.6         # T1 / max(T1) that no ventricle voxel may exceed
+Z_CANDIDATES = range(85, 91)  # voxel index of the axial slice
+OUTLINE_CLOSE = 8.0      # disk radii (mm) of the closing and opening of the outline
+OUTLINE_OPEN = 8.0
+OUTLINE_SIGMA = 2.0      # Gaussian (mm) before the final threshold at one half
+VENTRICLE_CLOSE = 2.5    # disk radius (mm); bridges the septum, so the horns merge
+VENTRICLE_SIGMA = 0.7
+VENTRICLE_MIN_AREA = 30.0
+TUMOUR_OFFSET = (21.0, 51.0)  # wanted tumour centre minus slice centroid (mm, RAS)
+TUMOUR_AXES = (12.0, 10.0)    # semi-axes along x and y (mm)
+TUMOUR_GAP_OUTLINE = 6.0      # smallest allowed gaps (mm)
+TUMOUR_GAP_VENTRICLE = 3.0
+MARGIN = 8               # voxels around the bounding box
+SLICES = 5               # the 2-D map is repeated over this many 1 mm slices
+
+
+def fetch_wheel(folder):
+    """Download the pinned nilearn wheel into `folder` with pip; return its path."""
+    subprocess.run([sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest",
+                    str(folder), f"nilearn=={NILEARN_VERSION}"], check=True)
+    return next(Path(folder).glob("nilearn-*.whl"))
+
+
+def read_inputs(wheel):
+    """Return {t1, gm, wm: array in 0..1} and the 4x4 voxel-to-RAS affine (mm)."""
+    maps = {}
+    with zipfile.ZipFile(wheel) as archive:
+        for key, digest in INPUT_SHA256.items():
+            raw = archive.read(MEMBER.format(key))
+            if hashlib.sha256(raw).hexdigest() != digest:
+                sys.exit(f"{MEMBER.format(key)}: not the file of nilearn {NILEARN_VERSION}")
+            image = nib.Nifti1Image.from_bytes(gzip.decompress(raw))
+            maps[key] = np.asarray(image.dataobj).astype(float) / 255.0
+    if not np.array_equal(image.affine[:3, :3], np.eye(3)):
+        sys.exit("expected a 1 mm axis-aligned RAS template")
+    return maps, image.affine
+
+
+def components(mask):
+    """Face-connected components of `mask`, largest first (ties: scan order)."""
+    labels, count = ndi.label(mask)
+    sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
+    return [labels == i + 1 for i in np.argsort(-sizes, kind="stable")]
+
+
+def disk(radius):
+    """Disk structuring element of `radius` (mm = pixels)."""
+    r = int(radius)
+    x, y = np.mgrid[-r:r + 1, -r:r + 1]
+    return x * x + y * y <= radius * radius
+
+
+def segment(maps):
+    """3-D masks (brain with enclosed cavities filled, the two lateral ventricles)."""
+    tissue = components(maps["gm"] + maps["wm"] >= TISSUE_MIN)[0]
+    brain = ndi.binary_fill_holes(tissue)
+    cavities = components(brain & ~tissue & (maps["gm"] + maps["wm"] < TISSUE_MIN))
+    left_right = cavities[:2]
+    for cavity in left_right:
+        if maps["t1"][cavity].max() > CSF_T1_MAX or cavity.sum() < 10 * cavities[2].sum():
+            sys.exit("the lateral ventricles are not the two large dark cavities")
+    return brain, left_right[0] | left_right[1]
+
+
+def clean_outline(mask):
+    """Close sulci and fissure, open necks and smooth a 2-D brain mask."""
+    pad = 2 * int(OUTLINE_CLOSE)
+    mask = ndi.binary_closing(np.pad(mask, pad), disk(OUTLINE_CLOSE))
+    mask = ndi.binary_opening(ndi.binary_fill_holes(mask), disk(OUTLINE_OPEN))
+    mask = ndi.gaussian_filter(mask.astype(float), OUTLINE_SIGMA) > 0.5
+    return components(mask)[0][pad:-pad, pad:-pad]
+
+
+def clean_ventricles(mask):
+    """Merge across the septum, smooth, and keep what is at least 3 pixels wide."""
+    mask = ndi.binary_closing(mask, disk(VENTRICLE_CLOSE))
+    mask = ndi.gaussian_filter(mask.astype(float), VENTRICLE_SIGMA) > 0.5
+    mask = ndi.binary_opening(mask, np.ones((3, 3)))
+    kept = [c for c in components(mask) if c.sum() >= VENTRICLE_MIN_AREA]
+    return np.logical_or.reduce(kept)
+
+
+def choose_slice(brain, ventricles):
+    """Candidate z index with one brain region and the largest ventricle area."""
+    usable = [z for z in Z_CANDIDATES if len(components(clean_outline(brain[:, :, z]))) == 1]
+    return max(usable, key=lambda z: int(ventricles[:, :, z].sum()))
+
+
+def faces(mask, origin):
+    """Centres (mm, RAS x y) of the pixel edges between `mask` and its complement."""
+    points = []
+    for axis in (0, 1):
+        at = np.argwhere(np.diff(mask.astype(np.int8), axis=axis) != 0).astype(float)
+        at[:, axis] += 0.5
+        points.append(at)
+    return np.concatenate(points) + origin
+
+
+def gap(a, b, origin):
+    """Smallest distance (mm) between the boundaries of two 2-D masks."""
+    return float(cKDTree(faces(b, origin)).query(faces(a, origin))[0].min())
+
+
+def centroid(mask, origin):
+    """Centroid (mm, RAS x y) of a 2-D mask."""
+    return np.argwhere(mask).mean(axis=0) + origin
+
+
+def ellipse(shape, centre, origin):
+    """Pixels whose centre lies in the tumour ellipse around `centre` (mm, RAS)."""
+    x, y = np.indices(shape) + np.reshape(origin, (2, 1, 1))
+    a, b = TUMOUR_AXES
+    return ((x - centre[0]) / a) ** 2 + ((y - centre[1]) / b) ** 2 <= 1.0
+
+
+def place_tumour(outline, ventricles, origin):
+    """Feasible ellipse closest to the wanted centre: (mask, centre, shift), mm."""
+    wanted = centroid(outline, origin) + TUMOUR_OFFSET
+    steps = np.mgrid[-60:61, -60:61].reshape(2, -1).T * 0.5
+    for shift in steps[np.argsort(np.hypot(*steps.T), kind="stable")]:
+        mask = ellipse(outline.shape, wanted + shift, origin)
+        inside = not (mask & (~outline | ventricles)).any()
+        if (inside and gap(mask, outline, origin) >= TUMOUR_GAP_OUTLINE
+                and gap(mask, ventricles, origin) >= TUMOUR_GAP_VENTRICLE):
+            return mask, wanted + shift, shift
+    sys.exit("the tumour does not fit")
+
+
+def craniotomy(outline, centre, origin):
+    """Outline point nearest to `centre` (mm, RAS x y) and the outward unit normal there."""
+    points = faces(outline, origin)
+    point = points[np.argmin(np.hypot(*(points - centre).T))]
+    smooth = ndi.gaussian_filter(outline.astype(float), 3.0)
+    at = (point - origin).reshape(2, 1)
+    normal = -np.array([ndi.map_coordinates(g, at, order=1)[0] for g in np.gradient(smooth)])
+    return point, normal / np.hypot(*normal)
+
+
+def make_labels(brain, ventricles, affine, z):
+    """Cropped 2-D label image and the RAS position (mm) of its first pixel."""
+    outline = clean_outline(brain[:, :, z])
+    hollow = clean_ventricles(ventricles[:, :, z]) & outline
+    tumour, centre, shift = place_tumour(outline, hollow, affine[:2, 3])
+    labels = outline.astype(np.uint8)
+    labels[hollow] = 2
+    labels[tumour] = 3
+    corner = np.argwhere(outline).min(axis=0) - MARGIN
+    stop = np.argwhere(outline).max(axis=0) + MARGIN + 1
+    if (corner < 0).any() or (stop > labels.shape).any():
+        sys.exit("the margin leaves the template")
+    return labels[corner[0]:stop[0], corner[1]:stop[1]], corner + affine[:2, 3], centre, shift
+
+
+def deflate(data):
+    """gzip `data` with no time stamp and no file name."""
+    out = io.BytesIO()
+    with gzip.GzipFile(filename="", mode="wb", fileobj=out, compresslevel=9, mtime=0) as f:
+        f.write(data)
+    return out.getvalue()
+
+
+def nrrd_bytes(volume, origin):
+    """NRRD of `volume` (x fastest, RAS order) whose first voxel is at RAS `origin` (mm)."""
+    x, y, z = (-origin[0], -origin[1], origin[2])
+    header = ["NRRD0005", f"# {NOTICE}", "type: unsigned char", "dimension: 3",
+              "space: left-posterior-superior", "sizes: {} {} {}".format(*volume.shape),
+              "space directions: (-1,0,0) (0,-1,0) (0,0,1)", "kinds: domain domain domain",
+              "encoding: gzip", f"space origin: ({x:g},{y:g},{z:g})", "", ""]
+    return "\n".join(header).encode("ascii") + deflate(volume.tobytes(order="F"))
+
+
+def nifti_bytes(volume, origin):
+    """The same map as gzipped NIfTI-1 (RAS, mm, sform and qform code 4 = MNI)."""
+    affine = np.eye(4)
+    affine[:3, 3] = origin
+    image = nib.Nifti1Image(volume, affine)
+    image.header.set_xyzt_units("mm")
+    image.header["descrip"] = NOTICE[:79].encode("ascii")
+    image.set_sform(affine, code=4)
+    image.set_qform(affine, code=4)
+    return deflate(image.to_bytes())
+
+
+def both(vector):
+    """A vector or point (mm) in RAS and LPS, rounded to 1e-4."""
+    ras = [round(float(v), 4) for v in vector]
+    lps = [-v for v in ras[:2]] + ras[2:]
+    return {"ras": [v + 0.0 for v in ras], "lps": [v + 0.0 for v in lps]}
+
+
+def describe(labels, origin, centre, shift, z):
+    """Provenance and measures (mm, mm^2) as a JSON-ready dictionary."""
+    xy = origin[:2]
+    outline, hollow, tumour = labels > 0, labels == 2, labels == 3
+    parts = {"slice": outline, "brain": labels == 1, "ventricles": hollow, "tumour": tumour}
+    point, normal = craniotomy(outline, centroid(tumour, xy), xy)
+    edge = faces(outline, xy)
+    pieces = components(hollow)
+    return {
+        "source": {
+            "package": "nilearn", "version": NILEARN_VERSION,
+            "files": [{"name": MEMBER.format(k), "sha256": v} for k, v in INPUT_SHA256.items()],
+            "template": "ICBM 152 2009a nonlinear symmetric, 1 mm", "notice": NOTICE},
+        "script_version": SCRIPT_VERSION,
+        "parameters": {
+            "z_index": z, "z_candidates": list(Z_CANDIDATES), "tissue_min": TISSUE_MIN,
+            "csf_t1_max": CSF_T1_MAX, "outline_close_mm": OUTLINE_CLOSE,
+            "outline_open_mm": OUTLINE_OPEN, "outline_sigma_mm": OUTLINE_SIGMA,
+            "ventricle_close_mm": VENTRICLE_CLOSE, "ventricle_sigma_mm": VENTRICLE_SIGMA},
+        "labels": {"0": "outside", "1": "brain", "2": "ventricles", "3": "tumour"},
+        "grid": {"sizes": [*labels.shape, SLICES], "spacing_mm": [1.0, 1.0, 1.0],
+                 "first_voxel_mm": both(origin), "template_slice_z_mm": float(origin[2] + SLICES // 2)},
+        "area_mm2": {name: int(mask.sum()) for name, mask in parts.items()},
+        "centroid_mm": {name: both(centroid(mask, xy)) for name, mask in parts.items()},
+        "bounding_box_ras_mm": {"min": edge.min(axis=0).tolist(), "max": edge.max(axis=0).tolist()},
+        "ventricle_regions": [{"area_mm2": int(p.sum()), "centroid_mm": both(centroid(p, xy))}
+                              for p in pieces],
+        "tumour": {
+            "semi_axes_mm": list(TUMOUR_AXES), "ellipse_centre_mm": both(centre),
+            "wanted_offset_ras_mm": list(TUMOUR_OFFSET), "shift_ras_mm": shift.tolist(),
+            "offset_mm": both(centroid(tumour, xy) - centroid(outline, xy)),
+            "gap_to_outline_mm": round(gap(tumour, outline, xy), 4),
+            "gap_to_ventricles_mm": round(gap(tumour, hollow, xy), 4)},
+        "craniotomy": {"outline_point_mm": both(point), "outward_normal": both(normal),
+                       "distance_to_tumour_centroid_mm":
+                           round(float(np.hypot(*(point - centroid(tumour, xy)))), 4)},
+    }
+
+
+def build(wheel, folder):
+    """Write the three output files into `folder`; return the description."""
+    maps, affine = read_inputs(wheel)
+    brain, ventricles = segment(maps)
+    z = choose_slice(brain, ventricles)
+    labels, corner, centre, shift = make_labels(brain, ventricles, affine, z)
+    origin = np.array([*corner, z + affine[2, 3] - SLICES // 2])
+    volume = np.repeat(labels[:, :, None], SLICES, axis=2)
+    info = describe(labels, origin, centre, shift, z)
+    contents = (nrrd_bytes(volume, origin), nifti_bytes(volume, origin),
+                (json.dumps(info, indent=1) + "\n").encode("ascii"))
+    for name, data in zip(OUTPUTS, contents):
+        (Path(folder) / name).write_bytes(data)
+    return info
+
+
+def check(folder):
+    """Names of the files in `folder` whose bytes differ from the committed ones."""
+    return [n for n in OUTPUTS if (Path(folder) / n).read_bytes() != (HERE / n).read_bytes()]
+
+
+def main():
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--wheel", type=Path, help="nilearn wheel (default: pip download)")
+    parser.add_argument("--check", action="store_true", help="compare with the committed files")
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as scratch:
+        wheel = args.wheel or fetch_wheel(scratch)
+        info = build(wheel, scratch if args.check else HERE)
+        differing = check(scratch) if args.check else []
+    for key in ("grid", "area_mm2", "centroid_mm", "tumour", "craniotomy"):
+        print(f"{key}: {json.dumps(info[key])}")
+    if differing:
+        sys.exit("differs from the committed files: " + ", ".join(differing))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,45 @@
+//! Small vectors and matrices, and the few names the formulas need.
+
+/// A vector in space, in the unit that its context states.
+pub type Vector3 = nalgebra::Vector3<f64>;
+/// A second-order tensor as a 3×3 matrix.
+pub type Matrix3 = nalgebra::Matrix3<f64>;
+
+/// Cofactor matrix cof A = J A⁻ᵀ, defined for singular A too.
+///
+/// It is the derivative of the determinant: ∂J/∂F = cof F.
+#[inline]
+pub fn cofactor(a: &Matrix3) -> Matrix3 {
+    let (r0, r1, r2) = (a.row(0), a.row(1), a.row(2));
+    let (c0, c1, c2) = (
+        r1.transpose().cross(&r2.transpose()),
+        r2.transpose().cross(&r0.transpose()),
+        r0.transpose().cross(&r1.transpose()),
+    );
+    Matrix3::from_rows(&[c0.transpose(), c1.transpose(), c2.transpose()])
+}
+
+/// Skew-free rotation by `angle` \[rad\] about the unit vector `axis`
+/// (Rodrigues' formula).
+pub fn rotation(axis: &Vector3, angle: f64) -> Matrix3 {
+    let unit = nalgebra::Unit::new_normalize(*axis);
+    nalgebra::Rotation3::from_axis_angle(&unit, angle).into_inner()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cofactor_is_determinant_times_inverse_transpose() {
+        let a = Matrix3::new(1.1, 0.2, -0.3, 0.05, 0.9, 0.4, 0.0, -0.2, 1.3);
+        let expected = a.try_inverse().unwrap().transpose() * a.determinant();
+        assert!((cofactor(&a) - expected).norm() < 1e-14);
+    }
+
+    #[test]
+    fn a_rotation_turns_x_into_y_about_z() {
+        let turned = rotation(&Vector3::z(), std::f64::consts::FRAC_PI_2) * Vector3::x();
+        assert!((turned - Vector3::y()).norm() < 1e-15);
+    }
+}
