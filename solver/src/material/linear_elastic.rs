@@ -1,0 +1,37 @@
+//! Hooke's law for small displacements.
+#![allow(non_snake_case)]
+
+use super::{ConstitutiveLaw, ElasticConstants};
+use crate::tensor::Matrix3;
+
+/// ψ = λ/2 (tr ε)² + μ ε:ε, ε = sym(F) − I \[Pa\]. Not objective: for small
+/// rotations only.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinearElastic {
+    mu: f64,
+    lambda: f64,
+}
+
+impl LinearElastic {
+    pub fn new(constants: ElasticConstants) -> Self {
+        LinearElastic { mu: constants.shear_modulus, lambda: constants.lame_modulus() }
+    }
+}
+
+impl ConstitutiveLaw for LinearElastic {
+    fn strain_energy(&self, F: &Matrix3) -> f64 {
+        let strain = (F + F.transpose()) * 0.5 - Matrix3::identity();
+        0.5 * self.lambda * strain.trace().powi(2) + self.mu * strain.dot(&strain)
+    }
+
+    /// P = λ tr ε I + 2μ ε.
+    #[inline]
+    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
+        let strain = (F + F.transpose()) * 0.5 - Matrix3::identity();
+        strain * (2.0 * self.mu) + Matrix3::from_diagonal_element(self.lambda * strain.trace())
+    }
+
+    fn constants(&self) -> ElasticConstants {
+        ElasticConstants { shear_modulus: self.mu, bulk_modulus: self.lambda + 2.0 / 3.0 * self.mu }
+    }
+}

@@ -1,0 +1,96 @@
+//! Constitutive laws: strain energy ψ(F) per reference volume \[Pa\] and first
+//! Piola–Kirchhoff stress P = ∂ψ/∂F \[Pa\], one law per file.
+#![allow(non_snake_case)]
+
+mod constants;
+mod linear_elastic;
+mod mooney_rivlin;
+mod neo_hookean_isochoric;
+mod neo_hookean_log_j;
+mod st_venant_kirchhoff;
+
+pub use constants::{ElasticConstants, MaterialError};
+pub use linear_elastic::LinearElastic;
+pub use mooney_rivlin::MooneyRivlin;
+pub use neo_hookean_isochoric::{NeoHookeanIsochoric, VolumetricTerm};
+pub use neo_hookean_log_j::NeoHookeanLogJ;
+pub use st_venant_kirchhoff::StVenantKirchhoff;
+
+use crate::tensor::Matrix3;
+
+/// What the internal force needs of a law. Implemented by the laws of this
+/// module only; the force loop is compiled once per law.
+pub trait ConstitutiveLaw: Copy + Send + Sync {
+    /// Strain energy per reference volume ψ \[Pa\].
+    fn strain_energy(&self, F: &Matrix3) -> f64;
+    /// First Piola–Kirchhoff stress P \[Pa\].
+    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3;
+    /// Shear and bulk modulus at rest.
+    fn constants(&self) -> ElasticConstants;
+}
+
+/// A law with its parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    MooneyRivlin(MooneyRivlin),
+    NeoHookeanLogJ(NeoHookeanLogJ),
+    NeoHookeanIsochoric(NeoHookeanIsochoric),
+    StVenantKirchhoff(StVenantKirchhoff),
+    LinearElastic(LinearElastic),
+}
+
+/// Runs `$body` with `$law` bound to the concrete law, so that it is compiled
+/// once for each.
+macro_rules! with_law {
+    ($value:expr, $law:ident => $body:expr) => {
+        match $value {
+            $crate::material::Law::MooneyRivlin($law) => $body,
+            $crate::material::Law::NeoHookeanLogJ($law) => $body,
+            $crate::material::Law::NeoHookeanIsochoric($law) => $body,
+            $crate::material::Law::StVenantKirchhoff($law) => $body,
+            $crate::material::Law::LinearElastic($law) => $body,
+        }
+    };
+}
+pub(crate) use with_law;
+
+impl Law {
+    /// Strain energy per reference volume ψ(F) \[Pa\].
+    pub fn strain_energy(&self, F: &Matrix3) -> f64 {
+        with_law!(self, law => law.strain_energy(F))
+    }
+
+    /// First Piola–Kirchhoff stress P = ∂ψ/∂F \[Pa\].
+    pub fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
+        with_law!(self, law => law.first_piola_kirchhoff(F))
+    }
+
+    /// Shear and bulk modulus at rest.
+    pub fn constants(&self) -> ElasticConstants {
+        with_law!(self, law => law.constants())
+    }
+
+    /// Cauchy stress σ = P Fᵀ/J \[Pa\].
+    pub fn cauchy(&self, F: &Matrix3) -> Matrix3 {
+        self.first_piola_kirchhoff(F) * F.transpose() / F.determinant()
+    }
+}
+
+/// A law and a density.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// Per reference volume \[kg/m³\].
+    pub density: f64,
+    pub law: Law,
+}
+
+impl Material {
+    /// Speed of pressure waves at rest c = √((K + 4μ/3)/ρ) \[m/s\].
+    pub fn wave_speed(&self) -> f64 {
+        let c = self.law.constants();
+        ((c.bulk_modulus + 4.0 / 3.0 * c.shear_modulus) / self.density).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests;

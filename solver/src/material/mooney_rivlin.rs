@@ -1,0 +1,77 @@
+//! The seed's Mooney–Rivlin rubber, as in LS-DYNA, with the corrected C.
+#![allow(non_snake_case)]
+
+use super::constants::positive;
+use super::{ConstitutiveLaw, ElasticConstants, MaterialError};
+use crate::tensor::{Matrix3, cofactor};
+
+/// ψ = A(I − 3) + B(II − 3) + C(III⁻² − 1) + D(III − 1)² \[Pa\] with the
+/// invariants of C = FᵀF (seed, section 3.3).
+///
+/// C = A/2 + B, not A/B as the seed prints: the stress must vanish at rest.
+/// D = [A(5ν − 2) + B(11ν − 5)]/[2(1 − 2ν)]; shear modulus 2(A + B).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MooneyRivlin {
+    a: f64,
+    b: f64,
+    poisson_ratio: f64,
+    c: f64,
+    d: f64,
+}
+
+impl MooneyRivlin {
+    /// From A > 0, B ≥ 0 \[Pa\] and ν; refused where D < 0 (ν < 0.4 at B = 0),
+    /// since the law then loses its resistance to growth in volume.
+    pub fn new(a: f64, b: f64, poisson_ratio: f64) -> Result<Self, MaterialError> {
+        positive("A", a)?;
+        if !(b >= 0.0 && b.is_finite()) {
+            return Err(MaterialError::NotPositive { name: "B", value: b });
+        }
+        if !(poisson_ratio > -1.0 && poisson_ratio < 0.5) {
+            return Err(MaterialError::PoissonRatio { value: poisson_ratio });
+        }
+        let d = (a * (5.0 * poisson_ratio - 2.0) + b * (11.0 * poisson_ratio - 5.0))
+            / (2.0 * (1.0 - 2.0 * poisson_ratio));
+        if d < 0.0 {
+            let smallest = (2.0 * a + 5.0 * b) / (5.0 * a + 11.0 * b);
+            return Err(MaterialError::UnstableRubber { a, b, poisson_ratio, d, smallest });
+        }
+        Ok(MooneyRivlin { a, b, poisson_ratio, c: 0.5 * a + b, d })
+    }
+}
+
+impl ConstitutiveLaw for MooneyRivlin {
+    fn strain_energy(&self, F: &Matrix3) -> f64 {
+        let C = F.transpose() * F;
+        let (first, third) = (C.trace(), C.determinant());
+        let second = 0.5 * (first * first - C.dot(&C));
+        self.a * (first - 3.0)
+            + self.b * (second - 3.0)
+            + self.c * (third.powi(-2) - 1.0)
+            + self.d * (third - 1.0).powi(2)
+    }
+
+    /// P = 2A F + 2B (I F − F C) + [−4C J⁻⁵ + 4D J(J² − 1)] cof F.
+    #[inline]
+    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
+        let cof = cofactor(F);
+        let J = F.row(0).dot(&cof.row(0));
+        let J2 = J * J;
+        let volumetric = -4.0 * self.c / (J2 * J2 * J) + 4.0 * self.d * J * (J2 - 1.0);
+        let mut P = F * (2.0 * self.a) + cof * volumetric;
+        if self.b != 0.0 {
+            let C = F.transpose() * F;
+            P += (F * C.trace() - F * C) * (2.0 * self.b);
+        }
+        P
+    }
+
+    fn constants(&self) -> ElasticConstants {
+        let shear_modulus = 2.0 * (self.a + self.b);
+        let nu = self.poisson_ratio;
+        ElasticConstants {
+            shear_modulus,
+            bulk_modulus: 2.0 * shear_modulus * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)),
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Neo-Hookean law with the isochoric split, two volumetric terms.
+#![allow(non_snake_case)]
+
+use super::{ConstitutiveLaw, ElasticConstants};
+use crate::tensor::{Matrix3, cofactor};
+
+/// The volumetric energy U(J) of [`NeoHookeanIsochoric`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VolumetricTerm {
+    /// U = K/2 (J − 1)².
+    Quadratic,
+    /// U = K/4 (J² − 1 − 2 ln J) (Simo and Taylor; used by Cook's membrane).
+    SimoTaylor,
+}
+
+/// ψ = μ/2 (J^(−2/3) I₁ − 3) + U(J) \[Pa\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NeoHookeanIsochoric {
+    constants: ElasticConstants,
+    volumetric: VolumetricTerm,
+}
+
+impl NeoHookeanIsochoric {
+    pub fn new(constants: ElasticConstants, volumetric: VolumetricTerm) -> Self {
+        NeoHookeanIsochoric { constants, volumetric }
+    }
+}
+
+impl ConstitutiveLaw for NeoHookeanIsochoric {
+    fn strain_energy(&self, F: &Matrix3) -> f64 {
+        let (mu, K) = (self.constants.shear_modulus, self.constants.bulk_modulus);
+        let J = F.determinant();
+        let U = match self.volumetric {
+            VolumetricTerm::Quadratic => 0.5 * K * (J - 1.0).powi(2),
+            VolumetricTerm::SimoTaylor => 0.25 * K * (J * J - 1.0 - 2.0 * J.ln()),
+        };
+        0.5 * mu * (F.dot(F) / J.cbrt().powi(2) - 3.0) + U
+    }
+
+    /// P = μ J^(−2/3) (F − I₁/3 F⁻ᵀ) + U'(J) cof F.
+    #[inline]
+    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
+        let (mu, K) = (self.constants.shear_modulus, self.constants.bulk_modulus);
+        let cof = cofactor(F);
+        let J = F.row(0).dot(&cof.row(0));
+        let dU = match self.volumetric {
+            VolumetricTerm::Quadratic => K * (J - 1.0),
+            VolumetricTerm::SimoTaylor => 0.5 * K * (J - 1.0 / J),
+        };
+        let factor = mu / J.cbrt().powi(2);
+        F * factor + cof * (dU - factor * F.dot(F) / (3.0 * J))
+    }
+
+    fn constants(&self) -> ElasticConstants {
+        self.constants
+    }
+}
