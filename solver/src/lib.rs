@@ -12,9 +12,38 @@
 
 pub mod tensor;
 
+pub mod error;
+
 pub mod material;
 
 pub mod geometry;
 pub mod selection;
 
 pub mod problem;
+
+pub mod nodes;
+
+pub mod neighbours;
+pub mod weight_function;
+
+pub mod mls;
+pub mod quadrature;
+
+pub mod discretisation;
+
+pub mod collocation;
+pub mod contact;
+pub mod essential;
+pub mod load;
+pub mod mass;
+pub mod model;
+
+pub mod critical_time_step;
+pub mod internal_force;
+pub mod relaxation;
+pub mod state;
+pub mod step;
+
+pub mod energy;
+pub mod observe;
+pub mod simulate;

@@ -1,0 +1,67 @@
+//! Everything that can go wrong, with the numbers that say where.
+
+use crate::geometry::GeometryError;
+use crate::tensor::Vector3;
+
+/// An error of the solver. Positions are reference positions \[m\].
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum Error {
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    #[error("the background grid gives no quadrature point inside the body: use smaller cells")]
+    NoQuadraturePoints,
+    #[error("no region contains the point ({}): let the last region contain everything", show(.position))]
+    PointWithoutRegion { position: Vector3 },
+    #[error("quadrature point {point} at ({}) has {support_size} nodes in its support and needs {smallest}: \
+             raise the dilation, or add nodes there", show(.position))]
+    SmallSupport { point: usize, position: Vector3, support_size: usize, smallest: usize },
+    #[error("the moment matrix at quadrature point {point} at ({}) with {support_size} support nodes has condition \
+             {condition:.1e} (largest {largest:.0e}): its nodes lie nearly in a plane or on a quadric; \
+             raise the dilation, or use the linear basis", show(.position))]
+    SingularMomentMatrix {
+        point: usize,
+        position: Vector3,
+        support_size: usize,
+        condition: f64,
+        largest: f64,
+    },
+    #[error("node {node} at ({}) is covered by no quadrature point: use smaller cells or a larger dilation", show(.position))]
+    UncoveredNode { node: usize, position: Vector3 },
+    #[error("node {node} at ({}) has a lumped mass of {mass:.3e} kg: use smaller cells, or mass = \"even_split\"", show(.position))]
+    MasslessNode { node: usize, position: Vector3, mass: f64 },
+    #[error("boundary node {node} at ({}) shares no support with an interior node: \
+             use a smaller spacing or a larger dilation", show(.position))]
+    IsolatedBoundaryNode { node: usize, position: Vector3 },
+    #[error("condition \"{name}\" selects no node")]
+    EmptySelection { name: String },
+    #[error("traction \"{name}\" selects no part of the boundary")]
+    EmptyTraction { name: String },
+    #[error("the conditions on component {component} constrain {rows} nodes whose constraints depend on each other: \
+             use enforcement = \"direct\"")]
+    DependentConstraints { component: char, rows: usize },
+    #[error("the probe at ({}) lies where no shape functions can be built: {reason}", show(.position))]
+    ProbeOutside { position: Vector3, reason: String },
+    #[error("the fixed step of {fixed:.4e} s is above the critical step of {critical:.4e} s")]
+    UnstableStep { fixed: f64, critical: f64 },
+    #[error("diverged at step {step}, t = {time:.6} s: node {node} at ({}) moved by {displacement:.3e} m; \
+             the step was {time_step:.3e} s", show(.position))]
+    Diverged {
+        step: usize,
+        time: f64,
+        node: usize,
+        position: Vector3,
+        displacement: f64,
+        time_step: f64,
+    },
+    #[error("quadrature point {point} at ({}) turned inside out at step {step}, t = {time:.6} s: J = {jacobian:.3e}",
+            show(.position))]
+    Inverted { step: usize, time: f64, point: usize, position: Vector3, jacobian: f64 },
+    #[error("dynamic relaxation has not converged after {steps} steps: estimated error {error:.2e} m of a tolerance of \
+             {tolerance:.2e} m, residual {residual:.2e} of the largest force")]
+    NotConverged { steps: usize, error: f64, tolerance: f64, residual: f64 },
+}
+
+/// Coordinates in metres for a message.
+fn show(position: &Vector3) -> String {
+    format!("{:.6}, {:.6}, {:.6} m", position.x, position.y, position.z)
+}

@@ -1,0 +1,78 @@
+//! External forces: body forces and dead tractions.
+#![allow(non_snake_case)]
+
+use crate::discretisation::Discretisation;
+use crate::error::Error;
+use crate::problem::{Amplitude, Problem};
+use crate::tensor::Vector3;
+
+/// A nodal force pattern \[N\] with the amplitude that scales it.
+#[derive(Debug, Clone)]
+pub struct LoadPattern {
+    /// \[component of node\] \[N\]
+    pub force: Vec<f64>,
+    pub amplitude: Amplitude,
+}
+
+/// All load patterns of a problem: body forces Σ_q ρ w_q φ_a b and tractions
+/// ∮ φ_a t dA over the selected boundary panels.
+pub fn load_patterns(
+    problem: &Problem,
+    discretisation: &Discretisation,
+    density: &[f64],
+) -> Result<Vec<LoadPattern>, Error> {
+    let d = problem.dimension.components();
+    let size = d * discretisation.cloud.positions.len();
+    let mut patterns = Vec::new();
+    for body_force in &problem.loads.body_forces {
+        let mut force = vec![0.0; size];
+        let supports = &discretisation.supports;
+        for point in 0..supports.len() {
+            let mass = density[point] * discretisation.quadrature.weights[point];
+            for entry in supports.row(point) {
+                let share = mass * supports.phi[entry];
+                add(&mut force, d, supports.nodes[entry], &(body_force.acceleration * share));
+            }
+        }
+        patterns.push(LoadPattern { force, amplitude: body_force.amplitude.clone() });
+    }
+    for traction in &problem.loads.tractions {
+        let force = traction_force(problem, discretisation, traction)?;
+        patterns.push(LoadPattern { force, amplitude: traction.amplitude.clone() });
+    }
+    Ok(patterns)
+}
+
+fn traction_force(
+    problem: &Problem,
+    discretisation: &Discretisation,
+    traction: &crate::problem::Traction,
+) -> Result<Vec<f64>, Error> {
+    let d = problem.dimension.components();
+    let mut force = vec![0.0; d * discretisation.cloud.positions.len()];
+    let finest = discretisation.cloud.spacing.iter().copied().fold(f64::INFINITY, f64::min);
+    let panels: Vec<_> = problem
+        .body
+        .boundary_panels(0.25 * finest, &problem.dimension)?
+        .into_iter()
+        .filter(|panel| traction.part.contains(&panel.centre))
+        .collect();
+    if panels.is_empty() {
+        return Err(Error::EmptyTraction { name: traction.name.clone() });
+    }
+    let centres: Vec<Vector3> = panels.iter().map(|panel| panel.centre).collect();
+    let rows = discretisation.rows_at(&centres)?;
+    for (i, panel) in panels.iter().enumerate() {
+        for entry in rows.row(i) {
+            let share = traction.traction * (panel.area * rows.phi[entry]);
+            add(&mut force, d, rows.nodes[entry], &share);
+        }
+    }
+    Ok(force)
+}
+
+fn add(force: &mut [f64], components: usize, node: u32, share: &Vector3) {
+    for k in 0..components {
+        force[components * node as usize + k] += share[k];
+    }
+}

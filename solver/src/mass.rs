@@ -1,0 +1,37 @@
+//! Lumped masses.
+
+use crate::discretisation::Discretisation;
+use crate::error::Error;
+use crate::problem::MassRule;
+
+/// Lumped mass per node \[kg\] from the density of each quadrature point
+/// \[kg/m³\]: the seed's even split m_a = Σ_q ρ w_q/n_q (section 2.5), or the
+/// row sum m_a = Σ_q ρ w_q φ_a. The total is the body's mass either way.
+pub fn lumped_mass(
+    discretisation: &Discretisation,
+    density: &[f64],
+    rule: MassRule,
+) -> Result<Vec<f64>, Error> {
+    let supports = &discretisation.supports;
+    let mut mass = vec![0.0; discretisation.cloud.positions.len()];
+    for point in 0..supports.len() {
+        let point_mass = density[point] * discretisation.quadrature.weights[point];
+        let row = supports.row(point);
+        let share = point_mass / row.len() as f64;
+        for entry in row {
+            mass[supports.nodes[entry] as usize] += match rule {
+                MassRule::EvenSplit => share,
+                MassRule::RowSum => point_mass * supports.phi[entry],
+            };
+        }
+    }
+    let mean = mass.iter().sum::<f64>() / mass.len() as f64;
+    match mass.iter().position(|&m| !(m > 1e-9 * mean)) {
+        Some(node) => Err(Error::MasslessNode {
+            node,
+            position: discretisation.cloud.positions[node],
+            mass: mass[node],
+        }),
+        None => Ok(mass),
+    }
+}

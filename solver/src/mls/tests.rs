@@ -1,0 +1,120 @@
+use super::*;
+use proptest::prelude::*;
+
+const H: f64 = 0.1;
+
+/// A jittered lattice of 6³ nodes (6² in a plane) whose middle is at `shift`.
+fn approximation(dimension: Dimension, basis: Basis, weight_function: WeightFunction, jitter: &[f64], shift: Vector3) -> Approximation {
+    let layers = if dimension.components() == 2 { 1 } else { 6 };
+    let mut nodes = Vec::new();
+    for k in 0..layers {
+        for j in 0..6 {
+            for i in 0..6 {
+                let mut X = Vector3::new(i as f64, j as f64, if layers == 1 { 0.0 } else { k as f64 }) * H;
+                for c in 0..dimension.components() {
+                    X[c] += H * jitter[(3 * nodes.len() + c) % jitter.len()];
+                }
+                nodes.push(X + shift);
+            }
+        }
+    }
+    let dilation = if basis == Basis::Linear { 1.9 } else { 2.7 };
+    let radius = vec![dilation * H; nodes.len()];
+    Approximation::new(nodes, radius, basis, weight_function, &dimension)
+}
+
+const PLANE: Dimension = Dimension::PlaneStrain { thickness: 1.0, z: 0.0 };
+
+/// Every combination that the scene format offers.
+fn kinds() -> Vec<(Dimension, Basis, WeightFunction)> {
+    let mut kinds = Vec::new();
+    for dimension in [PLANE, Dimension::Three] {
+        for basis in [Basis::Linear, Basis::Quadratic] {
+            for weight_function in WeightFunction::ALL {
+                kinds.push((dimension, basis, weight_function));
+            }
+        }
+    }
+    kinds
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn polynomials_of_the_basis_are_reproduced_with_their_gradients(
+        jitter in prop::collection::vec(-0.3..0.3f64, 101),
+        at in prop::array::uniform3(0.05..0.45f64),
+        far in 0.0..10.0f64,
+    ) {
+        for (dimension, basis, weight_function) in kinds() {
+            let shift = Vector3::new(far, -far, 0.5 * far);
+            let plane = dimension.components() == 2;
+            let shift = if plane { Vector3::new(far, -far, 0.0) } else { shift };
+            let a = approximation(dimension, basis, weight_function, &jitter, shift);
+            let mut X = Vector3::from(at) + shift;
+            if plane { X.z = 0.0; }
+            let s = a.evaluate(&X).unwrap();
+            let sum: f64 = s.phi.iter().sum();
+            prop_assert!((sum - 1.0).abs() < 1e-12);
+            let tolerance = if basis == Basis::Linear { 1e-12 } else { 1e-11 };
+            for k in 0..dimension.components() {
+                let value: f64 = s.nodes.iter().zip(&s.phi)
+                    .map(|(&n, phi)| (a.nodes[n as usize][k] - X[k]) * phi).sum();
+                prop_assert!(value.abs() < tolerance);
+                let slope: Vector3 = s.nodes.iter().zip(&s.grad_phi)
+                    .map(|(&n, g)| g * (a.nodes[n as usize][k] - X[k])).sum();
+                let mut unit = Vector3::zeros();
+                unit[k] = 1.0;
+                prop_assert!((slope - unit).norm() < tolerance, "{slope}");
+                if basis == Basis::Quadratic {
+                    let square: Vector3 = s.nodes.iter().zip(&s.grad_phi)
+                        .map(|(&n, g)| g * (a.nodes[n as usize][k] - X[k]).powi(2)).sum();
+                    prop_assert!(square.norm() < tolerance);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn gradients_are_those_of_the_values(
+        jitter in prop::collection::vec(-0.3..0.3f64, 101),
+        at in prop::array::uniform3(0.1..0.4f64),
+    ) {
+        for (dimension, basis, weight_function) in kinds() {
+            let a = approximation(dimension, basis, weight_function, &jitter, Vector3::zeros());
+            let mut X = Vector3::from(at);
+            if dimension.components() == 2 { X.z = 0.0; }
+            let s = a.evaluate(&X).unwrap();
+            let step = 1e-6 * H;
+            for k in 0..dimension.components() {
+                let (mut plus, mut minus) = (X, X);
+                plus[k] += step;
+                minus[k] -= step;
+                let (plus, minus) = (a.evaluate(&plus).unwrap(), a.evaluate(&minus).unwrap());
+                prop_assume!(plus.nodes == s.nodes && minus.nodes == s.nodes);
+                prop_assume!(plus.enlargement == 1.0 && minus.enlargement == 1.0);
+                for i in 0..s.nodes.len() {
+                    let difference = (plus.phi[i] - minus.phi[i]) / (2.0 * step);
+                    prop_assert!((difference - s.grad_phi[i][k]).abs() < 1e-5 / H);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_plane_cloud_cannot_carry_a_basis_in_space() {
+    let jitter = [0.0];
+    let flat = approximation(PLANE, Basis::Linear, WeightFunction::QuarticSpline, &jitter, Vector3::zeros());
+    let radius = vec![1.9 * H; flat.nodes.len()];
+    let solid = Approximation::new(flat.nodes, radius, Basis::Linear, WeightFunction::QuarticSpline, &Dimension::Three);
+    let poor = solid.evaluate(&Vector3::new(0.25, 0.25, 0.0)).unwrap_err();
+    assert!(poor.condition > 1e4);
+}
+
+#[test]
+fn a_far_point_has_no_support() {
+    let a = approximation(Dimension::Three, Basis::Linear, WeightFunction::CubicSpline, &[0.0], Vector3::zeros());
+    assert_eq!(a.evaluate(&Vector3::new(5.0, 0.0, 0.0)).unwrap_err().support_size, 0);
+}

@@ -1,0 +1,159 @@
+//! Everything that stays constant during a run, checked.
+
+use crate::contact::ContactPlan;
+use crate::discretisation::Discretisation;
+use crate::error::Error;
+use crate::essential::Constraints;
+use crate::load::{LoadPattern, load_patterns};
+use crate::mass::lumped_mass;
+use crate::material::Law;
+use crate::problem::Problem;
+use crate::tensor::Vector3;
+use std::ops::Range;
+
+/// A discretised body with its materials, conditions and loads.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Displacement components per node: 3, or 2 in a plane.
+    pub components: usize,
+    /// Reference positions \[node\] \[m\].
+    pub positions: Vec<Vector3>,
+    /// \[node\] \[kg\]
+    pub lumped_mass: Vec<f64>,
+    pub blocks: Vec<Block>,
+    pub loads: Vec<LoadPattern>,
+    pub constraints: Constraints,
+    pub contact: ContactPlan,
+    /// Velocity at t = 0 \[component of node\] \[m/s\].
+    pub initial_velocity: Vec<f64>,
+    /// Per-point bound of the critical time step at rest \[s\].
+    pub bound: f64,
+    /// Diagonal of the box around all nodes \[m\].
+    pub extent: f64,
+    /// Reference positions of the quadrature points \[point\] \[m\].
+    pub point_positions: Vec<Vector3>,
+}
+
+/// Consecutive quadrature points of one material, with their own numbering of
+/// the nodes they touch. Blocks depend on the problem alone, never on the
+/// number of threads.
+#[derive(Debug, Clone)]
+pub struct Block {
+    pub law: Law,
+    pub points: Range<usize>,
+    /// Global node of each local one.
+    pub nodes: Vec<u32>,
+    /// Support of local point p is `starts[p]..starts[p + 1]`.
+    pub starts: Vec<u32>,
+    /// Local node indices \[support entry\].
+    pub supports: Vec<u32>,
+    /// Grad φ, `components` per entry \[1/m\].
+    pub grad_phi: Vec<f64>,
+    /// \[point\] \[m³\]
+    pub quadrature_weights: Vec<f64>,
+}
+
+/// A block holds at least and at most this many points.
+const BLOCK_POINTS: (usize, usize) = (1024, 8192);
+
+impl Model {
+    /// Binds materials, conditions and loads to a discretisation.
+    pub fn new(problem: &Problem, discretisation: &Discretisation) -> Result<Model, Error> {
+        let quadrature = &discretisation.quadrature;
+        let density: Vec<f64> = quadrature
+            .regions
+            .iter()
+            .map(|&region| problem.regions[region as usize].material.density)
+            .collect();
+        let lumped_mass = lumped_mass(discretisation, &density, problem.recipe.mass)?;
+        let constraints = Constraints::new(problem, discretisation, &lumped_mass)?;
+        let bound = crate::critical_time_step::per_point_bound(problem, discretisation, &lumped_mass);
+        Ok(Model {
+            components: problem.dimension.components(),
+            positions: discretisation.cloud.positions.clone(),
+            blocks: blocks(problem, discretisation),
+            loads: load_patterns(problem, discretisation, &density)?,
+            contact: ContactPlan::new(problem, discretisation, &constraints),
+            initial_velocity: initial_velocity(problem, discretisation),
+            point_positions: quadrature.positions.clone(),
+            extent: extent(&discretisation.cloud.positions),
+            lumped_mass,
+            constraints,
+            bound,
+        })
+    }
+
+    /// Number of displacement components of all nodes.
+    pub fn size(&self) -> usize {
+        self.components * self.positions.len()
+    }
+
+    /// Bytes that one evaluation of the internal force streams.
+    pub fn bytes_per_step(&self) -> usize {
+        self.blocks.iter().map(|b| 8 * b.grad_phi.len() + 4 * b.supports.len()).sum()
+    }
+}
+
+fn blocks(problem: &Problem, discretisation: &Discretisation) -> Vec<Block> {
+    let regions = &discretisation.quadrature.regions;
+    let per_block = (regions.len() / 16).clamp(BLOCK_POINTS.0, BLOCK_POINTS.1);
+    let mut blocks = Vec::new();
+    let mut start = 0;
+    while start < regions.len() {
+        let same = regions[start..].iter().take_while(|&&r| r == regions[start]).count();
+        let pieces = same.div_ceil(per_block);
+        for piece in 0..pieces {
+            let range = start + same * piece / pieces..start + same * (piece + 1) / pieces;
+            let law = problem.regions[regions[start] as usize].material.law;
+            blocks.push(block(law, range, discretisation));
+        }
+        start += same;
+    }
+    blocks
+}
+
+fn block(law: Law, points: Range<usize>, discretisation: &Discretisation) -> Block {
+    let rows = &discretisation.supports;
+    let components = discretisation.dimension.components();
+    let entries = rows.starts[points.start]..rows.starts[points.end];
+    let mut nodes: Vec<u32> = rows.nodes[entries.clone()].to_vec();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let local = |node: &u32| nodes.binary_search(node).unwrap_or_default() as u32;
+    let offset = entries.start;
+    Block {
+        law,
+        starts: rows.starts[points.start..=points.end].iter().map(|s| (s - offset) as u32).collect(),
+        supports: rows.nodes[entries.clone()].iter().map(local).collect(),
+        grad_phi: rows.grad_phi[entries]
+            .iter()
+            .flat_map(|gradient| gradient.iter().take(components).copied())
+            .collect(),
+        quadrature_weights: discretisation.quadrature.weights[points.clone()].to_vec(),
+        nodes,
+        points,
+    }
+}
+
+fn extent(positions: &[Vector3]) -> f64 {
+    let (mut min, mut max) = (positions[0], positions[0]);
+    for position in positions {
+        min = min.inf(position);
+        max = max.sup(position);
+    }
+    (max - min).norm()
+}
+
+fn initial_velocity(problem: &Problem, discretisation: &Discretisation) -> Vec<f64> {
+    let components = problem.dimension.components();
+    let mut velocity = vec![0.0; components * discretisation.cloud.positions.len()];
+    for (node, position) in discretisation.cloud.positions.iter().enumerate() {
+        let parts = &problem.loads.initial_velocities;
+        if let Some((_, v)) = parts.iter().find(|(part, _)| part.contains(position)) {
+            for k in 0..components {
+                velocity[components * node + k] = v[k];
+            }
+        }
+    }
+    velocity
+}

@@ -1,0 +1,397 @@
+//! Background grid → quadrature points. The grid need not conform to the body.
+#![allow(non_snake_case)]
+
+use crate::error::Error;
+use crate::geometry::Shape;
+use crate::problem::{BackgroundGrid, Dimension, InsideRule, Region};
+use crate::tensor::Vector3;
+
+/// Quadrature points of the whole body.
+#[derive(Debug, Clone, Default)]
+pub struct Quadrature {
+    /// \[point\] \[m\]
+    pub positions: Vec<Vector3>,
+    /// `quadrature_weight`, a reference volume \[point\] \[m³\].
+    pub weights: Vec<f64>,
+    /// Index of the region that each point belongs to \[point\].
+    pub regions: Vec<u16>,
+    /// Cells that gave points.
+    pub cells: usize,
+    /// Cells cut by the boundary or by a border between regions.
+    pub cut_cells: usize,
+}
+
+/// Halvings below a sub-cell when its inside volume is measured.
+const FRACTION_DEPTH: usize = 4;
+const FRACTION_DEPTH_PLANE: usize = 5;
+/// Parts of a cell smaller than this share of it are dropped \[–\].
+const SMALLEST_FRACTION: f64 = 1e-4;
+
+/// A square or cube of the grid.
+#[derive(Clone, Copy)]
+struct Cell {
+    centre: Vector3,
+    edge: f64,
+}
+
+struct Builder<'a> {
+    body: &'a Shape,
+    regions: &'a [Region],
+    grid: &'a BackgroundGrid,
+    /// 2 or 3.
+    components: usize,
+    /// Volume of a cell is edge^components × thickness.
+    thickness: f64,
+    out: Quadrature,
+}
+
+/// Lays the grid over the body and collects its points: the seed's "centre
+/// inside" rule (section 2.3) or volume fractions with the centroid of the
+/// inside part (one point for each region in the cell).
+pub fn quadrature(
+    body: &Shape,
+    regions: &[Region],
+    grid: &BackgroundGrid,
+    dimension: &Dimension,
+) -> Result<Quadrature, Error> {
+    let (min, max) = body.bounding_box().ok_or(Error::NoQuadraturePoints)?;
+    let (thickness, z) = match *dimension {
+        Dimension::Three => (1.0, 0.0),
+        Dimension::PlaneStrain { thickness, z } => (thickness, z),
+    };
+    let components = dimension.components();
+    let mut builder =
+        Builder { body, regions, grid, components, thickness, out: Quadrature::default() };
+    let counts = [0, 1, 2].map(|k| match k < components {
+        // A grid that fits exactly must not gain a layer from round-off.
+        true => ((max[k] - min[k]) / grid.cell - 1e-9).ceil().max(1.0) as usize,
+        false => 1,
+    });
+    let middle = (min + max) * 0.5;
+    for k in 0..counts[2] {
+        for j in 0..counts[1] {
+            for i in 0..counts[0] {
+                let mut centre = middle;
+                for (axis, index) in [i, j, k].into_iter().enumerate() {
+                    centre[axis] += grid.cell * (index as f64 + 0.5 - 0.5 * counts[axis] as f64);
+                }
+                if components == 2 {
+                    centre.z = z;
+                }
+                builder.visit(Cell { centre, edge: grid.cell })?;
+            }
+        }
+    }
+    if builder.out.positions.is_empty() {
+        return Err(Error::NoQuadraturePoints);
+    }
+    Ok(builder.out)
+}
+
+impl Builder<'_> {
+    /// Splits a cell where the grid asks for smaller ones, drops it outside.
+    fn visit(&mut self, cell: Cell) -> Result<(), Error> {
+        let distance = self.body.signed_distance(&cell.centre);
+        let reach = self.half_diagonal(&cell);
+        if distance > reach {
+            return Ok(());
+        }
+        let meets_boundary = distance > -reach;
+        let too_large = |limit: f64| cell.edge > limit * (1.0 + 1e-9);
+        let split = (meets_boundary && self.grid.boundary_cell.is_some_and(too_large))
+            || self.grid.refinements.iter().any(|refinement| {
+                too_large(refinement.size)
+                    && self.samples(&cell).iter().any(|X| refinement.part.contains(X))
+            });
+        if split {
+            for child in self.children(&cell) {
+                self.visit(child)?;
+            }
+            return Ok(());
+        }
+        self.leaf(cell, meets_boundary)
+    }
+
+    fn leaf(&mut self, cell: Cell, meets_boundary: bool) -> Result<(), Error> {
+        let mixed = self.regions.len() > 1 && self.is_mixed(&cell);
+        let before = self.out.positions.len();
+        match self.grid.inside {
+            InsideRule::Centre => {
+                if self.body.signed_distance(&cell.centre) > 0.0 {
+                    return Ok(());
+                }
+                self.whole(&cell)?;
+            }
+            InsideRule::VolumeFraction if meets_boundary || mixed => self.parts(&cell)?,
+            InsideRule::VolumeFraction => self.whole(&cell)?,
+        }
+        if self.out.positions.len() > before {
+            self.out.cells += 1;
+            self.out.cut_cells += (meets_boundary || mixed) as usize;
+        }
+        Ok(())
+    }
+
+    /// Gauss–Legendre points of a cell that is kept whole.
+    fn whole(&mut self, cell: &Cell) -> Result<(), Error> {
+        let rule = gauss_legendre(self.grid.gauss_points);
+        let layers: &[(f64, f64)] = if self.components == 3 { &rule } else { &[(0.0, 1.0)] };
+        for &(z, wz) in layers {
+            for &(y, wy) in &rule {
+                for &(x, wx) in &rule {
+                    let X = cell.centre + Vector3::new(x, y, z) * cell.edge;
+                    let weight = self.volume(cell) * wx * wy * wz;
+                    self.push(X, weight, self.region_at(&X)?);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// One point per sub-box and region at the centroid of what lies inside.
+    fn parts(&mut self, cell: &Cell) -> Result<(), Error> {
+        let depth = if self.components == 2 { FRACTION_DEPTH_PLANE } else { FRACTION_DEPTH };
+        for part in self.divide(cell, self.grid.gauss_points) {
+            let mut moments = vec![(0.0, Vector3::zeros()); self.regions.len()];
+            self.measure(&part, depth, &mut moments)?;
+            for (region, (volume, moment)) in moments.into_iter().enumerate() {
+                if volume > SMALLEST_FRACTION * self.volume(&part) {
+                    self.push(moment / volume, volume, region as u16);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the inside volume of a cell and its first moment, by region.
+    fn measure(&self, cell: &Cell, depth: usize, moments: &mut [(f64, Vector3)]) -> Result<(), Error> {
+        let distance = self.body.signed_distance(&cell.centre);
+        let reach = self.half_diagonal(cell);
+        if distance > reach {
+            return Ok(());
+        }
+        let cut = distance > -reach;
+        if depth > 0 && (cut || (self.regions.len() > 1 && self.is_mixed(cell))) {
+            for child in self.children(cell) {
+                self.measure(&child, depth - 1, moments)?;
+            }
+            return Ok(());
+        }
+        let (fraction, shift) = if cut { self.plane_cut(cell, distance) } else { (1.0, Vector3::zeros()) };
+        if fraction > 0.0 {
+            let volume = fraction * self.volume(cell);
+            let centroid = cell.centre + shift;
+            let region = self.region_at(&centroid)? as usize;
+            moments[region].0 += volume;
+            moments[region].1 += centroid * volume;
+        }
+        Ok(())
+    }
+
+    /// Inside fraction of a small cell and the shift of its centroid, as if
+    /// the boundary were a plane whose normal is the nearest axis: exact for
+    /// boundaries along the grid, second order in the sub-cell for others.
+    fn plane_cut(&self, cell: &Cell, distance: f64) -> (f64, Vector3) {
+        let fraction = (0.5 - distance / cell.edge).clamp(0.0, 1.0);
+        let mut normal = self.body.gradient(&cell.centre);
+        if self.components == 2 {
+            normal.z = 0.0;
+        }
+        let axis = normal.iamax();
+        let mut shift = Vector3::zeros();
+        shift[axis] = -normal[axis].signum() * 0.5 * (1.0 - fraction) * cell.edge;
+        (fraction, shift)
+    }
+
+    fn push(&mut self, X: Vector3, weight: f64, region: u16) {
+        self.out.positions.push(X);
+        self.out.weights.push(weight);
+        self.out.regions.push(region);
+    }
+
+    fn region_at(&self, X: &Vector3) -> Result<u16, Error> {
+        let found = self.regions.iter().position(|region| region.part.contains(X));
+        found.map(|index| index as u16).ok_or(Error::PointWithoutRegion { position: *X })
+    }
+
+    /// Whether the sample points of a cell belong to more than one region.
+    fn is_mixed(&self, cell: &Cell) -> bool {
+        let owner = |X: &Vector3| self.regions.iter().position(|region| region.part.contains(X));
+        let at_centre = owner(&cell.centre);
+        self.samples(cell).iter().any(|X| owner(X) != at_centre)
+    }
+
+    /// Centre and corners, the corners drawn in by a hair so that neighbours
+    /// along a shared face do not claim each other's region.
+    fn samples(&self, cell: &Cell) -> Vec<Vector3> {
+        let corner = Cell { centre: cell.centre, edge: 2.0 * cell.edge * (1.0 - 1e-6) };
+        let mut samples: Vec<Vector3> = self.children(&corner).iter().map(|c| c.centre).collect();
+        samples.push(cell.centre);
+        samples
+    }
+
+    fn children(&self, cell: &Cell) -> Vec<Cell> {
+        self.divide(cell, 2)
+    }
+
+    /// n parts per direction.
+    fn divide(&self, cell: &Cell, n: usize) -> Vec<Cell> {
+        let edge = cell.edge / n as f64;
+        let at = |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) * edge;
+        let layers = if self.components == 3 { n } else { 1 };
+        let mut parts = Vec::with_capacity(n * n * layers);
+        for k in 0..layers {
+            for j in 0..n {
+                for i in 0..n {
+                    let z = if self.components == 3 { at(k) } else { 0.0 };
+                    parts.push(Cell { centre: cell.centre + Vector3::new(at(i), at(j), z), edge });
+                }
+            }
+        }
+        parts
+    }
+
+    fn half_diagonal(&self, cell: &Cell) -> f64 {
+        0.5 * cell.edge * (self.components as f64).sqrt()
+    }
+
+    fn volume(&self, cell: &Cell) -> f64 {
+        cell.edge.powi(self.components as i32) * self.thickness
+    }
+}
+
+/// Points in (−½, ½) and weights that sum to 1, for 1 to 5 points.
+fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+    let half: &[(f64, f64)] = match n {
+        1 => &[(0.0, 2.0)],
+        2 => &[(0.577_350_269_189_625_8, 1.0)],
+        3 => &[(0.0, 0.888_888_888_888_888_9), (0.774_596_669_241_483_4, 0.555_555_555_555_555_6)],
+        4 => &[
+            (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
+            (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+        ],
+        _ => &[
+            (0.0, 0.568_888_888_888_888_9),
+            (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+            (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+        ],
+    };
+    let mut rule = Vec::new();
+    for &(x, weight) in half {
+        if x > 0.0 {
+            rule.push((-0.5 * x, 0.5 * weight));
+        }
+        rule.push((0.5 * x, 0.5 * weight));
+    }
+    rule
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
+    use crate::problem::Refinement;
+    use crate::selection::Selector;
+
+    fn region(name: &str, part: Selector) -> Region {
+        let constants = ElasticConstants::from_young_poisson(1e3, 0.3).unwrap();
+        let law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
+        Region { name: name.into(), part, material: Material { density: 1e3, law } }
+    }
+
+    fn grid(cell: f64) -> BackgroundGrid {
+        BackgroundGrid {
+            cell,
+            boundary_cell: None,
+            refinements: Vec::new(),
+            gauss_points: 1,
+            inside: InsideRule::VolumeFraction,
+        }
+    }
+
+    fn ball() -> Shape {
+        Shape::Sphere { centre: Vector3::new(0.3, 0.1, -0.2), radius: 0.04 }
+    }
+
+    #[test]
+    fn gauss_rules_integrate_the_powers_that_they_should() {
+        for n in 1..=5 {
+            let rule = gauss_legendre(n);
+            assert_eq!(rule.len(), n);
+            for power in 0..2 * n {
+                let sum: f64 = rule.iter().map(|(x, w)| w * x.powi(power as i32)).sum();
+                let exact = match power % 2 {
+                    0 => 0.5f64.powi(power as i32) / (power + 1) as f64,
+                    _ => 0.0,
+                };
+                assert!((sum - exact).abs() < 1e-15, "{n} points, power {power}");
+            }
+        }
+    }
+
+    #[test]
+    fn volume_fractions_measure_a_sphere_and_its_centroid() {
+        let q = quadrature(&ball(), &[region("all", Selector::All)], &grid(0.011), &Dimension::Three).unwrap();
+        let volume: f64 = q.weights.iter().sum();
+        let exact = 4.0 / 3.0 * std::f64::consts::PI * 0.04f64.powi(3);
+        assert!((volume / exact - 1.0).abs() < 2e-3, "{}", volume / exact);
+        let moment: Vector3 = q.positions.iter().zip(&q.weights).map(|(X, w)| X * *w).sum();
+        assert!((moment / volume - Vector3::new(0.3, 0.1, -0.2)).norm() < 1e-5);
+    }
+
+    #[test]
+    fn volume_fractions_are_exact_for_a_box_off_the_grid() {
+        let min = Vector3::new(0.01, 0.02, 0.0);
+        let max = Vector3::new(0.113, 0.087, 0.05);
+        let body = Shape::Box { min, max };
+        let q = quadrature(&body, &[region("all", Selector::All)], &grid(0.02), &Dimension::Three).unwrap();
+        let volume: f64 = q.weights.iter().sum();
+        assert!((volume / (max - min).product() - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_centre_rule_keeps_whole_cells_only() {
+        let mut grid = grid(0.01);
+        grid.inside = InsideRule::Centre;
+        let q = quadrature(&ball(), &[region("all", Selector::All)], &grid, &Dimension::Three).unwrap();
+        assert!(q.weights.iter().all(|w| (w - 1e-6).abs() < 1e-18));
+        assert!(q.positions.iter().all(|X| ball().signed_distance(X) <= 0.0));
+    }
+
+    #[test]
+    fn cells_are_halved_near_the_boundary_and_in_chosen_parts() {
+        let mut grid = grid(0.02);
+        grid.inside = InsideRule::Centre;
+        grid.boundary_cell = Some(0.01);
+        let core = Shape::Sphere { centre: Vector3::new(0.3, 0.1, -0.2), radius: 0.012 };
+        grid.refinements = vec![Refinement { part: Selector::Inside { shape: core, tolerance: 0.0 }, size: 0.005 }];
+        let q = quadrature(&ball(), &[region("all", Selector::All)], &grid, &Dimension::Three).unwrap();
+        for edge in [0.005f64, 0.01] {
+            assert!(q.weights.iter().any(|w| (w / edge.powi(3) - 1.0).abs() < 1e-9), "{edge}");
+        }
+    }
+
+    #[test]
+    fn a_cell_on_a_border_gives_each_region_its_share() {
+        let body = Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(0.1) };
+        let left = Shape::HalfSpace { point: Vector3::new(0.033, 0.0, 0.0), normal: Vector3::x() };
+        let regions = [
+            region("left", Selector::Inside { shape: left, tolerance: 0.0 }),
+            region("right", Selector::All),
+        ];
+        let q = quadrature(&body, &regions, &grid(0.02), &Dimension::Three).unwrap();
+        let volume: f64 = q.weights.iter().zip(&q.regions).filter(|(_, r)| **r == 0).map(|(w, _)| w).sum();
+        assert!((volume / (0.033 * 0.01) - 1.0).abs() < 0.02, "{volume}");
+    }
+
+    #[test]
+    fn a_plane_slice_has_the_volume_of_its_slab() {
+        let body = Shape::Cylinder { base: Vector3::zeros(), axis: Vector3::z(), radius: 0.05, height: 0.02 };
+        let plane = Dimension::PlaneStrain { thickness: 0.005, z: 0.01 };
+        let q = quadrature(&body, &[region("all", Selector::All)], &grid(0.011), &plane).unwrap();
+        let volume: f64 = q.weights.iter().sum();
+        let exact = std::f64::consts::PI * 0.05f64.powi(2) * 0.005;
+        assert!((volume / exact - 1.0).abs() < 2e-3, "{}", volume / exact);
+        assert!(q.positions.iter().all(|X| X.z == 0.01));
+    }
+}

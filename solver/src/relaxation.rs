@@ -1,0 +1,164 @@
+//! Dynamic relaxation: damped motion towards a static solution.
+
+use crate::error::Error;
+use crate::internal_force::internal_force;
+use crate::model::Model;
+use crate::observe::{Continue, Observer};
+use crate::problem::Relaxation;
+use crate::simulate::{Convergence, Pace, Summary, check, watch};
+use crate::state::State;
+use crate::step::{Buffers, Scheme, external_force, step};
+
+/// Steps between two estimates of the lowest frequency.
+const ESTIMATE_EVERY: usize = 10;
+/// Steps between two looks at the error.
+const LOOK_EVERY: usize = 20;
+
+/// Applies the loads over `load_steps` steps, then holds them until the
+/// estimated error of the largest displacement is below the tolerance and the
+/// residual confirms it (Joldes, Wittek, Miller 2011).
+pub(crate) fn relax(
+    model: &Model,
+    settings: &Relaxation,
+    state: &mut State,
+    observer: &mut dyn Observer,
+) -> Result<Summary, Error> {
+    let mut buffers = Buffers::new(model, observer.tracks_work());
+    let mut pace = Pace::new(model, settings.step, state, &mut buffers)?;
+    let mut damping = Damping::new(model, settings);
+    let mut convergence = Convergence { estimated_error: f64::INFINITY, residual: f64::INFINITY };
+    watch(model, state, &mut buffers, f64::INFINITY, 0.0, observer);
+    for count in 1..=settings.max_steps {
+        if pace.reevaluate(model, state, &mut buffers) {
+            damping.forget();
+        }
+        let load_time = |count: usize| {
+            settings.load_end * (count as f64 / settings.load_steps as f64).min(1.0)
+        };
+        let scheme = Scheme::relaxation(pace.time_step, damping.c);
+        let report = step(model, &scheme, load_time(count - 1), load_time(count), state, &mut buffers);
+        pace.record(pace.time_step, &report);
+        check(model, state, &report)?;
+        damping.learn(model, state, &buffers, pace.time_step);
+        let held = count > settings.load_steps;
+        if held && count.is_multiple_of(LOOK_EVERY) {
+            convergence = assess(model, state, &mut buffers, damping.c, report.largest_increment);
+        }
+        let size = largest(&state.displacement).max(1e-12 * model.extent);
+        let converged = convergence.estimated_error <= settings.tolerance * size
+            && convergence.residual <= 10.0 * settings.tolerance;
+        let progress = if converged { 1.0 } else { progress(count, settings, &convergence, size) };
+        let jacobian = report.smallest_jacobian.jacobian;
+        let stop = watch(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
+        if converged || stop {
+            let summary = pace.summary(state, stop);
+            return Ok(Summary { relaxation: Some(convergence), ..summary });
+        }
+    }
+    Err(Error::NotConverged {
+        steps: settings.max_steps,
+        error: convergence.estimated_error,
+        tolerance: settings.tolerance * largest(&state.displacement),
+        residual: convergence.residual,
+    })
+}
+
+/// Adapts the convergence factor c to the lowest frequency that moves.
+struct Damping {
+    c: f64,
+    since: usize,
+    displacement_change: Vec<f64>,
+    force_before: Vec<f64>,
+}
+
+impl Damping {
+    fn new(model: &Model, settings: &Relaxation) -> Damping {
+        // Before anything is known: as if the load took one slow period.
+        let kappa = (settings.load_steps as f64 / std::f64::consts::PI).max(2.0);
+        let zeros = vec![0.0; model.size()];
+        Damping { c: factor(kappa), since: 0, displacement_change: zeros.clone(), force_before: zeros }
+    }
+
+    /// A changed step makes the last differences useless.
+    fn forget(&mut self) {
+        self.since = 0;
+    }
+
+    /// ω² = |Σ Δu·Δf|/Σ m Δu², κ = 2/(ωΔt), c = (κ − 1)/(κ + 1)
+    /// (Joldes, Wittek, Miller 2011, eqs. 17–22).
+    fn learn(&mut self, model: &Model, state: &State, buffers: &Buffers, time_step: f64) {
+        self.since += 1;
+        if self.since == ESTIMATE_EVERY - 1 {
+            self.force_before.copy_from_slice(&buffers.f_int);
+            self.displacement_change.copy_from_slice(&state.velocity);
+        }
+        if self.since < ESTIMATE_EVERY {
+            return;
+        }
+        self.since = 0;
+        let (mut stiffness, mut inertia) = (0.0, 0.0);
+        let d = model.components;
+        for (node, mass) in model.lumped_mass.iter().enumerate() {
+            for i in d * node..d * (node + 1) {
+                let change = time_step * self.displacement_change[i];
+                stiffness += change * (buffers.f_int[i] - self.force_before[i]);
+                inertia += mass * change * change;
+            }
+        }
+        let omega = (stiffness.abs() / inertia).sqrt();
+        if omega.is_finite() && omega > 0.0 {
+            self.c = factor((2.0 / (omega * time_step)).max(1.5));
+        }
+    }
+}
+
+fn factor(kappa: f64) -> f64 {
+    (kappa - 1.0) / (kappa + 1.0)
+}
+
+/// Error estimate max|Δu| c'/(1 − c') with c' = c + 0.2(1 − c), and the
+/// residual of the static equations.
+fn assess(model: &Model, state: &mut State, buffers: &mut Buffers, c: f64, increment: f64) -> Convergence {
+    let slowed = c + 0.2 * (1.0 - c);
+    Convergence {
+        estimated_error: increment * slowed / (1.0 - slowed),
+        residual: residual(model, state, buffers),
+    }
+}
+
+/// Largest unbalanced nodal force over the largest nodal force, after the
+/// constraint forces have taken what they can. Nodes in contact are left out.
+fn residual(model: &Model, state: &mut State, buffers: &mut Buffers) -> f64 {
+    let d = model.components;
+    internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
+    external_force(model, state.time, &mut buffers.f_ext);
+    let mut acceleration = vec![0.0; model.size()];
+    for (node, mass) in model.lumped_mass.iter().enumerate() {
+        for i in d * node..d * (node + 1) {
+            acceleration[i] = (buffers.f_ext[i] - buffers.f_int[i]) / mass;
+        }
+    }
+    let scratch = &mut state.residual_scratch;
+    model.constraints.project(state.time, &model.lumped_mass, &mut acceleration, scratch);
+    for &node in &state.contact.touching {
+        acceleration[d * node as usize..d * (node as usize + 1)].fill(0.0);
+    }
+    let unbalanced = acceleration.iter().enumerate().map(|(i, a)| a * model.lumped_mass[i / d]);
+    let scale = largest(&buffers.f_int).max(largest(&buffers.f_ext));
+    unbalanced.fold(0.0f64, |a, f| a.max(f.abs())) / scale.max(f64::MIN_POSITIVE)
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0f64, |a, x| a.max(x.abs()))
+}
+
+/// The load is half of the way; the rest is how far the error has fallen.
+fn progress(count: usize, settings: &Relaxation, convergence: &Convergence, size: f64) -> f64 {
+    let loaded = (count as f64 / settings.load_steps as f64).min(1.0);
+    let relative = convergence.estimated_error / size;
+    let fallen = match relative.is_finite() && relative > 0.0 {
+        true => (relative.min(1.0).ln() / settings.tolerance.ln()).clamp(0.0, 1.0),
+        false => 0.0,
+    };
+    0.5 * loaded + 0.5 * fallen
+}
