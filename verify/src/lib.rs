@@ -3,4 +3,5 @@
 
 pub mod exact;
 pub mod measure;
+pub mod report;
 pub mod study;
