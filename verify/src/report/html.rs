@@ -62,8 +62,10 @@ fn check_value(check: &Check) -> Value {
         Bound::AtMost(limit) | Bound::AtLeast(limit) => limit,
         Bound::Between(low, high) => 0.5 * (low + high),
     };
+    let breakable_id = svg::escape(&check.id).replace('/', "/<wbr>");
     context! {
         id => check.id.as_str(),
+        breakable_id => Value::from_safe_string(breakable_id),
         study => check.study.as_str(),
         quantity => check.quantity.as_str(),
         kind => kind_name(check.kind),

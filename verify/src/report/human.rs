@@ -1,13 +1,20 @@
 //! The table for the terminal.
 
 use super::number::{bound_text, four_digits};
-use super::words::{duration, kind_name, study_passed, unit_text, verdict};
+use super::words::{duration, kind_name, unit_text, verdict};
 use crate::study::{Check, Report, Study};
-use comfy_table::{Attribute, Cell, CellAlignment, Color, ContentArrangement, Table, presets};
+use comfy_table::{
+    Attribute, Cell, CellAlignment, Color, ContentArrangement, LineStyle, Table, presets,
+};
 use std::fmt::Write;
 
 /// All checks grouped by study and the verdict; coloured only when asked.
 pub fn to_table(report: &Report, colour: bool) -> String {
+    render(report, colour, None)
+}
+
+/// `width` in characters replaces that of the terminal.
+fn render(report: &Report, colour: bool, width: Option<u16>) -> String {
     let mut text = String::new();
     for study in &report.studies {
         let heading = format!("{} ({})", study.title, duration(study.wall_seconds));
@@ -17,7 +24,7 @@ pub fn to_table(report: &Report, colour: bool) -> String {
             let _ = writeln!(text, "{}", paint(&line, colour.then_some("1;31")));
         }
         if !study.checks.is_empty() {
-            let _ = writeln!(text, "{}", table(study, colour));
+            let _ = writeln!(text, "{}", table(study, colour, width));
         }
         text.push('\n');
     }
@@ -26,10 +33,14 @@ pub fn to_table(report: &Report, colour: bool) -> String {
     text
 }
 
-fn table(study: &Study, colour: bool) -> Table {
+fn table(study: &Study, colour: bool, width: Option<u16>) -> Table {
     let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    let style = presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none());
+    table.load_style(style);
     table.set_content_arrangement(ContentArrangement::Dynamic);
+    if let Some(width) = width {
+        table.set_width(width);
+    }
     if colour {
         table.enforce_styling();
     }
@@ -72,11 +83,21 @@ mod tests {
 
     #[test]
     fn the_verdict_is_the_last_line_and_colour_comes_only_when_asked() {
-        let plain = to_table(&sample::report(), false);
+        let plain = render(&sample::report(), false, Some(200));
         assert_eq!(plain.lines().last(), Some("9 of 11 checks passed, 1 study could not run"));
         assert!(plain.contains("FAIL") && plain.contains("COULD NOT RUN"), "{plain}");
         assert!(!plain.contains('\u{1b}'));
         assert!(to_table(&sample::report(), true).contains("\u{1b}["));
+    }
+
+    #[test]
+    fn the_quantity_is_beside_its_value_and_bound() {
+        let plain = render(&sample::report(), false, Some(200));
+        let line = plain.lines().find(|line| line.contains("brain/step")).unwrap();
+        for text in ["critical time step", "regression", "12.34×10⁻⁶", "≥ 12×10⁻⁶", "pass"]
+        {
+            assert!(line.contains(text), "{text} in {line}");
+        }
     }
 
     #[test]

@@ -39,14 +39,13 @@ fn failures(text: &mut String, report: &Report) {
         }
     }
     for check in report.checks().filter(|check| !check.pass) {
+        let (value, bound) = (four_digits(check.value), bound_text(&check.bound));
+        let unit = if check.unit == "1" { String::new() } else { format!(" {}", check.unit) };
+        let quantity = cell(&check.quantity);
         let _ = writeln!(
             text,
-            "- ❌ `{}`: {} is {}, must be {} {}",
-            check.id,
-            cell(&check.quantity),
-            four_digits(check.value),
-            bound_text(&check.bound),
-            if check.unit == "1" { "" } else { &check.unit },
+            "- ❌ `{}`: {quantity} is {value}{unit}, must be {bound}{unit}",
+            check.id
         );
     }
     if !report.passed() {

@@ -211,7 +211,7 @@ fn outline(radius: f64, push: f64) -> Vec<[f64; 2]> {
     let place = |a: f64| {
         let r = radius * (1.0 + 0.05 * (5.0 * a).cos() + 0.02 * (11.0 * a).sin());
         let squeeze = push * (-((a - 0.8).powi(2)) * 3.0).exp();
-        [0.085 / 0.085 * r * a.cos() * 1.15 - squeeze * a.cos(), (r - squeeze) * a.sin()]
+        [1.15 * r * a.cos() - squeeze * a.cos(), (r - squeeze) * a.sin()]
     };
     (0..240).map(|i| place(TAU * f64::from(i) / 240.0)).collect()
 }

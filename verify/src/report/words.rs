@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn durations_are_rounded_to_what_one_reads() {
-        let spoken = [0.0801, 0.9999, 3.14159, 59.4, 59.7, 185.2, f64::NAN].map(duration);
+        let spoken = [0.0801, 0.9999, 3.123, 59.4, 59.7, 185.2, f64::NAN].map(duration);
         assert_eq!(spoken, ["80 ms", "1.0 s", "3.1 s", "59 s", "1 min 00 s", "3 min 05 s", "–"]);
     }
 }

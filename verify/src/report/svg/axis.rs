@@ -76,7 +76,7 @@ impl Scale {
     }
 
     fn linear_ticks(&self, low: f64, high: f64) -> Ticks {
-        let step = nice_step((high - low) / 5.0);
+        let step = nice_step((high - low) / 6.5);
         let first = (low / step).ceil();
         let count = (high / step).floor() - first;
         let values: Vec<f64> =
@@ -108,15 +108,18 @@ impl Scale {
         };
         let every = multiples(&[1, 2, 3, 4, 5, 6, 7, 8, 9]);
         let whole = multiples(&[1]);
-        let chosen = match (whole.len(), multiples(&[1, 2, 5])) {
-            (3.., _) => whole.clone(),
-            (_, some) if some.len() >= 3 => some,
-            _ if every.len() >= 3 => every.clone(),
+        let some = multiples(&[1, 2, 5]);
+        let decades_only = whole.len() >= 3;
+        let chosen = match (decades_only, some.len(), every.len()) {
+            (true, _, _) => whole.clone(),
+            (_, 3.., _) => some,
+            (_, _, 3..) => every.clone(),
             _ => return self.linear_ticks(10_f64.powf(self.low), 10_f64.powf(self.high)),
         };
         let stride = whole.len().div_ceil(7).max(1) as i32;
         let labelled = chosen.into_iter().filter(|&(_, d)| d.rem_euclid(stride) == 0);
-        let major = labelled.map(|(f, d)| Tick { value: multiple(f, d), label: power(f, d) });
+        let major =
+            labelled.map(|(f, d)| Tick { value: multiple(f, d), label: power(f, d, decades_only) });
         let minor = if stride == 1 { every } else { whole };
         let minor = minor.into_iter().map(|(f, d)| multiple(f, d)).collect();
         Ticks { major: major.collect(), minor, exponent: 0 }
@@ -127,11 +130,11 @@ fn multiple(factor: i32, decade: i32) -> f64 {
     f64::from(factor) * 10_f64.powi(decade)
 }
 
-/// `0.02` near one, `2×10⁻⁵` far from it.
-fn power(factor: i32, decade: i32) -> String {
+/// `10⁻²` among decades alone; else `0.02` near one and `2×10⁻⁵` far from it.
+fn power(factor: i32, decade: i32, decades_only: bool) -> String {
     match (factor, decade) {
-        (f, 0..=2) => format!("{}", f * 10_i32.pow(decade as u32)),
-        (f, -2..=-1) if f != 1 => fixed(multiple(f, decade), decade.unsigned_abs() as usize),
+        (f, 0..=1) => format!("{}", f * 10_i32.pow(decade as u32)),
+        (f, -3..=3) if !decades_only => fixed(multiple(f, decade), (-decade).max(0) as usize),
         (1, d) => power_of_ten(d),
         (f, d) => format!("{f}×{}", power_of_ten(d)),
     }

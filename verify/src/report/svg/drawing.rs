@@ -6,9 +6,9 @@ use super::canvas::{Anchor, COLOURS, Canvas, dot, polyline};
 use super::legend::Legend;
 use crate::study::{Drawing, Layer, LayerStyle};
 
-const WIDTH: f64 = 480.0;
+const WIDTH: f64 = 420.0;
 const MARGIN: f64 = 14.0;
-const TALLEST: f64 = 420.0;
+const TALLEST: f64 = 380.0;
 
 /// Maps the plane onto the page: equal scales, y up.
 struct View {

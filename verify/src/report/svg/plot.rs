@@ -6,8 +6,8 @@ use super::legend::Legend;
 use super::slope;
 use crate::study::{Plot, Series, SeriesStyle};
 
-const WIDTH: f64 = 480.0;
-const BOX_HEIGHT: f64 = 270.0;
+const WIDTH: f64 = 420.0;
+const BOX_HEIGHT: f64 = 245.0;
 const TOP: f64 = 10.0;
 const RIGHT: f64 = 16.0;
 
