@@ -114,7 +114,7 @@ pub struct LogLogFit {
 }
 
 /// Least-squares line through (ln x, ln y); the deviation is
-/// √(Σr²/(n − 2)/Σ(ln x − mean)²) (Draper and Smith 1998, eq. 1.4.9). None with
+/// √(Σr²/(n − 2)/Σ(ln x − mean)²) (Draper and Smith 1998, chapter 1). None with
 /// fewer than two different x or any sample that is not positive and finite.
 pub fn log_log_fit(samples: &[(f64, f64)]) -> Option<LogLogFit> {
     let usable = |v: f64| v > 0.0 && v.is_finite();

@@ -1,5 +1,5 @@
 //! A laterally confined column under its own weight, linear elasticity
-//! (Timoshenko and Goodier 1970, section 96, with zero lateral strain).
+//! (after Timoshenko and Goodier 1970, with zero lateral strain).
 
 use mtled::material::ElasticConstants;
 

@@ -1,5 +1,5 @@
 //! Torsion of an incompressible neo-Hookean cylinder at fixed length, lateral
-//! surface free (Rivlin 1948; Ogden 1984, section 5.3.4).
+//! surface free (Rivlin 1948; Ogden 1984).
 
 use std::f64::consts::PI;
 

@@ -4,7 +4,8 @@
 
 use super::Published;
 
-const SOURCE: &str = "Turek, Hron 2006, Proposal for numerical benchmarking of fluid-structure interaction, tables 3 to 5";
+const SOURCE: &str =
+    "Turek, Hron 2006, Proposal for numerical benchmarking of fluid-structure interaction";
 
 /// A published length whose uncertainty is half a unit of its last digit.
 const fn printed(value: f64, uncertainty: f64) -> Published {

@@ -15,7 +15,7 @@ pub struct UniaxialState {
 }
 
 /// Solves P₂₂(diag(λ, λ_l, λ_l)) = 0 for λ_l by bisection from the side of
-/// λ_l = 1 (Bonet and Wood 2008, section 6.6.2). None where no lateral stretch
+/// λ_l = 1. None where no lateral stretch
 /// within a factor of four frees the faces.
 pub fn uniaxial_stress(law: &Law, stretch: f64) -> Option<UniaxialState> {
     let P = |lateral: f64| {
@@ -41,7 +41,7 @@ pub fn uniaxial_stress(law: &Law, stretch: f64) -> Option<UniaxialState> {
 }
 
 /// Cauchy stress of an incompressible neo-Hookean bar σ = μ(λ² − 1/λ) \[Pa\]
-/// (Treloar 1975; Bonet and Wood 2008, section 6.5).
+/// (Treloar 1975).
 pub fn incompressible_cauchy_stress(shear_modulus: f64, stretch: f64) -> f64 {
     shear_modulus * (stretch * stretch - 1.0 / stretch)
 }

@@ -39,7 +39,15 @@ pub(crate) fn empty() -> Report {
 }
 
 fn check(id: &str, quantity: &str, kind: Kind, value: f64, bound: Bound, unit: &str) -> Check {
-    Check::new(id, quantity, kind, value, bound, unit, "Belytschko 2013, section 8.3.2, (8.3.9)")
+    Check::new(
+        id,
+        quantity,
+        kind,
+        value,
+        bound,
+        unit,
+        "A book on meshless methods, section 8, (8.9)",
+    )
 }
 
 fn patch() -> Study {
