@@ -1,0 +1,35 @@
+//! Cook's membrane at finite strain: corners (0,0), (48,44), (48,60), (0,44) mm,
+//! 1 mm thick, plane strain, left edge clamped, dead load of 1 N up on the right
+//! edge, ψ = μ/2(J^(−2/3)I₁ − 3) + K/4(J² − 1 − 2 ln J), μ = 0.4225 MPa, ν = 0.3.
+
+use super::Published;
+
+/// u_y at (48, 52) mm, the middle of the loaded edge \[m\]: 14.74 mm; the
+/// uncertainty is the spread to [`TIP_ABAQUS`].
+pub const TIP: Published = Published {
+    value: 14.74e-3,
+    uncertainty: 14.74e-3 - 14.7273e-3,
+    unit: "m",
+    source: "deal.II code gallery, Quasi-Static Finite-Strain Compressible Elasticity",
+};
+
+/// The same from Abaqus with 36 864 cells \[m\]: 14.7273 mm.
+pub const TIP_ABAQUS: Published = Published {
+    value: 14.7273e-3,
+    uncertainty: 14.74e-3 - 14.7273e-3,
+    unit: "m",
+    source: "Abaqus, 36 864 cells",
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_two_codes_agree_within_the_stated_uncertainty() {
+        let difference = (TIP.value - TIP_ABAQUS.value).abs();
+        assert!(difference <= TIP.uncertainty * (1.0 + 1e-12));
+        let relative = TIP.uncertainty / TIP.value;
+        assert!(relative < 1e-3, "{relative}");
+    }
+}

@@ -1,0 +1,144 @@
+//! Uniaxial stress: one stretch is given, the lateral faces are free.
+#![allow(non_snake_case)]
+
+use super::bisect;
+use mtled::material::Law;
+use mtled::tensor::{Matrix3, Vector3};
+
+/// A homogeneous bar under uniaxial stress.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UniaxialState {
+    /// Lateral stretch \[–\].
+    pub lateral_stretch: f64,
+    /// Axial force per reference area P₁₁ \[Pa\].
+    pub nominal_stress: f64,
+}
+
+/// Solves P₂₂(diag(λ, λ_l, λ_l)) = 0 for λ_l by bisection from the side of
+/// λ_l = 1. None where no lateral stretch
+/// within a factor of four frees the faces.
+pub fn uniaxial_stress(law: &Law, stretch: f64) -> Option<UniaxialState> {
+    let P = |lateral: f64| {
+        let F = Matrix3::from_diagonal(&Vector3::new(stretch, lateral, lateral));
+        law.first_piola_kirchhoff(&F)
+    };
+    let free = |lateral: f64| P(lateral)[(1, 1)];
+    if free(1.0) == 0.0 {
+        return Some(UniaxialState { lateral_stretch: 1.0, nominal_stress: P(1.0)[(0, 0)] });
+    }
+    let factor = if free(1.0) > 0.0 { 1.0 / 1.05 } else { 1.05 };
+    let mut inside = 1.0;
+    for _ in 0..28 {
+        let outside = inside * factor;
+        if free(outside) * free(1.0) <= 0.0 {
+            let lateral_stretch = bisect(inside.min(outside), inside.max(outside), free);
+            let nominal_stress = P(lateral_stretch)[(0, 0)];
+            return Some(UniaxialState { lateral_stretch, nominal_stress });
+        }
+        inside = outside;
+    }
+    None
+}
+
+/// Cauchy stress of an incompressible neo-Hookean bar σ = μ(λ² − 1/λ) \[Pa\]
+/// (Treloar 1975).
+pub fn incompressible_cauchy_stress(shear_modulus: f64, stretch: f64) -> f64 {
+    shear_modulus * (stretch * stretch - 1.0 / stretch)
+}
+
+/// Stretch \[–\] of an incompressible neo-Hookean bar under the Cauchy stress
+/// σ \[Pa\]: the inverse of [`incompressible_cauchy_stress`].
+pub fn incompressible_stretch(shear_modulus: f64, cauchy_stress: f64) -> f64 {
+    let ratio = cauchy_stress.abs() / shear_modulus;
+    let low = 1.0 / (1.0 + ratio);
+    let high = 1.0 + ratio;
+    bisect(low, high, |stretch| {
+        incompressible_cauchy_stress(shear_modulus, stretch) - cauchy_stress
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use mtled::material::{
+        ElasticConstants, LinearElastic, MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ,
+        StVenantKirchhoff, VolumetricTerm,
+    };
+
+    fn laws(poisson_ratio: f64) -> Vec<Law> {
+        let c = ElasticConstants::from_young_poisson(3000.0, poisson_ratio).unwrap();
+        let quadratic = NeoHookeanIsochoric::new(c, VolumetricTerm::Quadratic);
+        let simo_taylor = NeoHookeanIsochoric::new(c, VolumetricTerm::SimoTaylor);
+        vec![
+            Law::NeoHookeanLogJ(NeoHookeanLogJ::new(c)),
+            Law::NeoHookeanIsochoric(quadratic),
+            Law::NeoHookeanIsochoric(simo_taylor),
+            Law::StVenantKirchhoff(StVenantKirchhoff::new(c)),
+            Law::LinearElastic(LinearElastic::new(c)),
+            Law::MooneyRivlin(MooneyRivlin::new(900.0, 100.0, 0.49).unwrap()),
+        ]
+    }
+
+    #[test]
+    fn the_published_bar_extends_by_half_its_length() {
+        let extension = incompressible_stretch(280_709.0, 480e3) - 1.0;
+        assert_relative_eq!(extension, 0.5365, epsilon = 5e-5);
+        let shortened = incompressible_stretch(1.0, -5.0);
+        assert_relative_eq!(incompressible_cauchy_stress(1.0, shortened), -5.0, epsilon = 1e-12);
+    }
+
+    #[test]
+    fn small_stretches_obey_hooke_in_every_law() {
+        let step = 1e-5;
+        for law in laws(0.3) {
+            let c = law.constants();
+            let state = uniaxial_stress(&law, 1.0 + step).unwrap();
+            let modulus = state.nominal_stress / step;
+            assert_relative_eq!(modulus, c.young_modulus(), max_relative = 1e-3);
+            let contraction = (1.0 - state.lateral_stretch) / step;
+            assert_relative_eq!(contraction, c.poisson_ratio(), max_relative = 1e-3);
+        }
+    }
+
+    #[test]
+    fn st_venant_kirchhoff_agrees_with_its_closed_form() {
+        // S = E_Y ε with ε = (λ² − 1)/2, so P = λ S and λ_l² = 1 − 2νε.
+        for stretch in [0.8_f64, 1.0, 1.3] {
+            let state = uniaxial_stress(&laws(0.3)[3], stretch).unwrap();
+            let strain = 0.5 * (stretch * stretch - 1.0);
+            assert_relative_eq!(state.nominal_stress, stretch * 3000.0 * strain, epsilon = 1e-9);
+            let lateral = (1.0 - 0.6 * strain).sqrt();
+            assert_relative_eq!(state.lateral_stretch, lateral, epsilon = 1e-13);
+        }
+    }
+
+    #[test]
+    fn nearly_incompressible_rubber_tends_to_the_incompressible_bar() {
+        let constants = ElasticConstants::from_shear_bulk(1000.0, 1e9).unwrap();
+        let law = Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(
+            constants,
+            VolumetricTerm::Quadratic,
+        ));
+        for stretch in [0.5, 0.9, 1.5, 2.0] {
+            let state = uniaxial_stress(&law, stretch).unwrap();
+            let expected = incompressible_cauchy_stress(1000.0, stretch) / stretch;
+            assert_relative_eq!(state.nominal_stress, expected, max_relative = 1e-4);
+        }
+    }
+
+    #[test]
+    fn the_nominal_stress_is_the_derivative_of_the_energy_along_the_path() {
+        let energy = |law: &Law, stretch: f64| {
+            let l = uniaxial_stress(law, stretch).unwrap().lateral_stretch;
+            law.strain_energy(&Matrix3::from_diagonal(&Vector3::new(stretch, l, l)))
+        };
+        for law in laws(0.45) {
+            for stretch in [0.8, 1.2] {
+                let slope = (energy(&law, stretch + 1e-5) - energy(&law, stretch - 1e-5)) / 2e-5;
+                let stress = uniaxial_stress(&law, stretch).unwrap().nominal_stress;
+                assert_relative_eq!(slope, stress, max_relative = 1e-6);
+            }
+        }
+    }
+}

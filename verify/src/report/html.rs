@@ -1,0 +1,205 @@
+//! One page for people: offline, printable, for phones and desks.
+
+use super::number::{bound_text, four_digits};
+use super::svg;
+use super::words::{
+    counts, duration, kind_name, plural, study_counts, study_passed, unit_text, verdict,
+};
+use crate::study::{Bound, Cell, Check, Figure, Kind, Report, Study, Table};
+use minijinja::{Environment, Value, context};
+
+/// The study whose drawings stand on top of the page.
+const HERO: &str = "brain";
+
+/// The page as one file without any link to the outside.
+pub fn to_html(report: &Report) -> anyhow::Result<String> {
+    let mut environment = Environment::new();
+    environment.add_template("index.html", include_str!("template.html"))?;
+    let studies: Vec<Value> = report.studies.iter().map(study_value).collect();
+    let failures: Vec<Value> =
+        report.checks().filter(|check| !check.pass).map(check_value).collect();
+    let page = context! {
+        style => Value::from_safe_string(svg::STYLE.to_string()),
+        suite => report.suite.as_str(),
+        passed => report.passed(),
+        verdict => verdict(report),
+        kinds => kind_values(report),
+        failures => failures,
+        hero => hero_values(report),
+        studies => studies,
+        provenance => provenance_values(report),
+        date => report.provenance.date.as_str(),
+        version => report.provenance.version.as_str(),
+        commit => report.provenance.commit.as_str(),
+        wall => duration(report.wall_seconds),
+    };
+    Ok(environment.get_template("index.html")?.render(page)?)
+}
+
+fn study_value(study: &Study) -> Value {
+    let (passed, all) = study_counts(study);
+    let below = study.figures.iter().filter(|figure| !is_hero(study, figure));
+    let figures: Vec<Value> = below.map(figure_value).collect();
+    context! {
+        id => study.id.as_str(),
+        title => study.title.as_str(),
+        claim => study.claim.as_str(),
+        command => study.command.as_str(),
+        failure => study.failure.as_deref(),
+        pass => study_passed(study),
+        counts => format!("{passed} of {all}"),
+        checks => study.checks.iter().map(check_value).collect::<Vec<_>>(),
+        tables => study.tables.iter().map(table_value).collect::<Vec<_>>(),
+        figures => figures,
+        notes => study.notes.iter().map(Value::from).collect::<Vec<_>>(),
+        above => study.figures.iter().any(|figure| is_hero(study, figure)),
+        wall => duration(study.wall_seconds),
+    }
+}
+
+fn check_value(check: &Check) -> Value {
+    let limit = match check.bound {
+        Bound::AtMost(limit) | Bound::AtLeast(limit) => limit,
+        Bound::Between(low, high) => 0.5 * (low + high),
+    };
+    let breakable_id = svg::escape(&check.id).replace('/', "/<wbr>");
+    context! {
+        id => check.id.as_str(),
+        breakable_id => Value::from_safe_string(breakable_id),
+        study => check.study.as_str(),
+        quantity => check.quantity.as_str(),
+        kind => kind_name(check.kind),
+        value => four_digits(check.value),
+        value_key => check.value.to_string(),
+        bound => bound_text(&check.bound),
+        bound_key => limit.to_string(),
+        unit => unit_text(&check.unit),
+        pass => check.pass,
+        source => check.source.as_str(),
+    }
+}
+
+fn table_value(table: &Table) -> Value {
+    let is_number =
+        |index: usize| table.rows.iter().any(|row| matches!(row.get(index), Some(Cell::Number(_))));
+    let columns: Vec<Value> = table
+        .columns
+        .iter()
+        .enumerate()
+        .map(|(index, column)| {
+            let unit = if column.unit == "1" { "" } else { column.unit.as_str() };
+            context! { name => column.name.as_str(), unit => unit, number => is_number(index) }
+        })
+        .collect();
+    let rows: Vec<Value> = table
+        .rows
+        .iter()
+        .map(|row| Value::from(row.iter().map(cell_value).collect::<Vec<_>>()))
+        .collect();
+    context! { title => table.title.as_str(), columns => columns, rows => rows }
+}
+
+fn cell_value(cell: &Cell) -> Value {
+    match cell {
+        // An order that nobody claims is no mistake: it reads as a dash.
+        Cell::Number(number) if number.is_nan() => {
+            context! { text => "–", key => "NaN", number => true }
+        }
+        Cell::Number(number) => {
+            context! { text => four_digits(*number), key => number.to_string(), number => true }
+        }
+        Cell::Text(text) => context! { text => text, key => text, number => false },
+    }
+}
+
+fn figure_value(figure: &Figure) -> Value {
+    let (title, caption) = match figure {
+        Figure::Plot(plot) => (&plot.title, &plot.caption),
+        Figure::Drawing(drawing) => (&drawing.title, &drawing.caption),
+    };
+    context! {
+        title => title,
+        caption => caption,
+        svg => Value::from_safe_string(svg::to_svg(figure)),
+    }
+}
+
+fn hero_values<'a>(report: &'a Report) -> Vec<Value> {
+    let of_study =
+        |study: &'a Study| study.figures.iter().filter(move |figure| is_hero(study, figure));
+    report.studies.iter().flat_map(of_study).map(figure_value).collect()
+}
+
+/// Heavy drawings stand once on the page, on top.
+fn is_hero(study: &Study, figure: &Figure) -> bool {
+    study.id == HERO && matches!(figure, Figure::Drawing(_))
+}
+
+/// How many checks of each kind hold, with what the kind means.
+fn kind_values(report: &Report) -> Vec<Value> {
+    let kinds = [
+        (Kind::Exact, "closed forms and theorems"),
+        (Kind::Reference, "published or finite-element values"),
+        (Kind::Regression, "our own earlier figures"),
+    ];
+    kinds
+        .into_iter()
+        .map(|(kind, meaning)| {
+            let of_kind = report.checks().filter(|check| check.kind == kind);
+            let (passed, all) = counts(of_kind.map(|check| check.pass));
+            context! { name => kind_name(kind), meaning, passed, all, pass => passed == all }
+        })
+        .collect()
+}
+
+fn provenance_values(report: &Report) -> Vec<Value> {
+    let p = &report.provenance;
+    let threads = format!("{} {}", p.threads, plural(p.threads, "thread", "threads"));
+    let rows = [
+        ("Version", p.version.clone()),
+        ("Commit", p.commit.clone()),
+        ("Compiler", p.compiler.clone()),
+        ("Processor", format!("{}, {threads}", p.processor)),
+        ("Features", p.processor_features.clone()),
+        ("Date", p.date.clone()),
+        ("Wall time", duration(report.wall_seconds)),
+    ];
+    let known = rows.into_iter().filter(|(_, value)| !value.is_empty());
+    known.map(|(name, value)| context! { name, value }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    #[test]
+    fn the_page_needs_nothing_from_outside() {
+        let page = to_html(&sample::report()).unwrap();
+        for link in ["href=\"http", "src=", "url(", "@import", "<link"] {
+            assert!(!page.contains(link), "{link}");
+        }
+        assert!(page.contains("<html lang=\"en\">") && page.contains("<title>"));
+    }
+
+    #[test]
+    fn the_verdict_and_the_failures_come_before_the_studies() {
+        let page = to_html(&sample::report()).unwrap();
+        let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("{text} is missing"));
+        assert!(at("9 of 11 checks passed") < at("id=\"failures\""));
+        assert!(at("id=\"failures\"") < at("id=\"contents\""));
+        assert!(at("id=\"contents\"") < at("id=\"study-patch\""));
+    }
+
+    #[test]
+    fn texts_are_escaped() {
+        let page = to_html(&sample::report()).unwrap();
+        assert!(page.contains("h &lt; 1 &amp; more"));
+        assert!(!page.contains("h < 1 & more"));
+    }
+
+    #[test]
+    fn a_report_without_studies_is_a_page() {
+        assert!(to_html(&sample::empty()).unwrap().contains("0 of 0 checks passed"));
+    }
+}

@@ -1,0 +1,107 @@
+//! The table for the terminal.
+
+use super::number::{bound_text, four_digits};
+use super::words::{duration, kind_name, unit_text, verdict};
+use crate::study::{Check, Report, Study};
+use comfy_table::{
+    Attribute, Cell, CellAlignment, Color, ContentArrangement, LineStyle, Table, presets,
+};
+use std::fmt::Write;
+
+/// All checks grouped by study and the verdict; coloured only when asked.
+pub fn to_table(report: &Report, colour: bool) -> String {
+    render(report, colour, None)
+}
+
+/// `width` in characters replaces that of the terminal.
+fn render(report: &Report, colour: bool, width: Option<u16>) -> String {
+    let mut text = String::new();
+    for study in &report.studies {
+        let heading = format!("{} ({})", study.title, duration(study.wall_seconds));
+        let _ = writeln!(text, "{}", paint(&heading, colour.then_some("1")));
+        if let Some(reason) = &study.failure {
+            let line = format!("  COULD NOT RUN: {reason}");
+            let _ = writeln!(text, "{}", paint(&line, colour.then_some("1;31")));
+        }
+        if !study.checks.is_empty() {
+            let _ = writeln!(text, "{}", table(study, colour, width));
+        }
+        text.push('\n');
+    }
+    let code = if report.passed() { "1;32" } else { "1;31" };
+    let _ = writeln!(text, "{}", paint(&verdict(report), colour.then_some(code)));
+    text
+}
+
+fn table(study: &Study, colour: bool, width: Option<u16>) -> Table {
+    let mut table = Table::new();
+    let style = presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none());
+    table.load_style(style);
+    table.set_content_arrangement(ContentArrangement::Dynamic);
+    if let Some(width) = width {
+        table.set_width(width);
+    }
+    if colour {
+        table.enforce_styling();
+    }
+    table.set_header(["check", "quantity", "kind", "value", "bound", "unit", "verdict"]);
+    table.add_rows(study.checks.iter().map(|check| row(check, colour)));
+    for index in [3, 4] {
+        if let Some(column) = table.column_mut(index) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+fn row(check: &Check, colour: bool) -> Vec<Cell> {
+    let mut verdict = Cell::new(if check.pass { "pass" } else { "FAIL" });
+    if colour {
+        let shade = if check.pass { Color::Green } else { Color::Red };
+        verdict = verdict.fg(shade).add_attribute(Attribute::Bold);
+    }
+    vec![
+        Cell::new(&check.id),
+        Cell::new(&check.quantity),
+        Cell::new(kind_name(check.kind)),
+        Cell::new(four_digits(check.value)),
+        Cell::new(bound_text(&check.bound)),
+        Cell::new(unit_text(&check.unit)),
+        verdict,
+    ]
+}
+
+/// ANSI escape around a text.
+fn paint(text: &str, code: Option<&str>) -> String {
+    code.map_or(text.to_string(), |code| format!("\u{1b}[{code}m{text}\u{1b}[0m"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    #[test]
+    fn the_verdict_is_the_last_line_and_colour_comes_only_when_asked() {
+        let plain = render(&sample::report(), false, Some(200));
+        assert_eq!(plain.lines().last(), Some("9 of 11 checks passed, 1 study could not run"));
+        assert!(plain.contains("FAIL") && plain.contains("COULD NOT RUN"), "{plain}");
+        assert!(!plain.contains('\u{1b}'));
+        assert!(to_table(&sample::report(), true).contains("\u{1b}["));
+    }
+
+    #[test]
+    fn the_quantity_is_beside_its_value_and_bound() {
+        let plain = render(&sample::report(), false, Some(200));
+        let line = plain.lines().find(|line| line.contains("brain/step")).unwrap();
+        for text in ["critical time step", "regression", "12.34×10⁻⁶", "≥ 12×10⁻⁶", "pass"]
+        {
+            assert!(line.contains(text), "{text} in {line}");
+        }
+    }
+
+    #[test]
+    fn an_empty_report_is_one_line() {
+        assert_eq!(to_table(&sample::empty(), false), "0 of 0 checks passed\n");
+    }
+}

@@ -1,0 +1,95 @@
+//! results.json: everything that was found, one check and one study per line.
+
+use crate::study::{Figure, Report, Study, Table};
+use serde::Serialize;
+
+/// A study without its checks, which stand in a list of their own.
+#[derive(Serialize)]
+struct StudyLine<'a> {
+    id: &'a str,
+    title: &'a str,
+    claim: &'a str,
+    command: &'a str,
+    passed: bool,
+    failure: &'a Option<String>,
+    wall_seconds: f64,
+    notes: &'a [String],
+    tables: &'a [Table],
+    figures: &'a [Figure],
+}
+
+/// The report as JSON; what is not finite becomes `null`.
+pub fn to_json(report: &Report) -> String {
+    let studies: Vec<String> = report.studies.iter().map(|s| value(&line(s))).collect();
+    let checks: Vec<String> = report.checks().map(value).collect();
+    let fields = [
+        ("schema_version", value(&report.schema_version)),
+        ("suite", value(&report.suite)),
+        ("provenance", value(&report.provenance)),
+        ("passed", value(&report.passed())),
+        ("wall_seconds", value(&report.wall_seconds)),
+        ("checks", list(&checks)),
+        ("studies", list(&studies)),
+    ];
+    let body: Vec<String> =
+        fields.iter().map(|(name, text)| format!("  \"{name}\": {text}")).collect();
+    format!("{{\n{}\n}}\n", body.join(",\n"))
+}
+
+fn line(study: &Study) -> StudyLine<'_> {
+    StudyLine {
+        id: &study.id,
+        title: &study.title,
+        claim: &study.claim,
+        command: &study.command,
+        passed: super::words::study_passed(study),
+        failure: &study.failure,
+        wall_seconds: study.wall_seconds,
+        notes: &study.notes,
+        tables: &study.tables,
+        figures: &study.figures,
+    }
+}
+
+fn list(lines: &[String]) -> String {
+    if lines.is_empty() {
+        "[]".to_string()
+    } else {
+        format!("[\n    {}\n  ]", lines.join(",\n    "))
+    }
+}
+
+/// serde_json writes every non-finite number as `null`.
+fn value<T: Serialize>(item: &T) -> String {
+    serde_json::to_string(item).expect("plain data with string keys always serialises")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+    use serde_json::Value;
+
+    #[test]
+    fn the_file_parses_and_a_lost_value_is_null() {
+        let text = to_json(&sample::report());
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+        let parsed: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(parsed["schema_version"], 1);
+        assert_eq!(parsed["passed"], false);
+        assert_eq!(parsed["checks"].as_array().unwrap().len(), 11);
+        let lost = parsed["checks"].as_array().unwrap().iter().find(|c| c["value"].is_null());
+        assert_eq!(lost.unwrap()["pass"], false);
+        assert_eq!(parsed["checks"][0]["bound"]["at_most"], 1e-12);
+        assert_eq!(parsed["checks"][0]["kind"], "exact");
+        assert!(parsed["studies"][0].get("checks").is_none());
+        assert_eq!(parsed["studies"][1]["figures"][0]["plot"]["x"]["log"], true);
+    }
+
+    #[test]
+    fn a_report_without_studies_is_still_json() {
+        let parsed: Value = serde_json::from_str(&to_json(&sample::empty())).unwrap();
+        assert_eq!(parsed["studies"], Value::Array(vec![]));
+        assert_eq!(parsed["passed"], true);
+    }
+}

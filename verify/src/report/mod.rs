@@ -1,0 +1,18 @@
+//! Reports built from study results alone: JSON, JUnit, HTML with inline SVG,
+//! Markdown, a table for the terminal; and VTU for fields.
+
+pub mod html;
+pub mod human;
+pub mod json;
+pub mod junit;
+pub mod markdown;
+mod number;
+#[cfg(test)]
+mod sample;
+pub mod svg;
+pub mod vtu;
+mod words;
+pub mod write;
+
+pub use number::{bound_text, four_digits};
+pub use write::{write_atomically, write_report};

@@ -1,0 +1,127 @@
+use super::*;
+use crate::report::sample;
+use crate::study::{Axis, Drawing, Layer, LayerStyle, Plot, Series, SeriesStyle};
+
+fn plot(log: bool, points: Vec<(f64, f64)>) -> Figure {
+    let axis = |label: &str| Axis { label: label.into(), unit: "m".into(), log };
+    let styles = [SeriesStyle::Line, SeriesStyle::Points, SeriesStyle::LineAndPoints];
+    let series = styles.map(|style| Series {
+        name: format!("{style:?}"),
+        error_bars: vec![0.1; points.len()],
+        points: points.clone(),
+        style,
+    });
+    Figure::Plot(Plot {
+        title: "title".into(),
+        caption: String::new(),
+        x: axis("x"),
+        y: axis("y"),
+        series: series.to_vec(),
+        slopes: vec![1.0, -2.0, f64::NAN, 0.0],
+    })
+}
+
+fn drawing(lines: Vec<Vec<[f64; 2]>>) -> Figure {
+    use LayerStyle::{Dashed, Dots, Filled, Outline};
+    let layers = [Outline, Dashed, Filled, Dots].map(|style| Layer {
+        name: format!("{style:?}"),
+        style,
+        colour: 17,
+        closed: true,
+        lines: lines.clone(),
+    });
+    Figure::Drawing(Drawing {
+        title: "title".into(),
+        caption: String::new(),
+        unit: "m".into(),
+        layers: layers.to_vec(),
+    })
+}
+
+/// Reads the text as XML and fails on a coordinate that is not a number.
+fn assert_sound(svg: &str) {
+    let mut reader = quick_xml::Reader::from_str(svg);
+    loop {
+        match reader.read_event() {
+            Ok(quick_xml::events::Event::Eof) => break,
+            Ok(_) => {}
+            Err(error) => panic!("{error} in {svg}"),
+        }
+    }
+    for bad in ["NaN", "inf", "\"\""] {
+        assert!(!svg.contains(bad), "{bad} in {svg}");
+    }
+}
+
+#[test]
+fn hopeless_data_still_give_a_picture() {
+    let (nan, infinite) = (f64::NAN, f64::INFINITY);
+    let hopeless = [
+        vec![],
+        vec![(1.0, 1.0)],
+        vec![(0.0, 0.0)],
+        vec![(-3.0, -3.0), (-3.0, -3.0)],
+        vec![(nan, 1.0), (1.0, infinite), (2.0, 3.0)],
+        vec![(1e-300, 1e300), (1e300, -1e300)],
+        vec![(f64::MIN, f64::MAX), (f64::MAX, f64::MIN)],
+        vec![(1.0, 1.0), (1.0 + 1e-15, 1.0 + 1e-15)],
+        vec![(1.0, 5e-324), (2.0, 1e-320)],
+        vec![(1e9, 1.0), (1e9 + 1.0, 1.0 + 1e-8)],
+    ];
+    for points in hopeless {
+        let line: Vec<[f64; 2]> = points.iter().map(|&(x, y)| [x, y]).collect();
+        assert_sound(&to_svg(&plot(false, points.clone())));
+        assert_sound(&to_svg(&plot(true, points)));
+        assert_sound(&to_svg(&drawing(vec![line])));
+    }
+    assert_sound(&to_svg(&drawing(vec![])));
+}
+
+#[test]
+fn names_are_escaped_and_every_sample_figure_is_sound() {
+    let report = sample::report();
+    let figures = || report.studies.iter().flat_map(|study| &study.figures);
+    for figure in figures() {
+        assert_sound(&to_svg(figure));
+        assert_sound(&to_svg_file(figure));
+    }
+    assert!(figures().any(|figure| to_svg(figure).contains("h &lt; 1 &amp; more")));
+}
+
+#[test]
+fn decades_are_labelled_with_powers_of_ten() {
+    let svg = to_svg(&plot(true, vec![(1e-3, 1e-8), (1.0, 1e-2)]));
+    for label in [">10⁻³<", ">10⁻²<", ">1<", ">10⁻⁸<"] {
+        assert!(svg.contains(label), "{label} in {svg}");
+    }
+}
+
+#[test]
+fn a_small_linear_axis_takes_the_power_into_its_title() {
+    let svg = to_svg(&plot(false, vec![(0.0, 0.0), (1.0, 4e-5)]).without_bars());
+    assert!(svg.contains("y [10⁻⁶ m]"), "{svg}");
+    assert!(svg.contains(">20<"), "{svg}");
+}
+
+#[test]
+fn a_lost_point_interrupts_the_line() {
+    let points = vec![(0.0, 0.0), (1.0, 1.0), (2.0, f64::NAN), (3.0, 1.0), (4.0, 0.0)];
+    let svg = to_svg(&plot(false, points).without_bars());
+    let line = svg.lines().find(|line| line.contains("class=\"line s0\"")).unwrap();
+    assert_eq!(line.matches('M').count(), 2, "{line}");
+}
+
+#[test]
+fn the_scale_bar_of_a_small_drawing_is_in_millimetres() {
+    let svg = to_svg(&drawing(vec![vec![[0.0, 0.0], [0.17, 0.0], [0.17, 0.14]]]));
+    assert!(svg.contains(">50 mm<"), "{svg}");
+}
+
+impl Figure {
+    fn without_bars(mut self) -> Figure {
+        if let Figure::Plot(plot) = &mut self {
+            plot.series.iter_mut().for_each(|series| series.error_bars.clear());
+        }
+        self
+    }
+}

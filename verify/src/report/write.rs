@@ -1,0 +1,82 @@
+//! Files that are either whole or absent.
+
+use super::{html, json, junit, markdown};
+use crate::study::Report;
+use anyhow::{Context, Result};
+use std::io::Write;
+use std::path::Path;
+
+/// Writes results.json, junit.xml, index.html and summary.md into `dir`, which
+/// is created where it is missing.
+pub fn write_report(report: &Report, dir: &Path) -> Result<()> {
+    let files = [
+        ("results.json", json::to_json(report)),
+        ("junit.xml", junit::to_junit(report)?),
+        ("index.html", html::to_html(report)?),
+        ("summary.md", markdown::to_markdown(report)),
+    ];
+    for (name, text) in files {
+        write_atomically(&dir.join(name), text.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Writes a temporary file beside `path` and renames it, so that a reader sees
+/// the old bytes or the new ones and never a part; missing folders are created.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+    let name = path.file_name().with_context(|| format!("{} names no file", path.display()))?;
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".{}.tmp", std::process::id()));
+    let temporary = path.with_file_name(hidden);
+    let written = write_then_rename(&temporary, path, bytes);
+    if written.is_err() {
+        // Best effort: the reason to report is the first one.
+        let _ = std::fs::remove_file(&temporary);
+    }
+    written.with_context(|| format!("cannot write {}", path.display()))
+}
+
+fn write_then_rename(temporary: &Path, path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder)?;
+    }
+    let mut file = std::fs::File::create(temporary)?;
+    file.write_all(bytes)?;
+    file.sync_all()?;
+    drop(file);
+    std::fs::rename(temporary, path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    /// Set MTLED_SAMPLE_REPORT to a folder to look at the pages.
+    #[test]
+    fn a_report_is_four_files_and_nothing_else() {
+        let scratch = tempfile::tempdir().unwrap();
+        let kept = std::env::var_os("MTLED_SAMPLE_REPORT").map(std::path::PathBuf::from);
+        let folder = kept.unwrap_or(scratch.path().join("deep/report"));
+        write_report(&sample::report(), &folder).unwrap();
+        write_report(&sample::report(), &folder).unwrap();
+        let mut names: Vec<_> = std::fs::read_dir(&folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| !name.ends_with(".png"))
+            .collect();
+        names.sort();
+        assert_eq!(names, ["index.html", "junit.xml", "results.json", "summary.md"]);
+    }
+
+    #[test]
+    fn a_path_that_cannot_be_written_is_named_in_the_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = write_atomically(&folder.path().join(".."), b"x").unwrap_err();
+        assert!(error.to_string().contains("names no file"), "{error}");
+        std::fs::write(folder.path().join("file"), b"x").unwrap();
+        let error = write_atomically(&folder.path().join("file/inside"), b"x").unwrap_err();
+        assert!(error.to_string().contains("inside"), "{error}");
+    }
+}
