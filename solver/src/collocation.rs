@@ -5,7 +5,8 @@ use crate::essential::ConstraintRow;
 use crate::tensor::Vector3;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Conj, MatMut, Par, Side};
@@ -23,12 +24,22 @@ pub struct Collocation {
 }
 
 /// Memory for the triangular solves, kept between steps.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Scratch(Option<MemBuffer>, usize);
+
+impl std::fmt::Debug for Scratch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Scratch").field(&self.1).finish()
+    }
+}
 
 impl Collocation {
     /// `None` if the constraints depend on each other.
-    pub fn new(discretisation: &Discretisation, mass: &[f64], rows: &[ConstraintRow]) -> Option<Collocation> {
+    pub fn new(
+        discretisation: &Discretisation,
+        mass: &[f64],
+        rows: &[ConstraintRow],
+    ) -> Option<Collocation> {
         let positions: Vec<Vector3> =
             rows.iter().map(|row| discretisation.cloud.positions[row.node as usize]).collect();
         let rows = discretisation.rows_at(&positions).ok()?;
@@ -80,7 +91,12 @@ impl Collocation {
     }
 
     /// Hands the changes M⁻¹Φᵀλ to `correct(node, Δu)`.
-    pub fn corrections(&self, mass: &[f64], multipliers: &[f64], mut correct: impl FnMut(u32, f64)) {
+    pub fn corrections(
+        &self,
+        mass: &[f64],
+        multipliers: &[f64],
+        mut correct: impl FnMut(u32, f64),
+    ) {
         for (i, multiplier) in multipliers.iter().enumerate() {
             for entry in self.rows.row(i) {
                 let node = self.rows.nodes[entry];

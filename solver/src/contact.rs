@@ -33,12 +33,17 @@ pub struct ContactState {
 }
 
 impl ContactPlan {
-    pub fn new(problem: &Problem, discretisation: &Discretisation, constraints: &Constraints) -> ContactPlan {
+    pub fn new(
+        problem: &Problem,
+        discretisation: &Discretisation,
+        constraints: &Constraints,
+    ) -> ContactPlan {
         let cloud = &discretisation.cloud;
         if problem.obstacles.is_empty() {
             return ContactPlan::default();
         }
-        let free = |node: &u32| cloud.on_boundary[*node as usize] && !constraints.always_holds(*node);
+        let free =
+            |node: &u32| cloud.on_boundary[*node as usize] && !constraints.always_holds(*node);
         let mean = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
         ContactPlan {
             obstacles: problem.obstacles.clone(),
@@ -105,7 +110,14 @@ impl ContactState {
 
     /// Where a node at `x` has to go, if it has entered the obstacle: to the
     /// nearest point of the surface, or to where it sticks.
-    fn target(&mut self, obstacle: &Obstacle, index: u32, node: u32, x: &Vector3, components: usize) -> Option<Vector3> {
+    fn target(
+        &mut self,
+        obstacle: &Obstacle,
+        index: u32,
+        node: u32,
+        x: &Vector3,
+        components: usize,
+    ) -> Option<Vector3> {
         let opening = gap(obstacle, x);
         let stuck = self.anchors.iter().position(|anchor| (anchor.0, anchor.1) == (index, node));
         if opening >= 0.0 {

@@ -114,13 +114,23 @@ impl<'a> Tangent<'a> {
         let root_mass =
             model.lumped_mass.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
         // Small against the finest gradients: F changes by about 1e-6.
-        let steepest = model.blocks.iter().flat_map(|b| &b.grad_phi).fold(0.0f64, |a, g| a.max(g.abs()));
+        let steepest =
+            model.blocks.iter().flat_map(|b| &b.grad_phi).fold(0.0f64, |a, g| a.max(g.abs()));
         let amplitude = 1e-6 / steepest;
-        Tangent { model, u, t, workspace, root_mass, amplitude, forces: ConstraintForces::default() }
+        Tangent {
+            model,
+            u,
+            t,
+            workspace,
+            root_mass,
+            amplitude,
+            forces: ConstraintForces::default(),
+        }
     }
 
     fn free_size(&self) -> usize {
-        let fixed: usize = self.model.constraints.active(self.t).iter().map(|set| set.rows.len()).sum();
+        let fixed: usize =
+            self.model.constraints.active(self.t).iter().map(|set| set.rows.len()).sum();
         self.model.size().saturating_sub(fixed).max(1)
     }
 

@@ -99,7 +99,12 @@ impl Rows {
     }
 
     /// F = I + Σ_a u_a ⊗ Grad φ_a at row `i`.
-    pub fn deformation_gradient(&self, i: usize, field: &[f64], components: usize) -> crate::tensor::Matrix3 {
+    pub fn deformation_gradient(
+        &self,
+        i: usize,
+        field: &[f64],
+        components: usize,
+    ) -> crate::tensor::Matrix3 {
         let mut F = crate::tensor::Matrix3::identity();
         for entry in self.row(i) {
             let node = self.nodes[entry] as usize;
@@ -121,8 +126,7 @@ impl Discretisation {
         let dimension = problem.dimension;
         let recipe = &problem.recipe;
         let cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
-        let mut quadrature =
-            quadrature(&problem.body, &problem.regions, &recipe.grid, &dimension)?;
+        let mut quadrature = quadrature(&problem.body, &problem.regions, &recipe.grid, &dimension)?;
         sort_along_curve(&mut quadrature);
         let influence_radius = cloud.spacing.iter().map(|h| recipe.dilation * h).collect();
         let approximation = Approximation::new(
@@ -184,7 +188,10 @@ impl Discretisation {
     }
 }
 
-fn evaluate_all(approximation: &Approximation, positions: &[Vector3]) -> Result<Vec<Support>, Error> {
+fn evaluate_all(
+    approximation: &Approximation,
+    positions: &[Vector3],
+) -> Result<Vec<Support>, Error> {
     let results: Vec<Result<Support, PoorSupport>> =
         positions.par_iter().map(|X| approximation.evaluate(X)).collect();
     let locate = |(point, result): (usize, Result<Support, PoorSupport>)| {

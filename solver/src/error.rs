@@ -36,8 +36,10 @@ pub enum Error {
     EmptySelection { name: String },
     #[error("traction \"{name}\" selects no part of the boundary")]
     EmptyTraction { name: String },
-    #[error("the conditions on component {component} constrain {rows} nodes whose constraints depend on each other: \
-             use enforcement = \"direct\"")]
+    #[error(
+        "the conditions on component {component} constrain {rows} nodes whose constraints depend on each other: \
+             use enforcement = \"direct\""
+    )]
     DependentConstraints { component: char, rows: usize },
     #[error("the probe at ({}) lies where no shape functions can be built: {reason}", show(.position))]
     ProbeOutside { position: Vector3, reason: String },
@@ -56,8 +58,10 @@ pub enum Error {
     #[error("quadrature point {point} at ({}) turned inside out at step {step}, t = {time:.6} s: J = {jacobian:.3e}",
             show(.position))]
     Inverted { step: usize, time: f64, point: usize, position: Vector3, jacobian: f64 },
-    #[error("dynamic relaxation has not converged after {steps} steps: estimated error {error:.2e} m of a tolerance of \
-             {tolerance:.2e} m, residual {residual:.2e} of the largest force")]
+    #[error(
+        "dynamic relaxation has not converged after {steps} steps: estimated error {error:.2e} m of a tolerance of \
+             {tolerance:.2e} m, residual {residual:.2e} of the largest force"
+    )]
     NotConverged { steps: usize, error: f64, tolerance: f64, residual: f64 },
 }
 

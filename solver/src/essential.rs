@@ -62,7 +62,11 @@ pub struct Reaction {
 impl Constraints {
     /// Selects nodes and factors the collocation systems. Where two active
     /// conditions claim the same component of a node, the first stated wins.
-    pub fn new(problem: &Problem, discretisation: &Discretisation, mass: &[f64]) -> Result<Constraints, Error> {
+    pub fn new(
+        problem: &Problem,
+        discretisation: &Discretisation,
+        mass: &[f64],
+    ) -> Result<Constraints, Error> {
         let conditions = problem.conditions.clone();
         let selected: Vec<Vec<u32>> =
             conditions.iter().map(|condition| select(condition, discretisation)).collect();
@@ -83,14 +87,14 @@ impl Constraints {
                 }
                 let collocation = match problem.recipe.enforcement {
                     Enforcement::Direct => None,
-                    Enforcement::Collocation => Some(
-                        Collocation::new(discretisation, mass, &rows).ok_or(
+                    Enforcement::Collocation => {
+                        Some(Collocation::new(discretisation, mass, &rows).ok_or(
                             Error::DependentConstraints {
                                 component: ['x', 'y', 'z'][component],
                                 rows: rows.len(),
                             },
-                        )?,
-                    ),
+                        )?)
+                    }
                 };
                 sets.push(ConstraintSet { component, rows, collocation });
             }

@@ -50,7 +50,12 @@ impl Workspace {
 ///
 /// Blocks run on any number of threads into buffers of their own, which are
 /// added in the order of the blocks: the bits do not depend on the threads.
-pub fn internal_force(model: &Model, u: &[f64], workspace: &mut Workspace, f: &mut [f64]) -> SmallestJacobian {
+pub fn internal_force(
+    model: &Model,
+    u: &[f64],
+    workspace: &mut Workspace,
+    f: &mut [f64],
+) -> SmallestJacobian {
     match model.components {
         2 => internal_force_in::<2>(model, u, workspace, f),
         _ => internal_force_in::<3>(model, u, workspace, f),
@@ -85,7 +90,12 @@ fn internal_force_in<const D: usize>(
     smallest
 }
 
-fn block_force<const D: usize, L: ConstitutiveLaw>(law: &L, block: &Block, u: &[f64], scratch: &mut BlockScratch) {
+fn block_force<const D: usize, L: ConstitutiveLaw>(
+    law: &L,
+    block: &Block,
+    u: &[f64],
+    scratch: &mut BlockScratch,
+) {
     gather::<D>(block, u, &mut scratch.u);
     scratch.f.fill(0.0);
     scratch.smallest = SmallestJacobian::NONE;
@@ -116,7 +126,11 @@ fn block_force<const D: usize, L: ConstitutiveLaw>(law: &L, block: &Block, u: &[
 
 /// F = I + Σ_a u_a ⊗ Grad φ_a; in a plane F₃₃ = 1.
 #[inline(always)]
-fn deformation_gradient<const D: usize>(nodes: &[u32], gradients: &[[f64; D]], u: &[[f64; D]]) -> Matrix3 {
+fn deformation_gradient<const D: usize>(
+    nodes: &[u32],
+    gradients: &[[f64; D]],
+    u: &[[f64; D]],
+) -> Matrix3 {
     let mut sums = [[0.0; D]; D];
     for (&node, gradient) in nodes.iter().zip(gradients) {
         let displacement = u[node as usize];

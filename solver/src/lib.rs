@@ -19,7 +19,6 @@ pub mod material;
 pub mod geometry;
 pub mod selection;
 
-pub mod nodes;
 pub mod problem;
 
 pub mod nodes;

@@ -115,7 +115,11 @@ impl Approximation {
         }
     }
 
-    fn evaluate_with<const M: usize>(&self, X: &Vector3, enlargement: f64) -> Result<Support, PoorSupport> {
+    fn evaluate_with<const M: usize>(
+        &self,
+        X: &Vector3,
+        enlargement: f64,
+    ) -> Result<Support, PoorSupport> {
         let near = self.weigh(X, enlargement);
         let n = near.len();
         if n < self.smallest_support() {
@@ -124,7 +128,8 @@ impl Approximation {
         // Monomials in (X_a − X)/s with s the weighted mean distance: values
         // and gradients are read at the origin, wherever X is.
         let total: f64 = near.iter().map(|a| a.weight).sum();
-        let s = (near.iter().map(|a| a.weight * a.offset.norm_squared()).sum::<f64>() / total).sqrt();
+        let s =
+            (near.iter().map(|a| a.weight * a.offset.norm_squared()).sum::<f64>() / total).sqrt();
         let monomials: Vec<SVector<f64, M>> =
             near.iter().map(|a| monomials::<M>(&(a.offset / s), self.components)).collect();
         let mut A = SMatrix::<f64, M, M>::zeros();
@@ -182,8 +187,7 @@ impl Approximation {
             let distance_squared = offset.norm_squared();
             if distance_squared < radius * radius {
                 let distance = distance_squared.sqrt();
-                let (weight, slope) =
-                    self.weight_function.value_and_derivative(distance / radius);
+                let (weight, slope) = self.weight_function.value_and_derivative(distance / radius);
                 let gradient = match distance > 1e-12 * radius {
                     true => offset * (-slope / (radius * distance)),
                     false => Vector3::zeros(),

@@ -67,7 +67,8 @@ impl Model {
             .collect();
         let lumped_mass = lumped_mass(discretisation, &density, problem.recipe.mass)?;
         let constraints = Constraints::new(problem, discretisation, &lumped_mass)?;
-        let bound = crate::critical_time_step::per_point_bound(problem, discretisation, &lumped_mass);
+        let bound =
+            crate::critical_time_step::per_point_bound(problem, discretisation, &lumped_mass);
         Ok(Model {
             components: problem.dimension.components(),
             positions: discretisation.cloud.positions.clone(),
@@ -123,7 +124,10 @@ fn block(law: Law, points: Range<usize>, discretisation: &Discretisation) -> Blo
     let offset = entries.start;
     Block {
         law,
-        starts: rows.starts[points.start..=points.end].iter().map(|s| (s - offset) as u32).collect(),
+        starts: rows.starts[points.start..=points.end]
+            .iter()
+            .map(|s| (s - offset) as u32)
+            .collect(),
         supports: rows.nodes[entries.clone()].iter().map(local).collect(),
         grad_phi: rows.grad_phi[entries]
             .iter()

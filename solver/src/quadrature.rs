@@ -164,7 +164,12 @@ impl Builder<'_> {
     }
 
     /// Adds the inside volume of a cell and its first moment, by region.
-    fn measure(&self, cell: &Cell, depth: usize, moments: &mut [(f64, Vector3)]) -> Result<(), Error> {
+    fn measure(
+        &self,
+        cell: &Cell,
+        depth: usize,
+        moments: &mut [(f64, Vector3)],
+    ) -> Result<(), Error> {
         let distance = self.body.signed_distance(&cell.centre);
         let reach = self.half_diagonal(cell);
         if distance > reach {
@@ -177,7 +182,8 @@ impl Builder<'_> {
             }
             return Ok(());
         }
-        let (fraction, shift) = if cut { self.plane_cut(cell, distance) } else { (1.0, Vector3::zeros()) };
+        let (fraction, shift) =
+            if cut { self.plane_cut(cell, distance) } else { (1.0, Vector3::zeros()) };
         if fraction > 0.0 {
             let volume = fraction * self.volume(cell);
             let centroid = cell.centre + shift;
@@ -331,7 +337,9 @@ mod tests {
 
     #[test]
     fn volume_fractions_measure_a_sphere_and_its_centroid() {
-        let q = quadrature(&ball(), &[region("all", Selector::All)], &grid(0.011), &Dimension::Three).unwrap();
+        let q =
+            quadrature(&ball(), &[region("all", Selector::All)], &grid(0.011), &Dimension::Three)
+                .unwrap();
         let volume: f64 = q.weights.iter().sum();
         let exact = 4.0 / 3.0 * std::f64::consts::PI * 0.04f64.powi(3);
         assert!((volume / exact - 1.0).abs() < 2e-3, "{}", volume / exact);
@@ -344,7 +352,8 @@ mod tests {
         let min = Vector3::new(0.01, 0.02, 0.0);
         let max = Vector3::new(0.113, 0.087, 0.05);
         let body = Shape::Box { min, max };
-        let q = quadrature(&body, &[region("all", Selector::All)], &grid(0.02), &Dimension::Three).unwrap();
+        let q = quadrature(&body, &[region("all", Selector::All)], &grid(0.02), &Dimension::Three)
+            .unwrap();
         let volume: f64 = q.weights.iter().sum();
         assert!((volume / (max - min).product() - 1.0).abs() < 1e-3);
     }
@@ -353,7 +362,8 @@ mod tests {
     fn the_centre_rule_keeps_whole_cells_only() {
         let mut grid = grid(0.01);
         grid.inside = InsideRule::Centre;
-        let q = quadrature(&ball(), &[region("all", Selector::All)], &grid, &Dimension::Three).unwrap();
+        let q =
+            quadrature(&ball(), &[region("all", Selector::All)], &grid, &Dimension::Three).unwrap();
         assert!(q.weights.iter().all(|w| (w - 1e-6).abs() < 1e-18));
         assert!(q.positions.iter().all(|X| ball().signed_distance(X) <= 0.0));
     }
@@ -364,8 +374,12 @@ mod tests {
         grid.inside = InsideRule::Centre;
         grid.boundary_cell = Some(0.01);
         let core = Shape::Sphere { centre: Vector3::new(0.3, 0.1, -0.2), radius: 0.012 };
-        grid.refinements = vec![Refinement { part: Selector::Inside { shape: core, tolerance: 0.0 }, size: 0.005 }];
-        let q = quadrature(&ball(), &[region("all", Selector::All)], &grid, &Dimension::Three).unwrap();
+        grid.refinements = vec![Refinement {
+            part: Selector::Inside { shape: core, tolerance: 0.0 },
+            size: 0.005,
+        }];
+        let q =
+            quadrature(&ball(), &[region("all", Selector::All)], &grid, &Dimension::Three).unwrap();
         for edge in [0.005f64, 0.01] {
             assert!(q.weights.iter().any(|w| (w / edge.powi(3) - 1.0).abs() < 1e-9), "{edge}");
         }
@@ -380,13 +394,19 @@ mod tests {
             region("right", Selector::All),
         ];
         let q = quadrature(&body, &regions, &grid(0.02), &Dimension::Three).unwrap();
-        let volume: f64 = q.weights.iter().zip(&q.regions).filter(|(_, r)| **r == 0).map(|(w, _)| w).sum();
+        let volume: f64 =
+            q.weights.iter().zip(&q.regions).filter(|(_, r)| **r == 0).map(|(w, _)| w).sum();
         assert!((volume / (0.033 * 0.01) - 1.0).abs() < 0.02, "{volume}");
     }
 
     #[test]
     fn a_plane_slice_has_the_volume_of_its_slab() {
-        let body = Shape::Cylinder { base: Vector3::zeros(), axis: Vector3::z(), radius: 0.05, height: 0.02 };
+        let body = Shape::Cylinder {
+            base: Vector3::zeros(),
+            axis: Vector3::z(),
+            radius: 0.05,
+            height: 0.02,
+        };
         let plane = Dimension::PlaneStrain { thickness: 0.005, z: 0.01 };
         let q = quadrature(&body, &[region("all", Selector::All)], &grid(0.011), &plane).unwrap();
         let volume: f64 = q.weights.iter().sum();

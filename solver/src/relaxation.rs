@@ -32,11 +32,11 @@ pub(crate) fn relax(
         if pace.reevaluate(model, state, &mut buffers) {
             damping.forget();
         }
-        let load_time = |count: usize| {
-            settings.load_end * (count as f64 / settings.load_steps as f64).min(1.0)
-        };
+        let load_time =
+            |count: usize| settings.load_end * (count as f64 / settings.load_steps as f64).min(1.0);
         let scheme = Scheme::relaxation(pace.time_step, damping.c);
-        let report = step(model, &scheme, load_time(count - 1), load_time(count), state, &mut buffers);
+        let report =
+            step(model, &scheme, load_time(count - 1), load_time(count), state, &mut buffers);
         pace.record(pace.time_step, &report);
         check(model, state, &report)?;
         damping.learn(model, state, &buffers, pace.time_step);
@@ -49,7 +49,8 @@ pub(crate) fn relax(
             && convergence.residual <= 10.0 * settings.tolerance;
         let progress = if converged { 1.0 } else { progress(count, settings, &convergence, size) };
         let jacobian = report.smallest_jacobian.jacobian;
-        let stop = watch(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
+        let stop =
+            watch(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
         if converged || stop {
             let summary = pace.summary(state, stop);
             return Ok(Summary { relaxation: Some(convergence), ..summary });
@@ -76,7 +77,12 @@ impl Damping {
         // Before anything is known: as if the load took one slow period.
         let kappa = (settings.load_steps as f64 / std::f64::consts::PI).max(2.0);
         let zeros = vec![0.0; model.size()];
-        Damping { c: factor(kappa), since: 0, displacement_change: zeros.clone(), force_before: zeros }
+        Damping {
+            c: factor(kappa),
+            since: 0,
+            displacement_change: zeros.clone(),
+            force_before: zeros,
+        }
     }
 
     /// A changed step makes the last differences useless.
@@ -118,7 +124,13 @@ fn factor(kappa: f64) -> f64 {
 
 /// Error estimate max|Δu| c'/(1 − c') with c' = c + 0.2(1 − c), and the
 /// residual of the static equations.
-fn assess(model: &Model, state: &mut State, buffers: &mut Buffers, c: f64, increment: f64) -> Convergence {
+fn assess(
+    model: &Model,
+    state: &mut State,
+    buffers: &mut Buffers,
+    c: f64,
+    increment: f64,
+) -> Convergence {
     let slowed = c + 0.2 * (1.0 - c);
     Convergence {
         estimated_error: increment * slowed / (1.0 - slowed),

@@ -64,7 +64,8 @@ fn march(
 ) -> Result<Summary, Error> {
     let mut buffers = Buffers::new(model, observer.tracks_work());
     let mut pace = Pace::new(model, control, state, &mut buffers)?;
-    let mut stopped = watch(model, state, &mut buffers, f64::INFINITY, 0.0, observer) == Continue::Stop;
+    let mut stopped =
+        watch(model, state, &mut buffers, f64::INFINITY, 0.0, observer) == Continue::Stop;
     while !stopped && state.time < end * (1.0 - 1e-12) {
         pace.reevaluate(model, state, &mut buffers);
         let remaining = end - state.time;
@@ -133,9 +134,19 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    pub fn new(model: &Model, control: StepControl, state: &State, buffers: &mut Buffers) -> Result<Pace, Error> {
-        let critical =
-            critical_time_step(model, &state.displacement, state.time, None, &mut buffers.workspace);
+    pub fn new(
+        model: &Model,
+        control: StepControl,
+        state: &State,
+        buffers: &mut Buffers,
+    ) -> Result<Pace, Error> {
+        let critical = critical_time_step(
+            model,
+            &state.displacement,
+            state.time,
+            None,
+            &mut buffers.workspace,
+        );
         if let Some(fixed) = control.fixed
             && fixed > critical.time_step
         {
@@ -169,8 +180,13 @@ impl Pace {
             return false;
         }
         let start = Some(self.mode.as_slice());
-        let critical =
-            critical_time_step(model, &state.displacement, state.time, start, &mut buffers.workspace);
+        let critical = critical_time_step(
+            model,
+            &state.displacement,
+            state.time,
+            start,
+            &mut buffers.workspace,
+        );
         self.time_step = self.control.safety_factor * critical.time_step;
         self.mode = critical.mode;
         self.stage = stage;

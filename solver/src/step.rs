@@ -91,9 +91,9 @@ pub fn step(
     if buffers.track_work {
         buffers.velocity_before.copy_from_slice(&state.velocity);
     }
-    let largest_increment = predict(model, scheme, state, buffers);
+    predict(model, scheme, state, buffers);
     state.force_factor = 1.0 / (scheme.time_step * scheme.push);
-    constrain(model, scheme, target_time, largest_increment, state);
+    let largest_increment = constrain(model, scheme, target_time, state);
     if buffers.track_work {
         add_work(model, scheme, state, buffers);
     }
@@ -112,38 +112,43 @@ pub fn external_force(model: &Model, t: f64, f_ext: &mut [f64]) {
     }
 }
 
-/// The free step; returns the largest change of a component, NaN included.
-fn predict(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers) -> f64 {
+/// The free step.
+fn predict(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers) {
     let d = model.components;
-    let mut largest = 0.0f64;
-    let mut sum = 0.0;
     for (node, mass) in model.lumped_mass.iter().enumerate() {
         let push = scheme.push / mass;
         for i in d * node..d * (node + 1) {
-            let velocity = scheme.keep * state.velocity[i] + push * (buffers.f_ext[i] - buffers.f_int[i]);
+            let velocity =
+                scheme.keep * state.velocity[i] + push * (buffers.f_ext[i] - buffers.f_int[i]);
             state.velocity[i] = velocity;
             state.displacement[i] += scheme.time_step * velocity;
-            largest = largest.max(velocity.abs());
-            sum += velocity;
         }
     }
-    // `f64::max` drops NaN; the sum does not.
-    if sum.is_finite() { largest * scheme.time_step } else { f64::NAN }
 }
 
-/// Prescribed displacements, then contact, on u(t + Δt).
-fn constrain(model: &Model, scheme: &Scheme, t: f64, largest_increment: f64, state: &mut State) {
+/// Prescribed displacements, then contact, on u(t + Δt). Returns the largest
+/// change of a component \[m\].
+fn constrain(model: &Model, scheme: &Scheme, t: f64, state: &mut State) -> f64 {
     let State { displacement, velocity, constraint_forces, contact, .. } = state;
     let rate = 1.0 / scheme.time_step;
     let (positions, mass) = (&model.positions, &model.lumped_mass);
     model.constraints.enforce(t, positions, mass, displacement, constraint_forces, |i, delta| {
         velocity[i] += delta * rate;
     });
+    let increment = largest_or_nan(velocity) * scheme.time_step;
     if !model.contact.obstacles.is_empty() {
-        contact.enforce(&model.contact, positions, largest_increment, displacement, |i, delta| {
+        contact.enforce(&model.contact, positions, increment, displacement, |i, delta| {
             velocity[i] += delta * rate;
         });
     }
+    increment
+}
+
+/// Largest size of an entry; NaN if there is one, which `f64::max` drops.
+fn largest_or_nan(values: &[f64]) -> f64 {
+    let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    let sum: f64 = values.iter().sum();
+    if sum.is_nan() { f64::NAN } else { largest }
 }
 
 /// Adds the work of the step from t − Δt/2 to t + Δt/2: force at t times the
@@ -174,8 +179,7 @@ pub fn worst_node(model: &Model, state: &State) -> (usize, Vector3, f64) {
         let norm = vector_at(&state.displacement, node, model.components).norm();
         if norm.is_nan() { f64::INFINITY } else { norm }
     };
-    let worst = (0..model.positions.len())
-        .max_by(|&a, &b| size(a).total_cmp(&size(b)))
-        .unwrap_or_default();
+    let worst =
+        (0..model.positions.len()).max_by(|&a, &b| size(a).total_cmp(&size(b))).unwrap_or_default();
     (worst, model.positions[worst], size(worst))
 }

@@ -22,13 +22,12 @@ impl WeightFunction {
                 let p = 1.0 - q;
                 (4.0 / 3.0 * p * p * p, -4.0 * p * p)
             }
-            WeightFunction::QuarticSpline => (
-                1.0 + q * q * (-6.0 + q * (8.0 - 3.0 * q)),
-                q * (-12.0 + q * (24.0 - 12.0 * q)),
-            ),
+            WeightFunction::QuarticSpline => {
+                (1.0 + q * q * (-6.0 + q * (8.0 - 3.0 * q)), q * (-12.0 + q * (24.0 - 12.0 * q)))
+            }
             WeightFunction::Exponential => {
                 // Width 0.4 of the radius; shifted so that W(1) = 0.
-                let sharpness = 1.0 / (0.4 * 0.4);
+                let sharpness: f64 = 1.0 / (0.4 * 0.4);
                 let edge = (-sharpness).exp();
                 let bell = (-sharpness * q * q).exp();
                 let scale = 1.0 / (1.0 - edge);
@@ -51,7 +50,10 @@ mod tests {
                 let minus = weight_function.value_and_derivative(q - step).0;
                 let slope = weight_function.value_and_derivative(q).1;
                 // The exponential meets its edge with a small kink.
-                assert!(((plus - minus) / (2.0 * step) - slope).abs() < 2e-2 * (q > 0.985) as u8 as f64 + 1e-5);
+                assert!(
+                    ((plus - minus) / (2.0 * step) - slope).abs()
+                        < 2e-2 * (q > 0.985) as u8 as f64 + 1e-5
+                );
             }
         }
     }

@@ -4,13 +4,20 @@ use proptest::prelude::*;
 const H: f64 = 0.1;
 
 /// A jittered lattice of 6³ nodes (6² in a plane) whose middle is at `shift`.
-fn approximation(dimension: Dimension, basis: Basis, weight_function: WeightFunction, jitter: &[f64], shift: Vector3) -> Approximation {
+fn approximation(
+    dimension: Dimension,
+    basis: Basis,
+    weight_function: WeightFunction,
+    jitter: &[f64],
+    shift: Vector3,
+) -> Approximation {
     let layers = if dimension.components() == 2 { 1 } else { 6 };
     let mut nodes = Vec::new();
     for k in 0..layers {
         for j in 0..6 {
             for i in 0..6 {
-                let mut X = Vector3::new(i as f64, j as f64, if layers == 1 { 0.0 } else { k as f64 }) * H;
+                let mut X =
+                    Vector3::new(i as f64, j as f64, if layers == 1 { 0.0 } else { k as f64 }) * H;
                 for c in 0..dimension.components() {
                     X[c] += H * jitter[(3 * nodes.len() + c) % jitter.len()];
                 }
@@ -106,15 +113,33 @@ proptest! {
 #[test]
 fn a_plane_cloud_cannot_carry_a_basis_in_space() {
     let jitter = [0.0];
-    let flat = approximation(PLANE, Basis::Linear, WeightFunction::QuarticSpline, &jitter, Vector3::zeros());
+    let flat = approximation(
+        PLANE,
+        Basis::Linear,
+        WeightFunction::QuarticSpline,
+        &jitter,
+        Vector3::zeros(),
+    );
     let radius = vec![1.9 * H; flat.nodes.len()];
-    let solid = Approximation::new(flat.nodes, radius, Basis::Linear, WeightFunction::QuarticSpline, &Dimension::Three);
+    let solid = Approximation::new(
+        flat.nodes,
+        radius,
+        Basis::Linear,
+        WeightFunction::QuarticSpline,
+        &Dimension::Three,
+    );
     let poor = solid.evaluate(&Vector3::new(0.25, 0.25, 0.0)).unwrap_err();
     assert!(poor.condition > 1e4);
 }
 
 #[test]
 fn a_far_point_has_no_support() {
-    let a = approximation(Dimension::Three, Basis::Linear, WeightFunction::CubicSpline, &[0.0], Vector3::zeros());
+    let a = approximation(
+        Dimension::Three,
+        Basis::Linear,
+        WeightFunction::CubicSpline,
+        &[0.0],
+        Vector3::zeros(),
+    );
     assert_eq!(a.evaluate(&Vector3::new(5.0, 0.0, 0.0)).unwrap_err().support_size, 0);
 }
