@@ -1,1 +1,3 @@
+pub mod files;
+pub mod scene;
 pub mod study;
