@@ -17,4 +17,5 @@ pub mod material;
 pub mod geometry;
 pub mod selection;
 
+pub mod nodes;
 pub mod problem;

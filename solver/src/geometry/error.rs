@@ -1,0 +1,74 @@
+//! Why a shape or a node cloud is refused.
+
+/// Why a shape or a node cloud is refused; lengths in \[m\].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GeometryError {
+    #[error("{name} is {value}; it must be positive and finite")]
+    NotPositive { name: &'static str, value: f64 },
+    #[error("the box runs from {min} m to {max} m along axis {axis}; it must have an extent")]
+    EmptyBox { axis: usize, min: f64, max: f64 },
+    #[error("the extrusion runs from z = {from} m to {to} m; it must have a height")]
+    EmptyExtrusion { from: f64, to: f64 },
+    #[error("{name} has length {length}; it must be a unit vector")]
+    NotUnit { name: &'static str, length: f64 },
+    #[error("{name} has a coordinate that is not finite")]
+    NotFinite { name: &'static str },
+    #[error("the polygon has {count} points; it needs at least 3")]
+    TooFewPoints { count: usize },
+    #[error("edges {first} and {second} of the polygon cross or touch")]
+    PolygonCrosses { first: usize, second: usize },
+    #[error("the union has no members")]
+    EmptyUnion,
+    #[error("the {shape} has no end, so it has no boundary to put nodes or panels on")]
+    Unbounded { shape: &'static str },
+    #[error("the {shape} cannot be cut at z = {z} m into a plane cross-section")]
+    SectionUnsupported { shape: &'static str, z: f64 },
+    #[error("the {shape} does not reach the plane z = {z} m")]
+    SectionEmpty { shape: &'static str, z: f64 },
+
+    #[error("the label map of {size:?} voxels holds {count} labels; it needs {expected}")]
+    LabelCount { size: [usize; 3], count: usize, expected: usize },
+    #[error("the label map directions have determinant {determinant} m³")]
+    SingularDirections { determinant: f64 },
+    #[error("label map directions {first} and {second} enclose a cosine of {cosine}, not 0")]
+    SkewDirections { first: usize, second: usize, cosine: f64 },
+    #[error("no voxel has label {label}")]
+    NoSuchLabel { label: u32 },
+    #[error("no label was chosen")]
+    NoLabels,
+
+    #[error("the surface has {vertices} vertices and {triangles} triangles")]
+    SurfaceEmpty { vertices: usize, triangles: usize },
+    #[error("triangle {triangle} uses vertex {vertex} of {count}")]
+    SurfaceVertex { triangle: usize, vertex: u32, count: usize },
+    #[error(
+        "the surface is not closed: the edge from {from:?} m to {to:?} m has {forward} triangles on one side and {backward} on the other"
+    )]
+    SurfaceOpen { from: [f64; 3], to: [f64; 3], forward: usize, backward: usize },
+    #[error("the surface encloses {volume} m³: its triangles face inwards")]
+    SurfaceInsideOut { volume: f64 },
+
+    #[error("no node lies in the body")]
+    NoNodes,
+    #[error("{count} nodes are too few; at least {needed} are needed")]
+    TooFewNodes { count: usize, needed: usize },
+    #[error("jitter is {jitter}; it must lie in 0 ≤ jitter < 0.5")]
+    Jitter { jitter: f64 },
+    #[error("about {count:.3e} {what} would be needed; the limit is {limit:.0e}")]
+    TooMany { what: &'static str, count: f64, limit: f64 },
+    #[error("refinement {refinement} of size {size} m contains no point of the body")]
+    RefinementEmpty { refinement: usize, size: f64 },
+    #[error("node {node} lies {distance} m outside the body, where nodes are {spacing} m apart")]
+    NodeOutside { node: usize, distance: f64, spacing: f64 },
+    #[error("nodes {first} and {second} are {distance} m apart")]
+    DuplicateNodes { first: usize, second: usize, distance: f64 },
+}
+
+/// `value` must be positive and finite.
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), GeometryError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(GeometryError::NotPositive { name, value })
+    }
+}

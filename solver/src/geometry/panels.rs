@@ -1,0 +1,315 @@
+//! The boundary as small panels, for surface integrals.
+#![allow(non_snake_case)]
+
+use super::primitives::anticlockwise;
+use super::triangles::{Triangle, area_vector, subdivide, triangulate};
+use super::{GeometryError, Shape, marching, positive};
+use crate::problem::Dimension;
+use crate::tensor::Vector3;
+use std::f64::consts::TAU;
+
+/// A piece of the boundary.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Panel {
+    pub centre: Vector3,
+    /// \[m²\]; in plane strain length times thickness.
+    pub area: f64,
+    /// Unit vector out of the solid.
+    pub normal: Vector3,
+}
+
+const MOST_PANELS: f64 = 1e8;
+
+impl Shape {
+    /// Panels with edges of at most `size` \[m\] that cover the boundary, in
+    /// a plane that of the cross-section without its ends. Areas and normals
+    /// are exact for flat faces, cylinders and spheres. Where members of a
+    /// union or difference meet, panels are kept or dropped whole.
+    pub fn boundary_panels(
+        &self,
+        size: f64,
+        dimension: &Dimension,
+    ) -> Result<Vec<Panel>, GeometryError> {
+        positive("the panel size", size)?;
+        match dimension {
+            Dimension::Three => surface_panels(self, size),
+            Dimension::PlaneStrain { thickness, z } => {
+                let mut panels = curve_panels(&self.section_at(*z)?, size, *z)?;
+                panels.iter_mut().for_each(|panel| panel.area *= thickness);
+                Ok(panels)
+            }
+        }
+    }
+}
+
+/// Panels whose area is a length, of a section.
+fn curve_panels(shape: &Shape, size: f64, z: f64) -> Result<Vec<Panel>, GeometryError> {
+    match shape {
+        Shape::Polygon { points, .. } => Ok(line_panels(&anticlockwise(points), size, z)),
+        Shape::Ellipsoid { centre, radii } => Ok(ellipse_panels(centre, radii, size, z)),
+        Shape::Labels(field) => {
+            let curves = marching::contours(shape, z, (0.7 * size).min(field.voxel()))?;
+            Ok(curves.iter().flat_map(|curve| line_panels(curve, size, z)).collect())
+        }
+        Shape::Union(_) | Shape::Difference(..) => {
+            match composite_panels(shape, &|member| curve_panels(member, size, z)) {
+                Err(GeometryError::Unbounded { .. }) if shape.bounding_box().is_some() => {
+                    let curves = marching::contours(shape, z, 0.5 * size)?;
+                    Ok(curves.iter().flat_map(|curve| line_panels(curve, size, z)).collect())
+                }
+                panels => panels,
+            }
+        }
+        _ => Err(GeometryError::Unbounded { shape: shape.name() }),
+    }
+}
+
+/// Number of pieces of at most `size` in `length`.
+fn pieces(length: f64, size: f64) -> usize {
+    ((length / size) * (1.0 - 1e-9)).ceil().max(1.0) as usize
+}
+
+/// Along a closed polyline with the solid to its left.
+fn line_panels(points: &[[f64; 2]], size: f64, z: f64) -> Vec<Panel> {
+    let mut panels = Vec::new();
+    for (n, a) in points.iter().enumerate() {
+        let b = points[(n + 1) % points.len()];
+        let edge = Vector3::new(b[0] - a[0], b[1] - a[1], 0.0);
+        let length = edge.norm();
+        if length == 0.0 {
+            continue;
+        }
+        let normal = Vector3::new(edge.y, -edge.x, 0.0) / length;
+        let count = pieces(length, size);
+        for piece in 0..count {
+            let t = (piece as f64 + 0.5) / count as f64;
+            let centre = Vector3::new(a[0], a[1], z) + t * edge;
+            panels.push(Panel { centre, area: length / count as f64, normal });
+        }
+    }
+    panels
+}
+
+fn ellipse_panels(centre: &Vector3, radii: &Vector3, size: f64, z: f64) -> Vec<Panel> {
+    let count = pieces(TAU * radii.x.max(radii.y), size).max(8);
+    let step = TAU / count as f64;
+    (0..count)
+        .map(|n| {
+            let (sin, cos) = ((n as f64 + 0.5) * step).sin_cos();
+            let weighted = Vector3::new(radii.y * cos, radii.x * sin, 0.0);
+            Panel {
+                centre: Vector3::new(centre.x + radii.x * cos, centre.y + radii.y * sin, z),
+                area: weighted.norm() * step,
+                normal: weighted.normalize(),
+            }
+        })
+        .collect()
+}
+
+fn surface_panels(shape: &Shape, size: f64) -> Result<Vec<Panel>, GeometryError> {
+    match shape {
+        Shape::Box { min, max } => Ok(box_panels(min, max, size)),
+        Shape::Cylinder { base, axis, radius, height } => {
+            Ok(cylinder_panels(base, axis, *radius, *height, size))
+        }
+        Shape::Sphere { centre, radius } => {
+            Ok(ellipsoid_panels(centre, &Vector3::repeat(*radius), size))
+        }
+        Shape::Ellipsoid { centre, radii } if radii.z.is_finite() => {
+            Ok(ellipsoid_panels(centre, radii, size))
+        }
+        Shape::Polygon { points, z } if (z.1 - z.0).is_finite() => {
+            Ok(prism_panels(points, *z, size))
+        }
+        Shape::Labels(field) => {
+            let triangles = marching::isosurface(shape, (size / 3_f64.sqrt()).min(field.voxel()))?;
+            Ok(triangle_panels(triangles.into_iter(), size))
+        }
+        Shape::Surface(surface) => Ok(triangle_panels(surface.corners(), size)),
+        Shape::Union(_) | Shape::Difference(..) => {
+            match composite_panels(shape, &|member| surface_panels(member, size)) {
+                Err(GeometryError::Unbounded { .. }) if shape.bounding_box().is_some() => {
+                    let triangles = marching::isosurface(shape, size / 3_f64.sqrt())?;
+                    Ok(triangle_panels(triangles.into_iter(), size))
+                }
+                panels => panels,
+            }
+        }
+        _ => Err(GeometryError::Unbounded { shape: shape.name() }),
+    }
+    .and_then(|panels| {
+        let (what, count) = ("boundary panels", panels.len() as f64);
+        let limit = MOST_PANELS;
+        if count > limit { Err(GeometryError::TooMany { what, count, limit }) } else { Ok(panels) }
+    })
+}
+
+fn rectangle(corner: Vector3, u: Vector3, v: Vector3, size: f64, panels: &mut Vec<Panel>) {
+    let (nu, nv) = (pieces(u.norm(), size), pieces(v.norm(), size));
+    let whole = u.cross(&v);
+    let area = whole.norm() / (nu * nv) as f64;
+    let normal = whole.normalize();
+    for j in 0..nv {
+        for i in 0..nu {
+            let (s, t) = ((i as f64 + 0.5) / nu as f64, (j as f64 + 0.5) / nv as f64);
+            panels.push(Panel { centre: corner + s * u + t * v, area, normal });
+        }
+    }
+}
+
+fn box_panels(min: &Vector3, max: &Vector3, size: f64) -> Vec<Panel> {
+    let mut panels = Vec::new();
+    let edges = max - min;
+    for axis in 0..3 {
+        let along = |k: usize| {
+            let mut edge = Vector3::zeros();
+            edge[(axis + k) % 3] = edges[(axis + k) % 3];
+            edge
+        };
+        rectangle(*min, along(2), along(1), size, &mut panels);
+        rectangle(min + along(0), along(1), along(2), size, &mut panels);
+    }
+    panels
+}
+
+fn prism_panels(points: &[[f64; 2]], z: (f64, f64), size: f64) -> Vec<Panel> {
+    let points = anticlockwise(points);
+    let mut panels = Vec::new();
+    let up = Vector3::new(0.0, 0.0, z.1 - z.0);
+    for (n, a) in points.iter().enumerate() {
+        let b = points[(n + 1) % points.len()];
+        let edge = Vector3::new(b[0] - a[0], b[1] - a[1], 0.0);
+        rectangle(Vector3::new(a[0], a[1], z.0), edge, up, size, &mut panels);
+    }
+    for [a, b, c] in triangulate(&points) {
+        let at = |z: f64| move |p: [f64; 2]| Vector3::new(p[0], p[1], z);
+        let caps = [[a, b, c].map(at(z.1)), [a, c, b].map(at(z.0))];
+        panels.extend(triangle_panels(caps.into_iter(), size));
+    }
+    panels
+}
+
+pub(super) fn perpendicular(axis: &Vector3) -> (Vector3, Vector3) {
+    let e = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
+    let u = (e - e.dot(axis) * axis).normalize();
+    (u, axis.cross(&u))
+}
+
+fn cylinder_panels(
+    base: &Vector3,
+    axis: &Vector3,
+    radius: f64,
+    height: f64,
+    size: f64,
+) -> Vec<Panel> {
+    let (u, v) = perpendicular(axis);
+    let around = |n: usize, count: usize| {
+        let (sin, cos) = ((n as f64 + 0.5) * TAU / count as f64).sin_cos();
+        cos * u + sin * v
+    };
+    let mut panels = Vec::new();
+    let (count, layers) = (pieces(TAU * radius, size).max(8), pieces(height, size));
+    for n in 0..layers * count {
+        let normal = around(n % count, count);
+        let s = height * ((n / count) as f64 + 0.5) / layers as f64;
+        let area = TAU * radius * height / (count * layers) as f64;
+        panels.push(Panel { centre: base + s * axis + radius * normal, area, normal });
+    }
+    let rings = pieces(radius, size);
+    for ring in 0..rings {
+        let width = radius / rings as f64;
+        let (inner, outer) = (ring as f64 * width, (ring + 1) as f64 * width);
+        let count = pieces(TAU * outer, size).max(6);
+        let area = 0.5 * TAU * (outer * outer - inner * inner) / count as f64;
+        for n in 0..count {
+            let at = base + 0.5 * (inner + outer) * around(n, count);
+            panels.push(Panel { centre: at, area, normal: -axis });
+            panels.push(Panel { centre: at + height * axis, area, normal: *axis });
+        }
+    }
+    panels
+}
+
+/// Bands of latitude on the unit sphere with exact areas, mapped by Nanson's
+/// formula N dA = cof(D) n da with D the diagonal of the radii.
+fn ellipsoid_panels(centre: &Vector3, radii: &Vector3, size: f64) -> Vec<Panel> {
+    let largest = radii.max();
+    let bands = pieces(0.5 * TAU * largest, size).max(4);
+    let cofactor = Vector3::repeat(radii.product()).component_div(radii);
+    let mut panels = Vec::new();
+    for band in 0..bands {
+        let polar = |n: f64| n * 0.5 * TAU / bands as f64;
+        let (top, bottom) = (polar(band as f64), polar(band as f64 + 1.0));
+        let (sin, cos) = polar(band as f64 + 0.5).sin_cos();
+        let count = pieces(TAU * sin * largest, size).max(6);
+        let area = (top.cos() - bottom.cos()) * TAU / count as f64;
+        for n in 0..count {
+            let (s, c) = ((n as f64 + 0.5) * TAU / count as f64).sin_cos();
+            let unit = Vector3::new(sin * c, sin * s, cos);
+            let mapped = cofactor.component_mul(&unit);
+            panels.push(Panel {
+                centre: centre + radii.component_mul(&unit),
+                area: area * mapped.norm(),
+                normal: mapped.normalize(),
+            });
+        }
+    }
+    panels
+}
+
+fn triangle_panels(triangles: impl Iterator<Item = Triangle>, size: f64) -> Vec<Panel> {
+    let mut panels = Vec::new();
+    for triangle in triangles {
+        subdivide(triangle, size, &mut |t| {
+            let whole = area_vector(&t);
+            let area = whole.norm();
+            if area > 0.0 {
+                panels.push(Panel {
+                    centre: (t[0] + t[1] + t[2]) / 3.0,
+                    area,
+                    normal: whole / area,
+                });
+            }
+        });
+    }
+    panels
+}
+
+type PanelsOf<'a> = &'a dyn Fn(&Shape) -> Result<Vec<Panel>, GeometryError>;
+
+/// Panels of the members that lie on the boundary of the composite. Where
+/// faces of two members coincide, the first member's panel stays if their
+/// normals agree (they disagree, for a difference); none stays otherwise.
+fn composite_panels(shape: &Shape, of: PanelsOf) -> Result<Vec<Panel>, GeometryError> {
+    let tolerance = 1e-9 * shape.size();
+    let mut kept = Vec::new();
+    match shape {
+        Shape::Union(members) => {
+            for (n, member) in members.iter().enumerate() {
+                kept.extend(of(member)?.into_iter().filter(|panel| {
+                    members.iter().enumerate().filter(|(other, _)| *other != n).all(
+                        |(other, shape)| {
+                            let distance = shape.signed_distance(&panel.centre);
+                            let along = || shape.gradient(&panel.centre).dot(&panel.normal) > 0.0;
+                            distance > tolerance || (distance > -tolerance && n < other && along())
+                        },
+                    )
+                }));
+            }
+        }
+        Shape::Difference(body, hole) => {
+            kept.extend(of(body)?.into_iter().filter(|panel| {
+                let distance = hole.signed_distance(&panel.centre);
+                let against = || hole.gradient(&panel.centre).dot(&panel.normal) < 0.0;
+                distance > tolerance || (distance > -tolerance && against())
+            }));
+            for panel in of(hole)? {
+                if body.signed_distance(&panel.centre) < -tolerance {
+                    kept.push(Panel { normal: -panel.normal, ..panel });
+                }
+            }
+        }
+        _ => {}
+    }
+    Ok(kept)
+}

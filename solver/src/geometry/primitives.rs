@@ -1,0 +1,118 @@
+//! Signed distance of single solids \[m\], negative inside.
+#![allow(non_snake_case)]
+
+use crate::tensor::Vector3;
+
+/// Of an axis-parallel box.
+pub fn box_distance(X: &Vector3, min: &Vector3, max: &Vector3) -> f64 {
+    let q = (min - X).sup(&(X - max));
+    q.sup(&Vector3::zeros()).norm() + q.max().min(0.0)
+}
+
+/// Of a product of two solids of lower dimension from their own distances.
+pub fn product_distance(radial: f64, axial: f64) -> f64 {
+    radial.max(0.0).hypot(axial.max(0.0)) + radial.max(axial).min(0.0)
+}
+
+/// Of a finite cylinder.
+pub fn cylinder_distance(
+    X: &Vector3,
+    base: &Vector3,
+    axis: &Vector3,
+    radius: f64,
+    height: f64,
+) -> f64 {
+    let d = X - base;
+    let s = d.dot(axis);
+    product_distance((d - s * axis).norm() - radius, (-s).max(s - height))
+}
+
+/// Of a simple polygon in the plane, whichever way it runs.
+pub fn polygon_distance(points: &[[f64; 2]], x: f64, y: f64) -> f64 {
+    let mut squared = f64::INFINITY;
+    let mut inside = false;
+    let mut a = points[points.len() - 1];
+    for &b in points {
+        let (ex, ey) = (b[0] - a[0], b[1] - a[1]);
+        let (wx, wy) = (x - a[0], y - a[1]);
+        let t = ((wx * ex + wy * ey) / (ex * ex + ey * ey)).clamp(0.0, 1.0);
+        squared = squared.min((wx - t * ex).powi(2) + (wy - t * ey).powi(2));
+        if (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / ey * ex {
+            inside = !inside;
+        }
+        a = b;
+    }
+    if inside { -squared.sqrt() } else { squared.sqrt() }
+}
+
+/// Signed area of a polygon \[m²\], positive if it runs anticlockwise.
+pub fn polygon_area(points: &[[f64; 2]]) -> f64 {
+    let n = points.len();
+    (0..n)
+        .map(|i| {
+            let (a, b) = (points[i], points[(i + 1) % n]);
+            0.5 * (a[0] * b[1] - a[1] * b[0])
+        })
+        .sum()
+}
+
+/// The points in anticlockwise order.
+pub fn anticlockwise(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut points = points.to_vec();
+    if polygon_area(&points) < 0.0 {
+        points.reverse();
+    }
+    points
+}
+
+/// Point of an axis-parallel ellipsoid closest to `d`, both from its centre.
+/// An infinite third radius makes it an elliptic cylinder.
+///
+/// The closest point is xᵢ = rᵢ²dᵢ/(t + rᵢ²) with t the root of
+/// Σ (rᵢdᵢ/(t + rᵢ²))² = 1 right of −min rᵢ² (Eberly 2013). The sum is convex
+/// there, so Newton's method from a lower bound cannot overshoot. Zero
+/// coordinates are moved by 1e-14 r, which moves the distance by no more.
+pub fn closest_on_ellipsoid(d: &Vector3, radii: &Vector3) -> Vector3 {
+    let axes = if radii.z.is_finite() { 3 } else { 2 };
+    let small = 1e-14 * radii.rows(0, axes).max();
+    let y = d.map(|c| c.abs().max(small));
+    let mut t = (0..axes).map(|i| radii[i] * (y[i] - radii[i])).fold(f64::MIN, f64::max);
+    for _ in 0..200 {
+        let (mut value, mut slope) = (-1.0, 0.0);
+        for i in 0..axes {
+            let shifted = t + radii[i] * radii[i];
+            let term = (radii[i] * y[i] / shifted).powi(2);
+            value += term;
+            slope -= 2.0 * term / shifted;
+        }
+        let step = -value / slope;
+        // Converged, or turned back by rounding.
+        if step.is_nan() || step <= 1e-16 * t.abs() {
+            break;
+        }
+        t += step;
+    }
+    let mut closest = *d;
+    for i in 0..axes {
+        let squared = radii[i] * radii[i];
+        closest[i] = (squared * y[i] / (t + squared)).copysign(d[i]);
+    }
+    closest
+}
+
+/// Of an axis-parallel ellipsoid, `d` from its centre.
+pub fn ellipsoid_distance(d: &Vector3, radii: &Vector3) -> f64 {
+    let distance = (d - closest_on_ellipsoid(d, radii)).norm();
+    let inside = d.component_div(radii).norm_squared() < 1.0;
+    if inside { -distance } else { distance }
+}
+
+/// Outward normal of an ellipsoid at its point closest to `d`.
+pub fn ellipsoid_normal(d: &Vector3, radii: &Vector3) -> Vector3 {
+    let closest = closest_on_ellipsoid(d, radii);
+    let mut normal = closest.component_div(radii).component_div(radii);
+    if radii.z.is_infinite() {
+        normal.z = 0.0;
+    }
+    normal.try_normalize(0.0).unwrap_or_else(Vector3::x)
+}

@@ -1,0 +1,116 @@
+//! Cross-sections for plane problems: solids without ends in z.
+
+use super::{GeometryError, Shape};
+use crate::problem::Dimension;
+use crate::tensor::Vector3;
+use std::sync::Arc;
+
+const WITHOUT_END: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+impl Shape {
+    /// The solid itself in three dimensions; in a plane the cross-section at
+    /// height z, extended along z without end, so that its signed distance is
+    /// that of the outline. The section of a section is the section.
+    pub fn section(&self, dimension: &Dimension) -> Result<Shape, GeometryError> {
+        match dimension {
+            Dimension::Three => Ok(self.clone()),
+            Dimension::PlaneStrain { z, .. } => self.section_at(*z),
+        }
+    }
+
+    pub(super) fn section_at(&self, z: f64) -> Result<Shape, GeometryError> {
+        let shape = self.name();
+        let empty = GeometryError::SectionEmpty { shape, z };
+        let unsupported = GeometryError::SectionUnsupported { shape, z };
+        let between = |lower: f64, upper: f64| lower <= z && z <= upper;
+        match self {
+            Shape::Box { min, max } if between(min.z, max.z) => Ok(Shape::Polygon {
+                points: vec![[min.x, min.y], [max.x, min.y], [max.x, max.y], [min.x, max.y]],
+                z: WITHOUT_END,
+            }),
+            Shape::Cylinder { base, axis, radius, height } => {
+                let top = base.z + height * axis.z;
+                if axis.z.abs() < 1.0 - 1e-12 {
+                    Err(unsupported)
+                } else if between(base.z.min(top), base.z.max(top)) {
+                    Ok(ellipse(base, *radius, *radius))
+                } else {
+                    Err(empty)
+                }
+            }
+            Shape::Sphere { centre, radius } if (z - centre.z).abs() < *radius => {
+                let reach = (radius * radius - (z - centre.z).powi(2)).sqrt();
+                Ok(ellipse(centre, reach, reach))
+            }
+            Shape::Ellipsoid { centre, radii } if radii.z.is_infinite() => {
+                Ok(ellipse(centre, radii.x, radii.y))
+            }
+            Shape::Ellipsoid { centre, radii } if (z - centre.z).abs() < radii.z => {
+                let scale = (1.0 - ((z - centre.z) / radii.z).powi(2)).sqrt();
+                Ok(ellipse(centre, scale * radii.x, scale * radii.y))
+            }
+            Shape::Polygon { points, z: (from, to) } if between(*from, *to) => {
+                Ok(Shape::Polygon { points: points.clone(), z: WITHOUT_END })
+            }
+            Shape::HalfSpace { point, normal } => {
+                let level = Vector3::new(normal.x, normal.y, 0.0);
+                let length = level.norm();
+                if length < 1e-12 {
+                    return Err(unsupported);
+                }
+                let to_plane = (point.z - z) * normal.z / length;
+                let unit = level / length;
+                Ok(Shape::HalfSpace { point: point + to_plane * unit, normal: unit })
+            }
+            Shape::Union(members) => union_section(members, z, empty),
+            Shape::Difference(body, hole) => {
+                let body = body.section_at(z)?;
+                match hole.section_at(z) {
+                    Ok(hole) => Ok(Shape::Difference(Box::new(body), Box::new(hole))),
+                    Err(GeometryError::SectionEmpty { .. }) => Ok(body),
+                    Err(error) => Err(error),
+                }
+            }
+            Shape::Labels(field) => Ok(Shape::Labels(Arc::new(field.slice(z)?))),
+            Shape::Surface(surface) => surface.section(z),
+            _ => Err(empty),
+        }
+    }
+
+    /// Bounding box, flat at z in a plane; refused if it is not finite.
+    pub(crate) fn finite_bounds(
+        &self,
+        dimension: &Dimension,
+    ) -> Result<(Vector3, Vector3), GeometryError> {
+        let unbounded = GeometryError::Unbounded { shape: self.name() };
+        let (mut lower, mut upper) = self.bounding_box().ok_or(unbounded.clone())?;
+        if let Dimension::PlaneStrain { z, .. } = dimension {
+            (lower.z, upper.z) = (*z, *z);
+        }
+        let finite = lower.iter().chain(upper.iter()).all(|c| c.is_finite());
+        if finite { Ok((lower, upper)) } else { Err(unbounded) }
+    }
+}
+
+fn ellipse(centre: &Vector3, a: f64, b: f64) -> Shape {
+    Shape::Ellipsoid {
+        centre: Vector3::new(centre.x, centre.y, 0.0),
+        radii: Vector3::new(a, b, f64::INFINITY),
+    }
+}
+
+fn union_section(members: &[Shape], z: f64, empty: GeometryError) -> Result<Shape, GeometryError> {
+    let mut sections = Vec::new();
+    for member in members {
+        match member.section_at(z) {
+            Ok(section) => sections.push(section),
+            Err(GeometryError::SectionEmpty { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    match sections.len() {
+        0 => Err(empty),
+        1 => Ok(sections.remove(0)),
+        _ => Ok(Shape::Union(sections)),
+    }
+}

@@ -1,0 +1,196 @@
+//! Solids enclosed by triangles.
+#![allow(non_snake_case)]
+
+use super::primitives::polygon_area;
+use super::triangles::Triangle;
+use super::{GeometryError, Shape};
+use crate::tensor::Vector3;
+use parry3d_f64::math::Vector as ParryVector;
+use parry3d_f64::query::PointQueryWithLocation;
+use parry3d_f64::shape::{TriMesh, TriMeshFlags};
+use std::collections::{BTreeMap, HashMap};
+
+/// A closed surface of triangles that run anticlockwise seen from outside.
+#[derive(Debug, Clone)]
+pub struct Surface {
+    vertices: Vec<Vector3>,
+    triangles: Vec<[u32; 3]>,
+    mesh: TriMesh,
+}
+
+impl Surface {
+    /// From vertices \[m\] and their indices. Vertices with equal coordinates
+    /// are merged and triangles that thereby vanish are dropped; what is left
+    /// must be closed, each edge run through once in either direction, with
+    /// the normals outwards.
+    pub fn new(vertices: Vec<Vector3>, triangles: Vec<[u32; 3]>) -> Result<Self, GeometryError> {
+        if !vertices.iter().all(|v| v.iter().all(|c| c.is_finite())) {
+            return Err(GeometryError::NotFinite { name: "the surface" });
+        }
+        let (vertices, triangles) = merge(vertices, triangles)?;
+        let empty =
+            GeometryError::SurfaceEmpty { vertices: vertices.len(), triangles: triangles.len() };
+        if triangles.is_empty() {
+            return Err(empty);
+        }
+        check_closed(&vertices, &triangles)?;
+        let points = vertices.iter().map(parry).collect();
+        let mesh = TriMesh::with_flags(points, triangles.clone(), TriMeshFlags::ORIENTED)
+            .map_err(|_| empty)?;
+        let surface = Surface { vertices, triangles, mesh };
+        let volume = surface.volume();
+        if volume > 0.0 { Ok(surface) } else { Err(GeometryError::SurfaceInsideOut { volume }) }
+    }
+
+    /// Enclosed volume \[m³\].
+    pub fn volume(&self) -> f64 {
+        // From a vertex, not the origin, which may be far away.
+        let o = self.vertices[0];
+        self.corners().map(|[a, b, c]| (a - o).dot(&(b - o).cross(&(c - o))) / 6.0).sum()
+    }
+
+    pub(super) fn corners(&self) -> impl Iterator<Item = Triangle> + '_ {
+        self.triangles.iter().map(|t| t.map(|v| self.vertices[v as usize]))
+    }
+
+    /// Signed distance \[m\], the sign from angle-weighted normals
+    /// (Baerentzen & Aanaes 2005).
+    pub fn signed_distance(&self, X: &Vector3) -> f64 {
+        let (projection, _) = self.mesh.project_local_point_and_get_location(parry(X), false);
+        let distance = (projection.point - parry(X)).length();
+        if projection.is_inside { -distance } else { distance }
+    }
+
+    pub(super) fn bounding_box(&self) -> (Vector3, Vector3) {
+        let first = self.vertices[0];
+        self.vertices.iter().fold((first, first), |(l, u), v| (l.inf(v), u.sup(v)))
+    }
+
+    /// Ends of the edges whose triangles enclose more than 30°.
+    pub(super) fn sharp_edges(&self) -> Vec<(u32, u32)> {
+        let mut normals = BTreeMap::new();
+        for (t, corners) in self.triangles.iter().zip(self.corners()) {
+            let normal = super::triangles::area_vector(&corners).try_normalize(0.0);
+            (0..3).for_each(|k| {
+                normals.insert((t[k], t[(k + 1) % 3]), normal);
+            });
+        }
+        let sharp = |(a, b): &(u32, u32)| match (normals[&(*a, *b)], normals.get(&(*b, *a))) {
+            (Some(n), Some(Some(m))) => n.dot(m) < 0.866,
+            _ => false,
+        };
+        normals.keys().filter(|(a, b)| a < b).filter(|edge| sharp(edge)).copied().collect()
+    }
+
+    pub(super) fn vertex(&self, index: u32) -> Vector3 {
+        self.vertices[index as usize]
+    }
+
+    /// The loops in which the plane at height z cuts the surface: the outer
+    /// ones together, less the holes.
+    pub(super) fn section(&self, z: f64) -> Result<Shape, GeometryError> {
+        let (mut outer, mut holes) = (Vec::new(), Vec::new());
+        for points in self.loops(z) {
+            let area = polygon_area(&points);
+            let polygon = Shape::Polygon { points, z: (f64::NEG_INFINITY, f64::INFINITY) };
+            if area > 0.0 { outer.push(polygon) } else { holes.push(polygon) }
+        }
+        let body = match outer.len() {
+            0 => return Err(GeometryError::SectionEmpty { shape: "surface", z }),
+            1 => outer.remove(0),
+            _ => Shape::Union(outer),
+        };
+        Ok(match holes.len() {
+            0 => body,
+            1 => Shape::Difference(Box::new(body), Box::new(holes.remove(0))),
+            _ => Shape::Difference(Box::new(body), Box::new(Shape::Union(holes))),
+        })
+    }
+
+    /// Polygons with the solid to their left.
+    fn loops(&self, z: f64) -> Vec<Vec<[f64; 2]>> {
+        let cut = |a: u32, b: u32| {
+            let (p, q) = (self.vertex(a.min(b)), self.vertex(a.max(b)));
+            let point = p + (z - p.z) / (q.z - p.z) * (q - p);
+            [point.x, point.y]
+        };
+        let above = |v: u32| self.vertex(v).z >= z;
+        // From the edge that runs down through the plane to the one that runs up.
+        let mut next = BTreeMap::new();
+        for t in &self.triangles {
+            let edges = [0, 1, 2].map(|k| (t[k], t[(k + 1) % 3]));
+            let down = edges.iter().find(|(a, b)| above(*a) && !above(*b));
+            let up = edges.iter().find(|(a, b)| !above(*a) && above(*b));
+            if let (Some(&(a, b)), Some(&(c, d))) = (down, up) {
+                next.insert((a, b), (d, c));
+            }
+        }
+        let mut loops = Vec::new();
+        while let Some((&start, _)) = next.first_key_value() {
+            let mut points: Vec<[f64; 2]> = Vec::new();
+            let mut at = start;
+            while let Some(after) = next.remove(&at) {
+                let point = cut(at.0, at.1);
+                if points.last() != Some(&point) && points.first() != Some(&point) {
+                    points.push(point);
+                }
+                at = after;
+            }
+            if points.len() >= 3 && polygon_area(&points) != 0.0 {
+                loops.push(points);
+            }
+        }
+        loops
+    }
+}
+
+fn parry(v: &Vector3) -> ParryVector {
+    ParryVector::new(v.x, v.y, v.z)
+}
+
+type Mesh = (Vec<Vector3>, Vec<[u32; 3]>);
+
+fn merge(vertices: Vec<Vector3>, triangles: Vec<[u32; 3]>) -> Result<Mesh, GeometryError> {
+    let mut first = HashMap::new();
+    let mut merged: Vec<Vector3> = Vec::new();
+    let mut number = Vec::with_capacity(vertices.len());
+    for v in &vertices {
+        // Adding zero turns −0 into 0.
+        let key = [v.x + 0.0, v.y + 0.0, v.z + 0.0].map(f64::to_bits);
+        number.push(*first.entry(key).or_insert_with(|| {
+            merged.push(*v);
+            merged.len() as u32 - 1
+        }));
+    }
+    let mut kept = Vec::with_capacity(triangles.len());
+    for (triangle, t) in triangles.iter().enumerate() {
+        if let Some(&vertex) = t.iter().find(|&&v| v as usize >= vertices.len()) {
+            return Err(GeometryError::SurfaceVertex { triangle, vertex, count: vertices.len() });
+        }
+        let [a, b, c] = t.map(|v| number[v as usize]);
+        if a != b && b != c && c != a {
+            kept.push([a, b, c]);
+        }
+    }
+    Ok((merged, kept))
+}
+
+fn check_closed(vertices: &[Vector3], triangles: &[[u32; 3]]) -> Result<(), GeometryError> {
+    let mut edges: BTreeMap<(u32, u32), (usize, usize)> = BTreeMap::new();
+    for t in triangles {
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            let count = edges.entry((a.min(b), a.max(b))).or_default();
+            if a < b { count.0 += 1 } else { count.1 += 1 }
+        }
+    }
+    match edges.into_iter().find(|(_, count)| *count != (1, 1)) {
+        None => Ok(()),
+        Some(((a, b), (forward, backward))) => Err(GeometryError::SurfaceOpen {
+            from: vertices[a as usize].into(),
+            to: vertices[b as usize].into(),
+            forward,
+            backward,
+        }),
+    }
+}

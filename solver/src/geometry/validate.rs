@@ -1,0 +1,120 @@
+//! What makes a shape admissible.
+
+use super::{GeometryError, Shape, positive};
+use crate::tensor::Vector3;
+
+impl Shape {
+    /// Refuses shapes whose numbers describe no solid. A half-space passes;
+    /// as a body it is refused where a bounded one is needed.
+    pub fn validate(&self) -> Result<(), GeometryError> {
+        match self {
+            Shape::Box { min, max } => {
+                for axis in 0..3 {
+                    let (min, max) = (min[axis], max[axis]);
+                    if !(min < max && (max - min).is_finite()) {
+                        return Err(GeometryError::EmptyBox { axis, min, max });
+                    }
+                }
+                Ok(())
+            }
+            Shape::Cylinder { base, axis, radius, height } => {
+                finite("the cylinder base", base)?;
+                unit("the cylinder axis", axis)?;
+                positive("the cylinder radius", *radius)?;
+                positive("the cylinder height", *height)
+            }
+            Shape::Sphere { centre, radius } => {
+                finite("the sphere centre", centre)?;
+                positive("the sphere radius", *radius)
+            }
+            Shape::Ellipsoid { centre, radii } => {
+                finite("the ellipsoid centre", centre)?;
+                positive("the ellipsoid radius in x", radii.x)?;
+                positive("the ellipsoid radius in y", radii.y)?;
+                if radii.z == f64::INFINITY {
+                    return Ok(());
+                }
+                positive("the ellipsoid radius in z", radii.z)
+            }
+            Shape::Polygon { points, z: (from, to) } => {
+                if !(from < to) {
+                    return Err(GeometryError::EmptyExtrusion { from: *from, to: *to });
+                }
+                polygon(points)
+            }
+            Shape::HalfSpace { point, normal } => {
+                finite("the half-space point", point)?;
+                unit("the half-space normal", normal)
+            }
+            Shape::Union(members) if members.is_empty() => Err(GeometryError::EmptyUnion),
+            Shape::Union(members) => members.iter().try_for_each(Shape::validate),
+            Shape::Difference(body, hole) => {
+                body.validate()?;
+                hole.validate()
+            }
+            // Checked when they were made.
+            Shape::Labels(_) | Shape::Surface(_) => Ok(()),
+        }
+    }
+
+    /// As [`validate`](Shape::validate), and the solid must have an end.
+    pub fn validate_body(&self) -> Result<(), GeometryError> {
+        self.validate()?;
+        match self.bounding_box() {
+            Some((lower, upper)) if (upper - lower).xy().iter().all(|l| l.is_finite()) => Ok(()),
+            _ => Err(GeometryError::Unbounded { shape: self.name() }),
+        }
+    }
+}
+
+fn finite(name: &'static str, vector: &Vector3) -> Result<(), GeometryError> {
+    if vector.iter().all(|c| c.is_finite()) {
+        Ok(())
+    } else {
+        Err(GeometryError::NotFinite { name })
+    }
+}
+
+fn unit(name: &'static str, vector: &Vector3) -> Result<(), GeometryError> {
+    let length = vector.norm();
+    if (length - 1.0).abs() < 1e-9 { Ok(()) } else { Err(GeometryError::NotUnit { name, length }) }
+}
+
+fn polygon(points: &[[f64; 2]]) -> Result<(), GeometryError> {
+    let n = points.len();
+    if n < 3 {
+        return Err(GeometryError::TooFewPoints { count: n });
+    }
+    if !points.iter().flatten().all(|c| c.is_finite()) {
+        return Err(GeometryError::NotFinite { name: "the polygon" });
+    }
+    for first in 0..n {
+        let (a, b) = (points[first], points[(first + 1) % n]);
+        if a == b {
+            return Err(GeometryError::PolygonCrosses { first, second: (first + 1) % n });
+        }
+        for second in first + 1..n {
+            let (c, d) = (points[second], points[(second + 1) % n]);
+            let neighbours = second == first + 1 || (second + 1) % n == first;
+            if !neighbours && segments_meet(a, b, c, d) {
+                return Err(GeometryError::PolygonCrosses { first, second });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn segments_meet(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
+    let side = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
+        (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+    };
+    let within = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
+        (0..2).all(|k| p[k].min(q[k]) <= r[k] && r[k] <= p[k].max(q[k]))
+    };
+    let (s1, s2, s3, s4) = (side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b));
+    (s1 * s2 < 0.0 && s3 * s4 < 0.0)
+        || (s1 == 0.0 && within(a, b, c))
+        || (s2 == 0.0 && within(a, b, d))
+        || (s3 == 0.0 && within(c, d, a))
+        || (s4 == 0.0 && within(c, d, b))
+}

@@ -1,0 +1,194 @@
+//! Clouds whose spacing varies.
+#![allow(non_snake_case)]
+
+use super::{MOST_NODES, NodeCloud};
+use crate::geometry::{
+    GeometryError, PointHash, ScalarGrid, Shape, Sizes, boundary_points_sized, positive,
+};
+use crate::problem::{Dimension, Refinement};
+use crate::tensor::Vector3;
+
+/// Most samples of the grid on which distances to the parts are found.
+const MOST_SAMPLES: f64 = 4e6;
+/// Nodes are at least this far apart \[spacing\]; with candidates everywhere
+/// this gives about one node per spacing².
+const APART: f64 = 0.8;
+/// Distance of candidates \[spacing\].
+const CANDIDATE: f64 = 1.0 / 3.0;
+
+/// Wanted spacing h(X) = min(`spacing`, size + growth · distance to the part)
+/// \[m\] over all refinements.
+struct SizeField<'a> {
+    spacing: f64,
+    growth: f64,
+    refinements: &'a [Refinement],
+    corner: Vector3,
+    /// Distance to each part \[m\].
+    distances: Vec<ScalarGrid>,
+}
+
+impl<'a> SizeField<'a> {
+    fn new(
+        body: &Shape,
+        spacing: f64,
+        refinements: &'a [Refinement],
+        growth: f64,
+        dimension: &Dimension,
+    ) -> Result<Self, GeometryError> {
+        let (lower, upper) = body.finite_bounds(dimension)?;
+        let smallest = refinements.iter().map(|r| r.size).fold(spacing, f64::min);
+        let length = (upper - lower).rows(0, dimension.components()).clone_owned();
+        let most = (length.product() / MOST_SAMPLES).powf(1.0 / dimension.components() as f64);
+        let step = (0.5 * smallest).max(most);
+        let size = [0, 1, 2]
+            .map(|k| if k < length.len() { (length[k] / step).ceil() as usize + 1 } else { 1 });
+        let blank = ScalarGrid { size, step: Vector3::repeat(step), values: Vec::new() };
+        let mut distances = Vec::new();
+        for (n, refinement) in refinements.iter().enumerate() {
+            let mut inside = false;
+            let start = (0..size.iter().product())
+                .map(|index| {
+                    let X = lower + blank.local(index);
+                    let hit = refinement.part.contains(&X);
+                    inside |= hit && body.signed_distance(&X) < step;
+                    if hit { 0.0 } else { f64::INFINITY }
+                })
+                .collect();
+            if !inside {
+                return Err(GeometryError::RefinementEmpty {
+                    refinement: n,
+                    size: refinement.size,
+                });
+            }
+            distances.push(blank.sweep(start));
+        }
+        Ok(SizeField { spacing, growth, refinements, corner: lower, distances })
+    }
+
+    fn at(&self, X: &Vector3) -> f64 {
+        let mut size = self.spacing;
+        for (refinement, distance) in self.refinements.iter().zip(&self.distances) {
+            let away = if refinement.part.contains(X) {
+                0.0
+            } else {
+                distance.sample(&(X - self.corner)).max(0.0)
+            };
+            size = size.min(refinement.size + self.growth * away);
+        }
+        size
+    }
+}
+
+/// Boundary points first, then candidates of a tree of lattices, each taken
+/// if no node is nearer than 0.8 of its spacing.
+pub(super) fn graded(
+    body: &Shape,
+    spacing: f64,
+    refinements: &[Refinement],
+    growth: f64,
+    dimension: &Dimension,
+) -> Result<NodeCloud, GeometryError> {
+    positive("the nodal spacing", spacing)?;
+    for refinement in refinements {
+        positive("the size of a refinement", refinement.size)?;
+    }
+    if !(growth >= 0.0 && growth.is_finite()) {
+        return Err(GeometryError::NotPositive {
+            name: "the growth of the spacing",
+            value: growth,
+        });
+    }
+    let field = SizeField::new(body, spacing, refinements, growth, dimension)?;
+    let size_at = |X: &Vector3| field.at(X);
+    let smallest = refinements.iter().map(|r| r.size).fold(spacing, f64::min);
+    let sizes = Sizes { at: &size_at, smallest, largest: spacing };
+    let boundary = boundary_points_sized(body, &sizes, dimension)?;
+    let mut hash = PointHash::new(APART * smallest, APART * spacing);
+    boundary.points.iter().for_each(|X| hash.insert(*X));
+    let count = boundary.points.len();
+    let mut positions = boundary.points;
+    let (lower, upper) = body.finite_bounds(dimension)?;
+    candidates(body, &field, lower, upper, dimension, &mut |X, size| {
+        if !hash.any_within(&X, APART * size) {
+            hash.insert(X);
+            positions.push(X);
+        }
+        if (positions.len() as f64) < MOST_NODES {
+            return Ok(());
+        }
+        let count = positions.len() as f64;
+        Err(GeometryError::TooMany { what: "nodes", count, limit: MOST_NODES })
+    })?;
+    let spacing = positions.iter().map(|X| field.at(X)).collect();
+    let on_boundary = (0..positions.len()).map(|n| n < count).collect();
+    Ok(NodeCloud { positions, spacing, on_boundary })
+}
+
+type Visit<'a> = &'a mut dyn FnMut(Vector3, f64) -> Result<(), GeometryError>;
+
+/// Visits the centres of cubes that are halved until they are as small as the
+/// candidates should be apart, if they are clear of the boundary.
+fn candidates(
+    body: &Shape,
+    field: &SizeField,
+    lower: Vector3,
+    upper: Vector3,
+    dimension: &Dimension,
+    visit: Visit,
+) -> Result<(), GeometryError> {
+    let axes = dimension.components();
+    let edge = field.spacing;
+    let count = [0, 1, 2]
+        .map(|k| if k < axes { ((upper[k] - lower[k]) / edge).ceil().max(1.0) } else { 1.0 });
+    super::refuse_too_many(count.iter().product())?;
+    let count = count.map(|n| n as usize);
+    let middle = 0.5 * (lower + upper);
+    for k in 0..count[2] {
+        for j in 0..count[1] {
+            for i in 0..count[0] {
+                let at = [i, j, k];
+                let centre = Vector3::from_fn(|axis, _| {
+                    let steps = at[axis] as f64 + 0.5 - 0.5 * count[axis] as f64;
+                    middle[axis] + if axis < axes { steps * edge } else { 0.0 }
+                });
+                halve(body, field, centre, edge, axes, visit)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn halve(
+    body: &Shape,
+    field: &SizeField,
+    centre: Vector3,
+    edge: f64,
+    axes: usize,
+    visit: Visit,
+) -> Result<(), GeometryError> {
+    let distance = body.signed_distance(&centre);
+    if distance > 0.5 * edge * (axes as f64).sqrt() {
+        return Ok(());
+    }
+    let size = field.at(&centre);
+    // The spacing inside a large cube may be smaller than at its centre.
+    let least = (size - 0.5 * field.growth * edge).max(0.25 * size);
+    if edge > CANDIDATE * least.max(1e-3 * field.spacing) && edge > CANDIDATE * field.smallest() {
+        for child in 0..1 << axes {
+            let offset = Vector3::from_fn(|axis, _| match axis < axes {
+                true if child >> axis & 1 == 1 => 0.25 * edge,
+                true => -0.25 * edge,
+                false => 0.0,
+            });
+            halve(body, field, centre + offset, 0.5 * edge, axes, visit)?;
+        }
+        return Ok(());
+    }
+    if distance < -0.5 * size { visit(centre, size) } else { Ok(()) }
+}
+
+impl SizeField<'_> {
+    fn smallest(&self) -> f64 {
+        self.refinements.iter().map(|r| r.size).fold(self.spacing, f64::min)
+    }
+}
