@@ -1,7 +1,19 @@
-//! Verification harness of the meshless solver `mtled`: studies produce plain
-//! data ([`study`]), and [`report`] turns it into pages and files.
+//! Verification harness of the meshless solver `mtled`: case files
+//! ([`scene`]) become problems, runs ([`run`]) become results, studies
+//! ([`studies`]) become plain data ([`study`]), and [`report`] turns those into
+//! pages and files.
 
 pub mod exact;
+pub mod files;
+pub mod scene;
+
 pub mod measure;
-pub mod report;
 pub mod study;
+
+pub mod cases;
+pub mod machine;
+pub mod report;
+pub mod run;
+pub mod studies;
+
+pub mod cli;

@@ -1,0 +1,75 @@
+//! Why a file cannot be used, and what to do about it.
+
+use std::path::{Path, PathBuf};
+
+/// A file and what is wrong with it.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {mistake}", path.display())]
+pub struct FileError {
+    pub path: PathBuf,
+    pub mistake: Mistake,
+}
+
+/// What is wrong with a file.
+#[derive(Debug, thiserror::Error)]
+pub enum Mistake {
+    #[error("the file cannot be read: {0}")]
+    Unreadable(std::io::Error),
+    #[error("the kind of file is not known; its name must end in one of {known}")]
+    UnknownExtension { known: &'static str },
+    #[error("this is not {format}: it starts with `{start}`")]
+    WrongFormat { format: &'static str, start: String },
+    #[error("the header has no `{field}`, which this file needs")]
+    MissingField { field: &'static str },
+    #[error("the header field `{field}` is `{value}`; expected {expected}")]
+    BadField { field: &'static str, value: String, expected: &'static str },
+    #[error("line {line} of the header is `{text}`; expected `field: value`")]
+    BadHeaderLine { line: usize, text: String },
+    #[error(
+        "the file is truncated: its header promises {expected} bytes of data, there are {found}; copy or export it again"
+    )]
+    Truncated { expected: usize, found: usize },
+    #[error("the header ends after {found} bytes; the file is truncated or damaged")]
+    TruncatedHeader { found: usize },
+    #[error("the {encoding} data cannot be decoded: {reason}; the file is damaged")]
+    Undecodable { encoding: &'static str, reason: String },
+    #[error("sizes {sizes:?} are more than this reader takes, or none")]
+    BadSizes { sizes: Vec<usize> },
+    #[error("voxel {voxel} is {value}; labels must be whole numbers from 0 to 65535")]
+    NotALabel { voxel: usize, value: f64 },
+    #[error(
+        "voxel {voxel} is {value}, larger than any label; the byte order of the header ({order} endian) is wrong, or this is not a label map"
+    )]
+    LabelTooLarge { voxel: usize, value: f64, order: &'static str },
+    #[error(
+        "every label is a multiple of 256 (the smallest is {smallest}); the byte order of the header ({order} endian) is wrong"
+    )]
+    ByteSwapped { smallest: u32, order: &'static str },
+    #[error("the voxel directions have determinant {determinant} mm³; they span no volume")]
+    FlatVoxels { determinant: f64 },
+    #[error("the geometry of the image is not usable: {0}")]
+    Geometry(String),
+    #[error("line {line} is `{text}`; expected {expected}")]
+    BadLine { line: usize, text: String, expected: &'static str },
+    #[error("the array has shape {shape:?} and type {kind}; expected (n, 2) or (n, 3) of floats")]
+    BadArray { shape: Vec<u64>, kind: String },
+    #[error("point {point} has a coordinate that is not finite")]
+    NotFinite { point: usize },
+    #[error("there are no points in the file")]
+    NoPoints,
+    #[error("there are no triangles in the file")]
+    NoTriangles,
+}
+
+impl Mistake {
+    /// The mistake as that of a file.
+    pub fn of(self, path: &Path) -> FileError {
+        FileError { path: path.to_path_buf(), mistake: self }
+    }
+}
+
+/// The first characters of a file for a message.
+pub(super) fn start_of(bytes: &[u8]) -> String {
+    let start = &bytes[..bytes.len().min(12)];
+    String::from_utf8_lossy(start).escape_default().to_string()
+}

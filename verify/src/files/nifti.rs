@@ -1,0 +1,153 @@
+//! NIfTI-1 label maps, `.nii` and `.nii.gz` (nifti.nimh.nih.gov/nifti-1).
+
+use super::error::start_of;
+use super::voxels::{self, ByteOrder, Scalar};
+use super::{FileError, LengthUnit, Mistake, bytes_of};
+use flate2::read::MultiGzDecoder;
+use mtled::geometry::LabelMap;
+use mtled::tensor::{Matrix3, Vector3};
+use nifti::{Endianness, NiftiHeader, NiftiType};
+use std::io::Read;
+use std::path::Path;
+
+/// Length of a NIfTI-1 header \[byte\].
+const HEADER: usize = 348;
+
+/// Reads a label map; NIfTI is RAS already. `unit` overrides the file's.
+pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMap, FileError> {
+    let bytes = bytes_of(path)?;
+    parse(bytes, unit).map_err(|mistake| mistake.of(path))
+}
+
+fn parse(bytes: Vec<u8>, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> {
+    let bytes = if bytes.starts_with(&[0x1f, 0x8b]) { inflate(&bytes)? } else { bytes };
+    let header = header(&bytes)?;
+    let size = size(&header)?;
+    let (origin, directions) = frame(&header);
+    let determinant = directions.determinant();
+    if !(determinant != 0.0 && determinant.is_finite()) {
+        return Err(Mistake::FlatVoxels { determinant });
+    }
+    let metres = match unit {
+        Some(unit) => unit.in_metres(),
+        None => stated_unit(&header)?.in_metres(),
+    };
+    let order = match header.endianness {
+        Endianness::Little => ByteOrder::Little,
+        Endianness::Big => ByteOrder::Big,
+    };
+    let (scalar, count) = (scalar(&header)?, voxels::voxel_count(&size)?);
+    let start = (header.vox_offset.max(0.0) as usize).max(HEADER);
+    let data = bytes.get(start..).unwrap_or(&[]);
+    let labels = voxels::labels(data, count, scalar, order, scaling(&header))?;
+    super::label_map(size, origin * metres, directions * metres, labels)
+}
+
+/// Everything that can be inflated; a stream cut short is told by the header.
+fn inflate(bytes: &[u8]) -> Result<Vec<u8>, Mistake> {
+    let mut out = Vec::new();
+    match MultiGzDecoder::new(bytes).read_to_end(&mut out) {
+        Ok(_) => Ok(out),
+        Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => Ok(out),
+        Err(error) => Err(Mistake::Undecodable { encoding: "gzip", reason: error.to_string() }),
+    }
+}
+
+fn header(bytes: &[u8]) -> Result<NiftiHeader, Mistake> {
+    let format = "a NIfTI-1 file in one piece (.nii or .nii.gz)";
+    if bytes.len() < HEADER {
+        return match bytes.starts_with(&348i32.to_le_bytes()) {
+            true => Err(Mistake::TruncatedHeader { found: bytes.len() }),
+            false => Err(Mistake::WrongFormat { format, start: start_of(bytes) }),
+        };
+    }
+    let magic = &bytes[HEADER - 4..HEADER];
+    if magic == b"ni1\0" {
+        let expected = "`n+1`; convert the .hdr/.img pair to one .nii";
+        return Err(Mistake::BadField { field: "magic", value: "ni1".to_string(), expected });
+    }
+    let header = NiftiHeader::from_reader(bytes)
+        .map_err(|_| Mistake::WrongFormat { format, start: start_of(magic) })?;
+    if header.sizeof_hdr != HEADER as i32 {
+        return Err(Mistake::WrongFormat { format, start: start_of(bytes) });
+    }
+    Ok(header)
+}
+
+/// Voxels along the three axes; further axes must have one entry.
+fn size(header: &NiftiHeader) -> Result<[usize; 3], Mistake> {
+    let axes = usize::from(header.dim[0]);
+    let sizes: Vec<usize> = header.dim[1..].iter().take(axes).map(|&n| usize::from(n)).collect();
+    if axes < 3 || sizes[3..].iter().any(|&n| n > 1) {
+        let expected = "three axes, one label per voxel";
+        return Err(Mistake::BadField { field: "dim", value: format!("{sizes:?}"), expected });
+    }
+    Ok([sizes[0], sizes[1], sizes[2]])
+}
+
+fn scalar(header: &NiftiHeader) -> Result<Scalar, Mistake> {
+    Ok(match header.data_type() {
+        Ok(NiftiType::Uint8) => Scalar::U8,
+        Ok(NiftiType::Int8) => Scalar::I8,
+        Ok(NiftiType::Uint16) => Scalar::U16,
+        Ok(NiftiType::Int16) => Scalar::I16,
+        Ok(NiftiType::Uint32) => Scalar::U32,
+        Ok(NiftiType::Int32) => Scalar::I32,
+        Ok(NiftiType::Uint64) => Scalar::U64,
+        Ok(NiftiType::Int64) => Scalar::I64,
+        Ok(NiftiType::Float32) => Scalar::F32,
+        Ok(NiftiType::Float64) => Scalar::F64,
+        _ => {
+            let value = header.datatype.to_string();
+            let expected = "a type of whole numbers such as 2 (uint8)";
+            return Err(Mistake::BadField { field: "datatype", value, expected });
+        }
+    })
+}
+
+/// Slope and intercept of the stored values; a slope of 0 means none.
+fn scaling(header: &NiftiHeader) -> (f64, f64) {
+    match header.scl_slope {
+        slope if slope == 0.0 || !slope.is_finite() => (1.0, 0.0),
+        slope => (f64::from(slope), f64::from(header.scl_inter)),
+    }
+}
+
+fn stated_unit(header: &NiftiHeader) -> Result<LengthUnit, Mistake> {
+    match header.xyzt_units & 7 {
+        0 | 2 => Ok(LengthUnit::Millimetre),
+        1 => Ok(LengthUnit::Metre),
+        3 => Ok(LengthUnit::Micrometre),
+        other => {
+            let expected = "0 (unknown), 1 (m), 2 (mm) or 3 (µm)";
+            Err(Mistake::BadField { field: "xyzt_units", value: other.to_string(), expected })
+        }
+    }
+}
+
+/// Centre of the first voxel and steps along the indices: sform, else qform,
+/// else pixdim alone.
+fn frame(header: &NiftiHeader) -> (Vector3, Matrix3) {
+    let wide = |row: &[f32; 4]| row.map(f64::from);
+    if header.sform_code > 0 {
+        let rows = [wide(&header.srow_x), wide(&header.srow_y), wide(&header.srow_z)];
+        let origin = Vector3::from_fn(|row, _| rows[row][3]);
+        return (origin, Matrix3::from_fn(|row, column| rows[row][column]));
+    }
+    let step = header.pixdim.map(f64::from);
+    if header.qform_code > 0 {
+        let hand = if step[0] < 0.0 { -1.0 } else { 1.0 };
+        let scale = Matrix3::from_diagonal(&Vector3::new(step[1], step[2], hand * step[3]));
+        let origin = [header.quatern_x, header.quatern_y, header.quatern_z].map(f64::from);
+        return (Vector3::from(origin), quaternion_rotation(header) * scale);
+    }
+    (Vector3::zeros(), Matrix3::from_diagonal(&Vector3::new(step[1], step[2], step[3])))
+}
+
+/// Rotation of the unit quaternion a + bi + cj + dk with a ≥ 0.
+fn quaternion_rotation(header: &NiftiHeader) -> Matrix3 {
+    let [b, c, d] = [header.quatern_b, header.quatern_c, header.quatern_d].map(f64::from);
+    let a = (1.0 - b * b - c * c - d * d).max(0.0).sqrt();
+    let quaternion = nalgebra::Quaternion::new(a, b, c, d);
+    *nalgebra::UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix().matrix()
+}

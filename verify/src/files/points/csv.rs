@@ -1,0 +1,49 @@
+//! Points from CSV: columns x, y and perhaps z, with or without a header.
+
+use crate::files::Mistake;
+use mtled::tensor::Vector3;
+
+const EXPECTED: &str = "two or three numbers x, y, z";
+
+pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(bytes);
+    let mut columns = None;
+    let mut points = Vec::new();
+    for row in reader.records() {
+        let row = row
+            .map_err(|error| Mistake::Undecodable { encoding: "CSV", reason: error.to_string() })?;
+        let line = row.position().map_or(0, |position| position.line() as usize);
+        let bad = || {
+            let text = row.iter().collect::<Vec<_>>().join(",");
+            Mistake::BadLine { line, text: text.chars().take(60).collect(), expected: EXPECTED }
+        };
+        let columns: &mut Vec<usize> = match &mut columns {
+            Some(columns) => columns,
+            empty => {
+                let header = row.iter().any(|cell| cell.parse::<f64>().is_err());
+                let found = if header { named(&row) } else { Some((0..row.len()).collect()) };
+                let found = found.filter(|found| (2..=3).contains(&found.len()));
+                let columns = empty.insert(found.ok_or_else(bad)?);
+                if header {
+                    continue;
+                }
+                columns
+            }
+        };
+        let cell = |column: &usize| row.get(*column).and_then(|cell| cell.parse::<f64>().ok());
+        let values: Vec<f64> = columns.iter().map(cell).collect::<Option<_>>().ok_or_else(bad)?;
+        points.push(Vector3::new(values[0], values[1], values.get(2).copied().unwrap_or(0.0)));
+    }
+    Ok(points)
+}
+
+/// Where a header has x, y and perhaps z.
+fn named(row: &csv::StringRecord) -> Option<Vec<usize>> {
+    let find = |name: &str| row.iter().position(|cell| cell.eq_ignore_ascii_case(name));
+    Some([Some(find("x")?), Some(find("y")?), find("z")].into_iter().flatten().collect())
+}

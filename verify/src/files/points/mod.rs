@@ -1,0 +1,44 @@
+//! Node positions \[m\] from CSV, NPY, VTU and legacy VTK files.
+
+mod csv;
+mod legacy_vtk;
+mod npy;
+mod vtu;
+
+use super::{FileError, Mistake, bytes_of};
+use mtled::tensor::Vector3;
+use std::path::Path;
+
+/// Reads node positions, the kind of file told by its name. Files of two
+/// columns get z = 0.
+pub fn read(path: &Path) -> Result<Vec<Vector3>, FileError> {
+    let kind = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let parse = match kind.as_str() {
+        "csv" | "txt" => csv::parse,
+        "npy" => npy::parse,
+        "vtu" => vtu::parse,
+        "vtk" => legacy_vtk::parse,
+        _ => return Err(Mistake::UnknownExtension { known: ".csv, .npy, .vtu, .vtk" }.of(path)),
+    };
+    let bytes = bytes_of(path)?;
+    parse(&bytes).and_then(checked).map_err(|mistake| mistake.of(path))
+}
+
+fn checked(points: Vec<Vector3>) -> Result<Vec<Vector3>, Mistake> {
+    if points.is_empty() {
+        return Err(Mistake::NoPoints);
+    }
+    match points.iter().position(|point| !point.iter().all(|c| c.is_finite())) {
+        Some(point) => Err(Mistake::NotFinite { point }),
+        None => Ok(points),
+    }
+}
+
+/// Points from coordinates in a row, `columns` (2 or 3) for each.
+fn from_rows(values: &[f64], columns: usize) -> Vec<Vector3> {
+    let rows = values.chunks_exact(columns);
+    rows.map(|row| Vector3::new(row[0], row[1], row.get(2).copied().unwrap_or(0.0))).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,187 @@
+//! The points of a VTU file: ASCII, or binary inline or appended, plain or
+//! compressed by zlib.
+
+use crate::files::Mistake;
+use crate::files::error::start_of;
+use crate::files::voxels::{ByteOrder, Scalar};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::read::ZlibDecoder;
+use mtled::tensor::Vector3;
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use std::collections::HashMap;
+use std::io::Read;
+
+type Attributes = HashMap<String, String>;
+
+/// How binary arrays of a file are stored.
+struct Storage {
+    order: ByteOrder,
+    /// Type of the lengths in front of the data.
+    lengths: Scalar,
+    compressed: bool,
+}
+
+pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
+    let appended = find(bytes, b"<AppendedData");
+    let (file, array, text) = points_array(&bytes[..appended.unwrap_or(bytes.len())])?;
+    let storage = storage(&file)?;
+    let scalar = match array.get("type").map(String::as_str) {
+        Some("Float32") => Scalar::F32,
+        Some("Float64") => Scalar::F64,
+        other => return Err(bad("type", other, "Float32 or Float64")),
+    };
+    let values = match array.get("format").map(String::as_str) {
+        Some("ascii") => {
+            let values: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
+            values.map_err(|error| damaged("ASCII", error.to_string()))?
+        }
+        Some("binary") => storage.numbers(&base64_bytes(text.as_bytes())?, scalar)?,
+        Some("appended") => {
+            let offset = array.get("offset").and_then(|offset| offset.parse().ok());
+            let offset = offset.ok_or(Mistake::MissingField { field: "offset" })?;
+            let at = appended.ok_or(Mistake::MissingField { field: "AppendedData" })?;
+            storage.numbers(&appended_bytes(&bytes[at..], offset)?, scalar)?
+        }
+        other => return Err(bad("format", other, "ascii, binary or appended")),
+    };
+    Ok(super::from_rows(&values, 3))
+}
+
+fn bad(field: &'static str, value: Option<&str>, expected: &'static str) -> Mistake {
+    Mistake::BadField { field, value: value.unwrap_or("").to_string(), expected }
+}
+
+fn damaged(encoding: &'static str, reason: String) -> Mistake {
+    Mistake::Undecodable { encoding, reason }
+}
+
+fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
+    bytes.windows(what.len()).position(|window| window == what)
+}
+
+/// Attributes of VTKFile and of the DataArray in Points, and its text.
+fn points_array(xml: &[u8]) -> Result<(Attributes, Attributes, String), Mistake> {
+    let mut reader = Reader::from_reader(xml);
+    let (mut file, mut array) = (None, None);
+    let (mut in_points, mut text, mut buffer) = (false, String::new(), Vec::new());
+    loop {
+        let event = reader.read_event_into(&mut buffer);
+        match event.map_err(|error| damaged("XML", error.to_string()))? {
+            Event::Start(tag) if tag.name().as_ref() == b"VTKFile" => file = Some(attributes(&tag)),
+            Event::Start(tag) if tag.name().as_ref() == b"Points" => in_points = true,
+            Event::Start(tag) | Event::Empty(tag)
+                if in_points && tag.name().as_ref() == b"DataArray" && array.is_none() =>
+            {
+                array = Some(attributes(&tag));
+            }
+            Event::Text(part) if in_points => text += &String::from_utf8_lossy(&part),
+            Event::End(tag) if tag.name().as_ref() == b"Points" => break,
+            Event::Eof => break,
+            _ => {}
+        }
+        buffer.clear();
+    }
+    let format = "a VTU file (XML with <VTKFile>)";
+    let file = file.ok_or(Mistake::WrongFormat { format, start: start_of(xml) })?;
+    let array = array.ok_or(Mistake::MissingField { field: "Points/DataArray" })?;
+    Ok((file, array, text))
+}
+
+fn attributes(tag: &BytesStart) -> Attributes {
+    let pairs = tag.attributes().flatten();
+    pairs
+        .map(|pair| {
+            let name = String::from_utf8_lossy(pair.key.as_ref()).to_string();
+            (name, String::from_utf8_lossy(&pair.value).to_string())
+        })
+        .collect()
+}
+
+fn storage(file: &Attributes) -> Result<Storage, Mistake> {
+    let get = |name: &str| file.get(name).map(String::as_str);
+    Ok(Storage {
+        order: match get("byte_order") {
+            Some("BigEndian") => ByteOrder::Big,
+            Some("LittleEndian") | None => ByteOrder::Little,
+            other => return Err(bad("byte_order", other, "LittleEndian or BigEndian")),
+        },
+        lengths: match get("header_type") {
+            Some("UInt64") => Scalar::U64,
+            Some("UInt32") | None => Scalar::U32,
+            other => return Err(bad("header_type", other, "UInt32 or UInt64")),
+        },
+        compressed: match get("compressor") {
+            None => false,
+            Some("vtkZLibDataCompressor") => true,
+            other => return Err(bad("compressor", other, "vtkZLibDataCompressor or none")),
+        },
+    })
+}
+
+/// Bytes from an offset of the appended data, raw or base64.
+fn appended_bytes(tail: &[u8], offset: usize) -> Result<Vec<u8>, Mistake> {
+    let open = find(tail, b">").ok_or(Mistake::MissingField { field: "AppendedData" })?;
+    let raw = find(&tail[..open], b"\"raw\"").is_some();
+    let start = open + find(&tail[open..], b"_").ok_or(Mistake::NoPoints)? + 1;
+    let data = &tail[start..];
+    let truncated = Mistake::Truncated { expected: offset, found: data.len() };
+    let data = data.get(offset..).ok_or(truncated)?;
+    if raw {
+        return Ok(data.to_vec());
+    }
+    base64_bytes(&data[..find(data, b"<").unwrap_or(data.len())])
+}
+
+/// Base64 in which padding may stand between pieces.
+fn base64_bytes(text: &[u8]) -> Result<Vec<u8>, Mistake> {
+    let text: Vec<u8> = text.iter().copied().filter(|b| !b.is_ascii_whitespace()).collect();
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
+    for group in text.chunks(4) {
+        let part = STANDARD.decode(group).map_err(|error| damaged("base64", error.to_string()))?;
+        bytes.extend(part);
+    }
+    Ok(bytes)
+}
+
+impl Storage {
+    /// Numbers of an array that starts with its lengths.
+    fn numbers(&self, bytes: &[u8], scalar: Scalar) -> Result<Vec<f64>, Mistake> {
+        let data = if self.compressed { self.inflate(bytes)? } else { self.plain(bytes)?.to_vec() };
+        let words = data.chunks_exact(scalar.size());
+        Ok(words.map(|word| scalar.read(word, self.order)).collect())
+    }
+
+    /// The n-th length in front of the data.
+    fn length(&self, bytes: &[u8], n: usize) -> Result<usize, Mistake> {
+        let size = self.lengths.size();
+        let word = bytes.get(n * size..(n + 1) * size);
+        let word = word.ok_or(Mistake::TruncatedHeader { found: bytes.len() })?;
+        Ok(self.lengths.read(word, self.order) as usize)
+    }
+
+    fn plain<'a>(&self, bytes: &'a [u8]) -> Result<&'a [u8], Mistake> {
+        let (expected, start) = (self.length(bytes, 0)?, self.lengths.size());
+        let found = bytes.len() - start;
+        let end = start.saturating_add(expected);
+        bytes.get(start..end).ok_or(Mistake::Truncated { expected, found })
+    }
+
+    /// Blocks: their number, size, size of the last, compressed sizes, data.
+    fn inflate(&self, bytes: &[u8]) -> Result<Vec<u8>, Mistake> {
+        let blocks = self.length(bytes, 0)?;
+        let mut start = blocks.saturating_add(3).saturating_mul(self.lengths.size());
+        let mut out = Vec::new();
+        for block in 0..blocks {
+            let expected = self.length(bytes, 3 + block)?;
+            let found = bytes.len().saturating_sub(start);
+            let data = bytes.get(start..start.saturating_add(expected));
+            let data = data.ok_or(Mistake::Truncated { expected, found })?;
+            let inflated = ZlibDecoder::new(data).read_to_end(&mut out);
+            inflated.map_err(|error| damaged("zlib", error.to_string()))?;
+            start += expected;
+        }
+        Ok(out)
+    }
+}

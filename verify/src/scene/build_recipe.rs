@@ -1,0 +1,261 @@
+//! The discretisation table of a case file → the solver's recipe.
+
+use super::build::Builder;
+use super::format_recipe::{
+    BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GridFormat, InsideFormat,
+    MassFormat, WeightFunctionFormat,
+};
+use crate::files;
+use mtled::geometry::Shape;
+use mtled::problem::{
+    BackgroundGrid, Basis, Cloud, Dimension, Enforcement, InsideRule, MassRule, Recipe, Refinement,
+    WeightFunction,
+};
+
+/// What a case file need not say.
+pub mod defaults {
+    use mtled::problem::{Basis, Enforcement, InsideRule, MassRule, WeightFunction};
+
+    /// Influence radius over nodal spacing \[–\].
+    pub const DILATION: f64 = 1.8;
+    pub const BASIS: Basis = Basis::Linear;
+    pub const WEIGHT_FUNCTION: WeightFunction = WeightFunction::QuarticSpline;
+    pub const MASS: MassRule = MassRule::RowSum;
+    pub const ENFORCEMENT: Enforcement = Enforcement::Collocation;
+    pub const INSIDE: InsideRule = InsideRule::VolumeFraction;
+    /// Two cells per node in three dimensions: 1.26³ = 2.
+    pub const CELLS_PER_SPACING: f64 = 1.26;
+    pub const GAUSS_POINTS: usize = 1;
+    /// Growth of the spacing per length \[–\].
+    pub const GROWTH: f64 = 0.25;
+    pub const SEED: u64 = 1;
+    /// Of selectors, over the nodal spacing \[–\].
+    pub const TOLERANCE: f64 = 1e-3;
+    /// Of selectors where the nodes come from a file \[m\].
+    pub const TOLERANCE_OF_GIVEN_NODES: f64 = 1e-6;
+}
+
+/// Tolerance \[m\] of selectors that state none.
+pub fn tolerance(format: &DiscretisationFormat) -> f64 {
+    match format.spacing {
+        Some(spacing) if spacing > 0.0 => defaults::TOLERANCE * spacing,
+        _ => defaults::TOLERANCE_OF_GIVEN_NODES,
+    }
+}
+
+impl Builder<'_> {
+    /// The recipe, or `None` and a mistake.
+    pub fn recipe(
+        &mut self,
+        format: &DiscretisationFormat,
+        body: Option<&Shape>,
+    ) -> Option<Recipe> {
+        let dilation = format.dilation.unwrap_or(defaults::DILATION);
+        if dilation <= 1.0 {
+            let message = format!(
+                "is {dilation}; it must be larger than 1, or nodes do not reach their neighbours"
+            );
+            self.mistake("discretisation.dilation", message);
+        }
+        self.keys_of_cloud(format);
+        if let (Some(body), Some(spacing)) = (body, format.spacing) {
+            self.spacing_fits(body, spacing);
+        }
+        let cloud = self.cloud(format);
+        let grid = self.grid(&format.grid, format.spacing);
+        Some(Recipe {
+            cloud: cloud?,
+            dilation,
+            basis: format.basis.map_or(defaults::BASIS, Basis::from),
+            weight_function: format
+                .weight_function
+                .map_or(defaults::WEIGHT_FUNCTION, WeightFunction::from),
+            grid: grid?,
+            mass: format.mass.map_or(defaults::MASS, MassRule::from),
+            enforcement: format.enforcement.map_or(defaults::ENFORCEMENT, Enforcement::from),
+        })
+    }
+
+    /// Refuses a spacing that the body cannot hold.
+    fn spacing_fits(&mut self, _body: &Shape, _spacing: f64) {}
+
+    /// Refuses keys that belong to another kind of cloud.
+    fn keys_of_cloud(&mut self, format: &DiscretisationFormat) {
+        use CloudFormat::{File, Graded, Jittered};
+        let cloud = format.cloud;
+        let keys = [
+            ("jitter", format.jitter.is_some(), cloud == Jittered, "jittered"),
+            ("seed", format.seed.is_some(), cloud == Jittered, "jittered"),
+            ("file", format.file.is_some(), cloud == File, "file"),
+            ("refine", format.refine.is_some(), cloud == Graded, "graded"),
+            ("growth", format.growth.is_some(), cloud == Graded, "graded"),
+        ];
+        for (name, given, belongs, owner) in keys {
+            if given && !belongs {
+                let message = format!("belongs to cloud = \"{owner}\"");
+                self.mistake(&format!("discretisation.{name}"), message);
+            }
+        }
+        let key = "discretisation.spacing";
+        match format.spacing {
+            Some(_) if cloud == File => {
+                self.mistake(key, "does not belong to cloud = \"file\", where it is estimated");
+            }
+            Some(spacing) => self.positive(key, spacing),
+            None if cloud == File => {}
+            None => self.mistake(key, "is missing; this cloud needs the distance of its nodes"),
+        }
+    }
+
+    fn cloud(&mut self, format: &DiscretisationFormat) -> Option<Cloud> {
+        match format.cloud {
+            CloudFormat::Regular => Some(Cloud::Regular { spacing: format.spacing? }),
+            CloudFormat::Jittered => {
+                let key = "discretisation.jitter";
+                let Some(jitter) = format.jitter else {
+                    self.mistake(key, "is missing; cloud = \"jittered\" needs it");
+                    return None;
+                };
+                if !(0.0..0.5).contains(&jitter) {
+                    self.mistake(key, format!("is {jitter}; it must lie in 0 ≤ jitter < 0.5"));
+                }
+                let seed = format.seed.unwrap_or(defaults::SEED);
+                Some(Cloud::Jittered { spacing: format.spacing?, jitter, seed })
+            }
+            CloudFormat::Graded => self.graded(format),
+            CloudFormat::File => self.given(format),
+        }
+    }
+
+    fn graded(&mut self, format: &DiscretisationFormat) -> Option<Cloud> {
+        let growth = format.growth.unwrap_or(defaults::GROWTH);
+        self.positive("discretisation.growth", growth);
+        let mut refinements = Vec::new();
+        for (n, row) in format.refine.iter().flatten().enumerate() {
+            let key = format!("discretisation.refine[{n}]");
+            self.positive(&format!("{key}.spacing"), row.spacing);
+            let part = self.selector(&format!("{key}.where"), &row.part);
+            refinements.extend(part.map(|part| Refinement { part, size: row.spacing }));
+        }
+        Some(Cloud::Graded { spacing: format.spacing?, refinements, growth })
+    }
+
+    fn given(&mut self, format: &DiscretisationFormat) -> Option<Cloud> {
+        let key = "discretisation.file";
+        let Some(file) = &format.file else {
+            self.mistake(key, "is missing; cloud = \"file\" needs it");
+            return None;
+        };
+        let path = self.resolve(file);
+        match files::points::read(&path) {
+            Ok(mut nodes) => {
+                self.hash_file(key, &path);
+                if let Dimension::PlaneStrain { z, .. } = self.dimension {
+                    nodes.iter_mut().for_each(|node| node.z = z);
+                }
+                Some(Cloud::Given { nodes })
+            }
+            Err(error) => {
+                self.mistake(key, error);
+                None
+            }
+        }
+    }
+
+    fn grid(&mut self, format: &GridFormat, spacing: Option<f64>) -> Option<BackgroundGrid> {
+        let key = "discretisation.grid";
+        let gauss_points = format.gauss_points.unwrap_or(defaults::GAUSS_POINTS);
+        if !(1..=5).contains(&gauss_points) {
+            let message = format!("is {gauss_points}; it must be 1 to 5");
+            self.mistake(&format!("{key}.gauss_points"), message);
+        }
+        if let Some(edge) = format.boundary_cell {
+            self.positive(&format!("{key}.boundary_cell"), edge);
+        }
+        let mut refinements = Vec::new();
+        for (n, row) in format.refine.iter().enumerate() {
+            let key = format!("{key}.refine[{n}]");
+            self.positive(&format!("{key}.cell"), row.cell);
+            let part = self.selector(&format!("{key}.where"), &row.part);
+            refinements.extend(part.map(|part| Refinement { part, size: row.cell }));
+        }
+        Some(BackgroundGrid {
+            cell: self.cell(key, format, spacing)?,
+            boundary_cell: format.boundary_cell,
+            refinements,
+            gauss_points,
+            inside: format.inside.map_or(defaults::INSIDE, InsideRule::from),
+        })
+    }
+
+    /// Edge of the largest cells \[m\].
+    fn cell(&mut self, key: &str, format: &GridFormat, spacing: Option<f64>) -> Option<f64> {
+        match (format.cell, format.cells_per_spacing, spacing) {
+            (Some(_), Some(_), _) => {
+                let message = "cannot be given together with cell; remove one";
+                self.mistake(&format!("{key}.cells_per_spacing"), message);
+                None
+            }
+            (Some(cell), None, _) => {
+                self.positive(&format!("{key}.cell"), cell);
+                Some(cell)
+            }
+            (None, ratio, Some(spacing)) => {
+                let ratio = ratio.unwrap_or(defaults::CELLS_PER_SPACING);
+                self.positive(&format!("{key}.cells_per_spacing"), ratio);
+                Some(spacing / ratio)
+            }
+            (None, _, None) => {
+                let message = "is missing; without a nodal spacing the cells need a length";
+                self.mistake(&format!("{key}.cell"), message);
+                None
+            }
+        }
+    }
+}
+
+impl From<BasisFormat> for Basis {
+    fn from(format: BasisFormat) -> Basis {
+        match format {
+            BasisFormat::Linear => Basis::Linear,
+            BasisFormat::Quadratic => Basis::Quadratic,
+        }
+    }
+}
+
+impl From<WeightFunctionFormat> for WeightFunction {
+    fn from(format: WeightFunctionFormat) -> WeightFunction {
+        match format {
+            WeightFunctionFormat::CubicSpline => WeightFunction::CubicSpline,
+            WeightFunctionFormat::QuarticSpline => WeightFunction::QuarticSpline,
+            WeightFunctionFormat::Exponential => WeightFunction::Exponential,
+        }
+    }
+}
+
+impl From<MassFormat> for MassRule {
+    fn from(format: MassFormat) -> MassRule {
+        match format {
+            MassFormat::EvenSplit => MassRule::EvenSplit,
+            MassFormat::RowSum => MassRule::RowSum,
+        }
+    }
+}
+
+impl From<EnforcementFormat> for Enforcement {
+    fn from(format: EnforcementFormat) -> Enforcement {
+        match format {
+            EnforcementFormat::Direct => Enforcement::Direct,
+            EnforcementFormat::Collocation => Enforcement::Collocation,
+        }
+    }
+}
+
+impl From<InsideFormat> for InsideRule {
+    fn from(format: InsideFormat) -> InsideRule {
+        match format {
+            InsideFormat::Centre => InsideRule::Centre,
+            InsideFormat::VolumeFraction => InsideRule::VolumeFraction,
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! A mistake in a case file and the place where it stands.
+
+use std::fmt;
+use std::ops::Range;
+
+/// A place in a file; lines and columns count from 1, columns in characters.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Location {
+    pub file: String,
+    pub line: usize,
+    pub column: usize,
+}
+
+impl Location {
+    /// The place of a byte of `text`.
+    pub fn of(file: &str, text: &str, byte: usize) -> Location {
+        let before = &text.as_bytes()[..byte.min(text.len())];
+        let start = before.iter().rposition(|&b| b == b'\n').map_or(0, |at| at + 1);
+        Location {
+            file: file.to_string(),
+            line: before.iter().filter(|&&b| b == b'\n').count() + 1,
+            column: String::from_utf8_lossy(&before[start..]).chars().count() + 1,
+        }
+    }
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}", self.file, self.line, self.column)
+    }
+}
+
+/// A mistake: where, which key, and what was expected.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diagnostic {
+    pub location: Location,
+    /// Key path, such as `material.brain.poisson_ratio`; empty for syntax.
+    pub key: String,
+    pub message: String,
+    /// The line of the file, empty if there is none.
+    pub source_line: String,
+    /// Number of characters that are wrong, at least one.
+    pub width: usize,
+}
+
+impl Diagnostic {
+    /// A mistake in some bytes of `text`.
+    pub fn at(
+        file: &str,
+        text: &str,
+        span: Range<usize>,
+        key: String,
+        message: String,
+    ) -> Diagnostic {
+        let location = Location::of(file, text, span.start);
+        let source_line = text.lines().nth(location.line - 1).unwrap_or("").to_string();
+        let marked = text.get(span).unwrap_or("").lines().next().unwrap_or("").chars().count();
+        Diagnostic { location, key, message, source_line, width: marked.max(1) }
+    }
+
+    /// A mistake that concerns a whole file, such as one that does not exist.
+    pub fn of_file(file: &str, message: String) -> Diagnostic {
+        Diagnostic::at(file, "", 0..0, String::new(), message)
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
+/// `file:line:column: key: message`, then the line with a caret under it.
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.location)?;
+        if !self.key.is_empty() {
+            write!(f, "{}: ", self.key)?;
+        }
+        write!(f, "{}", self.message)?;
+        if self.source_line.is_empty() {
+            return Ok(());
+        }
+        let number = self.location.line.to_string();
+        let gutter = " ".repeat(number.len());
+        let indent: String = (self.source_line.chars().take(self.location.column - 1))
+            .map(|c| if c == '\t' { '\t' } else { ' ' })
+            .collect();
+        write!(f, "\n{number} | {}\n{gutter} | {indent}", self.source_line)?;
+        write!(f, "{}", "^".repeat(self.width))
+    }
+}

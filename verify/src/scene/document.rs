@@ -1,0 +1,138 @@
+//! The text of a case file with the place of every key in it.
+
+use super::diagnostic::{Diagnostic, Location};
+use std::ops::Range;
+use toml_edit::{Item, TableLike};
+
+/// A parsed case file that remembers where everything stood.
+#[derive(Debug, Clone)]
+pub struct Document {
+    file: String,
+    text: String,
+    tree: toml_edit::Document<String>,
+}
+
+impl Document {
+    /// Parses `text`; a mistake of syntax is located.
+    pub fn parse(text: &str, file: &str) -> Result<Document, Diagnostic> {
+        match toml_edit::Document::parse(text.to_string()) {
+            Ok(tree) => Ok(Document { file: file.to_string(), text: text.to_string(), tree }),
+            Err(error) => {
+                let span = error.span().unwrap_or(0..0);
+                let message = error.message().replace('\n', ", ");
+                Err(Diagnostic::at(file, text, span, String::new(), message))
+            }
+        }
+    }
+
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// A mistake at a key path; where the path ends early, at its last part
+    /// that exists.
+    pub fn diagnostic(&self, key: &str, message: String) -> Diagnostic {
+        let span = self.span(key).1;
+        Diagnostic::at(&self.file, &self.text, span, key.to_string(), message)
+    }
+
+    /// A mistake at bytes of the text.
+    pub fn diagnostic_at(&self, span: Range<usize>, key: String, message: String) -> Diagnostic {
+        Diagnostic::at(&self.file, &self.text, span, key, message)
+    }
+
+    /// Where a key path such as `prescribe[1].where` stands, `None` if there is
+    /// no such key. An array of tables can be entered by name too:
+    /// `prescribe.top.where`.
+    pub fn locate(&self, key: &str) -> Option<Location> {
+        let (found, span) = self.span(key);
+        found.then(|| Location::of(&self.file, &self.text, span.start))
+    }
+
+    /// Whether the whole path exists, and the bytes of its last part that does.
+    fn span(&self, key: &str) -> (bool, Range<usize>) {
+        let mut item = self.tree.as_item();
+        let mut span = 0..0;
+        for segment in segments(key) {
+            let Some((next, place)) = step_into(item, &segment) else {
+                return (false, span);
+            };
+            item = next;
+            span = place.unwrap_or(span);
+        }
+        (true, span)
+    }
+
+    /// Numbers such as `nan` and `inf`, which TOML allows and mechanics does not.
+    pub fn numbers_that_are_not_finite(&self) -> Vec<Diagnostic> {
+        let mut found = Vec::new();
+        visit(self.tree.as_item(), "", &mut |path, _, item| {
+            if let Some(value) = item.as_float().filter(|value| !value.is_finite()) {
+                let message = format!("is {value}; it must be a finite number");
+                found.push(self.diagnostic(path, message));
+            }
+        });
+        found.dedup();
+        found
+    }
+
+    /// The path of the innermost key or value that holds a byte of the text.
+    pub fn path_at(&self, offset: usize) -> String {
+        let mut best = (usize::MAX, String::new());
+        visit(self.tree.as_item(), "", &mut |path, span, _| {
+            let inside = span.start <= offset && offset < span.end;
+            if inside && span.len() <= best.0 {
+                best = (span.len(), path.to_string());
+            }
+        });
+        best.1
+    }
+}
+
+/// `a.b[2].c` as a, b, 2, c.
+fn segments(key: &str) -> Vec<String> {
+    key.split(['.', '[', ']']).filter(|part| !part.is_empty()).map(str::to_string).collect()
+}
+
+/// The child called `segment` and where it stands.
+fn step_into<'a>(item: &'a Item, segment: &str) -> Option<(&'a Item, Option<Range<usize>>)> {
+    if let Some(table) = item.as_table_like() {
+        let (key, child) = table.get_key_value(segment)?;
+        return Some((child, child.span().or(key.span())));
+    }
+    let index = match segment.parse::<usize>() {
+        Ok(index) => index,
+        Err(_) => item.as_array_of_tables()?.iter().position(|table| {
+            table.get("name").and_then(Item::as_str).is_some_and(|name| name == segment)
+        })?,
+    };
+    let child = item.get(index)?;
+    Some((child, child.span()))
+}
+
+/// Calls `see` with the path and bytes of everything below `item`.
+fn visit(item: &Item, path: &str, see: &mut dyn FnMut(&str, Range<usize>, &Item)) {
+    if let Some(table) = item.as_table_like() {
+        visit_table(table, path, see);
+        return;
+    }
+    for index in 0.. {
+        let Some(child) = item.get(index) else { break };
+        let path = format!("{path}[{index}]");
+        if let Some(span) = child.span() {
+            see(&path, span, child);
+        }
+        visit(child, &path, see);
+    }
+}
+
+fn visit_table(table: &dyn TableLike, path: &str, see: &mut dyn FnMut(&str, Range<usize>, &Item)) {
+    for (name, child) in table.iter() {
+        let path = if path.is_empty() { name.to_string() } else { format!("{path}.{name}") };
+        let key = table.key(name).and_then(|key| key.span());
+        for span in key.into_iter().chain(child.span()) {
+            see(&path, span, child);
+        }
+        visit(child, &path, see);
+    }
+}

@@ -1,0 +1,134 @@
+//! The discretisation recipe as it is written.
+
+use super::format_geometry::SelectorFormat;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// How the body is turned into nodes, supports and quadrature points.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DiscretisationFormat {
+    pub cloud: CloudFormat,
+    /// Distance of neighbouring nodes [m]; not for cloud "file".
+    pub spacing: Option<f64>,
+    /// Largest random move over the spacing [–], in [0, 0.5); for "jittered".
+    pub jitter: Option<f64>,
+    /// Of the random numbers; for "jittered", 1 if left out.
+    pub seed: Option<u64>,
+    /// Node positions [m] (CSV, NPY, VTU, VTK), path relative to the case
+    /// file; for "file".
+    pub file: Option<PathBuf>,
+    /// Smaller spacings inside parts of the body; for "graded".
+    pub refine: Option<Vec<RefineSpacingFormat>>,
+    /// Largest growth of the spacing per length [–]; for "graded".
+    pub growth: Option<f64>,
+    /// Influence radius over nodal spacing [–], larger than 1.
+    pub dilation: Option<f64>,
+    pub basis: Option<BasisFormat>,
+    pub weight_function: Option<WeightFunctionFormat>,
+    pub mass: Option<MassFormat>,
+    pub enforcement: Option<EnforcementFormat>,
+    #[serde(default)]
+    pub grid: GridFormat,
+}
+
+/// Where the nodes come from.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CloudFormat {
+    /// A lattice inside the body plus boundary nodes.
+    Regular,
+    /// A lattice moved at random.
+    Jittered,
+    /// A spacing that varies.
+    Graded,
+    /// Positions from a file.
+    File,
+}
+
+/// A spacing wanted in a part of the body.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RefineSpacingFormat {
+    #[serde(rename = "where")]
+    pub part: SelectorFormat,
+    /// [m]
+    pub spacing: f64,
+}
+
+/// Polynomial basis of the moving least squares.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BasisFormat {
+    Linear,
+    Quadratic,
+}
+
+/// Weight function of the moving least squares.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WeightFunctionFormat {
+    CubicSpline,
+    QuarticSpline,
+    Exponential,
+}
+
+/// How the mass of a quadrature point is given to nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MassFormat {
+    /// Evenly over its support.
+    EvenSplit,
+    /// In proportion to the shape functions.
+    RowSum,
+}
+
+/// How prescribed displacements are enforced.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EnforcementFormat {
+    /// On the nodal parameters.
+    Direct,
+    /// On the displacement field at the nodes.
+    Collocation,
+}
+
+/// The background grid that quadrature points come from.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GridFormat {
+    /// Edge of the largest cells [m]; instead of cells_per_spacing.
+    pub cell: Option<f64>,
+    /// Cells along one nodal spacing [–]; instead of cell. 1.26 if both are
+    /// left out, two points per node in three dimensions.
+    pub cells_per_spacing: Option<f64>,
+    /// Cells on the boundary are halved down to this edge [m].
+    pub boundary_cell: Option<f64>,
+    /// Smaller cells in parts of the body.
+    #[serde(default)]
+    pub refine: Vec<RefineCellFormat>,
+    /// Gauss points per cell and direction, 1 to 5; 1 if left out.
+    pub gauss_points: Option<usize>,
+    pub inside: Option<InsideFormat>,
+}
+
+/// An edge of cells wanted in a part of the body.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RefineCellFormat {
+    #[serde(rename = "where")]
+    pub part: SelectorFormat,
+    /// [m]
+    pub cell: f64,
+}
+
+/// What becomes of a cell that the boundary cuts; volume_fraction if left out.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum InsideFormat {
+    /// Kept whole if its centre is inside.
+    Centre,
+    /// A point at the centroid of the inside part with its volume.
+    VolumeFraction,
+}

@@ -1,0 +1,107 @@
+//! Every case in reference/cases can be read, and the schema of the format is
+//! complete.
+
+use mtled::problem::{Cloud, Dimension, Motion, Prescribed};
+use mtled_verify::scene::{Case, ProbeKind, read_case, schema};
+use std::path::PathBuf;
+
+fn cases() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../reference/cases"))
+}
+
+fn case(name: &str) -> Case {
+    read_case(&cases().join(format!("{name}.toml"))).unwrap_or_else(|mistakes| {
+        panic!("{}", mistakes.iter().map(|m| format!("{m}\n")).collect::<String>())
+    })
+}
+
+#[test]
+fn every_case_is_valid_and_has_a_title_and_a_source() {
+    let mut count = 0;
+    for entry in std::fs::read_dir(cases()).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let case = case(&path.file_stem().unwrap().to_string_lossy());
+            assert!(!case.title.is_empty() && !case.source.is_empty(), "{}", case.name);
+            assert!(!case.probes.is_empty(), "{} records nothing", case.name);
+            assert_eq!(case.hash.len(), 64);
+            count += 1;
+        }
+    }
+    assert!(count >= 12, "only {count} cases");
+}
+
+#[test]
+fn the_schema_is_json_and_describes_every_table() {
+    let schema: serde_json::Value = serde_json::from_str(&schema()).unwrap();
+    let properties = schema["properties"].as_object().unwrap();
+    for key in [
+        "title",
+        "description",
+        "source",
+        "dimension",
+        "plane",
+        "geometry",
+        "region",
+        "material",
+        "discretisation",
+        "prescribe",
+        "body_force",
+        "traction",
+        "initial_velocity",
+        "obstacle",
+        "time",
+        "probe",
+        "output",
+    ] {
+        assert!(properties.contains_key(key), "{key}");
+    }
+    assert!(
+        schema["$defs"]["MaterialFormat"]["properties"]["density"]["description"]
+            .as_str()
+            .unwrap()
+            .contains("kg/m³")
+    );
+    assert_eq!(schema["additionalProperties"], serde_json::Value::Bool(false));
+}
+
+#[test]
+fn the_brain_slice_is_what_the_seed_describes() {
+    let case = case("brain_slice");
+    let problem = &case.problem;
+    assert_eq!(problem.dimension, Dimension::PlaneStrain { thickness: 0.005, z: 0.018 });
+    let names: Vec<&str> = problem.regions.iter().map(|region| region.name.as_str()).collect();
+    assert_eq!(names, ["ventricles", "tumour", "brain"]);
+    assert!(matches!(problem.motion, Motion::Dynamic { end: 2.0, damping: 5.0, .. }));
+    assert_eq!(problem.conditions[0].release, Some(1.0));
+    let Prescribed::Displacement([Some(x), Some(y), None]) = problem.conditions[0].prescribed
+    else {
+        panic!("the craniotomy moves in the plane")
+    };
+    assert!((x.hypot(y) - 0.012).abs() < 1e-5);
+    assert!(matches!(problem.recipe.cloud, Cloud::Graded { .. }));
+}
+
+#[test]
+fn keys_of_a_case_are_found_by_index_and_by_name() {
+    let case = case("cube_compression");
+    let by_index = case.locate("prescribe[1].where").unwrap();
+    assert_eq!(case.locate("prescribe.top.where").unwrap(), by_index);
+    assert!(by_index.line > case.locate("prescribe.bottom").unwrap().line);
+    assert_eq!(case.locate("prescribe.lid"), None);
+    let diagnostic = case.diagnostic("prescribe.top.where", "selects no node".to_string());
+    let printed = diagnostic.to_string();
+    assert!(printed.contains(&format!("cube_compression.toml:{}:9: ", by_index.line)), "{printed}");
+    assert!(printed.contains("^^^^"), "{printed}");
+}
+
+#[test]
+fn a_lattice_lists_its_positions_with_x_fastest() {
+    let case = case("cube_compression");
+    let lattice = &case.probes.iter().find(|probe| probe.name == "lattice").unwrap().kind;
+    assert!(matches!(lattice, ProbeKind::Lattice { counts: [11, 11, 11], .. }));
+    let positions = lattice.positions();
+    assert_eq!(positions.len(), 1331);
+    assert!((positions[1].x - 0.01).abs() < 1e-15 && positions[1].y == 0.0);
+    assert!((positions[1330] - nalgebra::Vector3::repeat(0.1)).norm() < 1e-15);
+}
