@@ -27,7 +27,7 @@ pub(crate) fn relax(
     let mut pace = Pace::new(model, settings.step, state, &mut buffers)?;
     let mut damping = Damping::new(model, settings);
     let mut convergence = Convergence { estimated_error: f64::INFINITY, residual: f64::INFINITY };
-    watch(model, state, &mut buffers, f64::INFINITY, 0.0, observer);
+    watch(model, state, &mut buffers, 1.0, 0.0, observer);
     for count in 1..=settings.max_steps {
         if pace.reevaluate(model, state, &mut buffers) {
             damping.forget();

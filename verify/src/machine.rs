@@ -1,0 +1,83 @@
+//! Which code runs where, and what it has used.
+
+use crate::study::Provenance;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Version, commit, compiler and processor of this run.
+pub fn provenance() -> Provenance {
+    Provenance {
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        commit: env!("MTLED_COMMIT").to_string(),
+        compiler: env!("MTLED_COMPILER").to_string(),
+        processor: processor_field("model name").unwrap_or_else(|| std::env::consts::ARCH.into()),
+        processor_features: features(),
+        threads: rayon::current_num_threads(),
+        date: date(),
+    }
+}
+
+/// CPU seconds of this process so far, all threads.
+pub fn cpu_seconds() -> f64 {
+    cpu_time::ProcessTime::now().as_duration().as_secs_f64()
+}
+
+/// Largest resident memory of this process so far \[bytes\], where the system
+/// tells.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(1024 * kibibytes)
+}
+
+fn processor_field(key: &str) -> Option<String> {
+    let info = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = info.lines().find(|line| line.starts_with(key))?;
+    Some(line.split(':').nth(1)?.trim().to_string())
+}
+
+/// Vector extensions that matter to the solver.
+fn features() -> String {
+    let flags = processor_field("flags").unwrap_or_default();
+    let has = |name: &&str| flags.split(' ').any(|flag| flag == *name);
+    ["sse2", "avx2", "fma", "avx512f"].into_iter().filter(has).collect::<Vec<_>>().join(" ")
+}
+
+/// Today as YYYY-MM-DD, UTC.
+fn date() -> String {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
+    civil_date((seconds / 86_400) as i64)
+}
+
+/// Days since 1970-01-01 to a Gregorian date, by counting years and months.
+fn civil_date(mut days: i64) -> String {
+    let leap = |year: i64| (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+    let mut year = 1970;
+    while days >= 365 + leap(year) as i64 {
+        days -= 365 + leap(year) as i64;
+        year += 1;
+    }
+    let february = 28 + leap(year) as i64;
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    format!("{year:04}-{month:02}-{:02}", days + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_become_dates() {
+        assert_eq!(civil_date(0), "1970-01-01");
+        assert_eq!(civil_date(59), "1970-03-01");
+        assert_eq!(civil_date(11_016), "2000-02-29");
+        assert_eq!(civil_date(19_722), "2023-12-31");
+    }
+}

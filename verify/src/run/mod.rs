@@ -1,0 +1,86 @@
+//! One case from its problem to its result.
+
+mod output;
+mod probes;
+mod record;
+mod result;
+
+pub use output::write_outputs;
+pub use probes::{MassCentre, centres_of_mass};
+pub use record::{Record, Recorder, Sample};
+pub use result::{result_json, summary_text};
+
+use crate::machine::cpu_seconds;
+use crate::scene::Case;
+use mtled::discretisation::Discretisation;
+use mtled::error::Error;
+use mtled::model::Model;
+use mtled::observe::Observer;
+use mtled::problem::Problem;
+use mtled::simulate::{Summary, simulate};
+use mtled::state::State;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// A problem that has been discretised.
+#[derive(Debug)]
+pub struct Prepared {
+    pub discretisation: Discretisation,
+    pub model: Model,
+    /// Wall seconds of the set-up.
+    pub setup_seconds: f64,
+}
+
+/// A problem that has been marched to its end.
+#[derive(Debug)]
+pub struct Solved {
+    pub prepared: Prepared,
+    pub state: State,
+    pub summary: Summary,
+    /// Wall seconds of the march.
+    pub solve_seconds: f64,
+    /// CPU seconds of set-up and march, all threads of the process.
+    pub cpu_seconds: f64,
+}
+
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Asks every run to end after the step it is in.
+pub fn interrupt() {
+    INTERRUPTED.store(true, Ordering::Relaxed);
+}
+
+/// Whether the user has asked to stop.
+pub fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
+/// Discretises a problem and binds its model.
+pub fn prepare(problem: &Problem) -> Result<Prepared, Error> {
+    let start = Instant::now();
+    let discretisation = Discretisation::new(problem)?;
+    let model = Model::new(problem, &discretisation)?;
+    Ok(Prepared { discretisation, model, setup_seconds: start.elapsed().as_secs_f64() })
+}
+
+/// Marches a prepared problem.
+pub fn march(problem: &Problem, prepared: Prepared, observer: &mut dyn Observer) -> Result<Solved, Error> {
+    let (start, cpu) = (Instant::now(), cpu_seconds());
+    let mut state = State::new(&prepared.model);
+    let summary = simulate(&prepared.model, &problem.motion, &mut state, observer)?;
+    Ok(Solved {
+        prepared,
+        state,
+        summary,
+        solve_seconds: start.elapsed().as_secs_f64(),
+        cpu_seconds: cpu_seconds() - cpu,
+    })
+}
+
+/// Solves a case and records what its probes see.
+pub fn solve_case(case: &Case) -> Result<(Solved, Record), Error> {
+    let prepared = prepare(&case.problem)?;
+    let mut recorder = Recorder::new(case, &prepared, 0)?;
+    let solved = march(&case.problem, prepared, &mut recorder)?;
+    Ok((solved, recorder.finish()))
+}

@@ -1,0 +1,195 @@
+//! The result of a run as JSON and as a screen of text.
+
+use super::{Record, Solved};
+use crate::machine::{peak_memory, provenance};
+use crate::report::four_digits;
+use crate::scene::{Case, ProbeKind};
+use mtled::discretisation::Warning;
+use mtled::problem::Motion;
+use mtled::tensor::Vector3;
+use serde_json::{Value, json};
+
+/// Version of the layout of `result.json`.
+const SCHEMA_VERSION: u32 = 1;
+
+/// `result.json`. All that may differ between two runs of the same binary on
+/// the same case stands under `timings`.
+pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
+    let (discretisation, model) = (&solved.prepared.discretisation, &solved.prepared.model);
+    let quadrature = &discretisation.quadrature;
+    json!({
+        "schema_version": SCHEMA_VERSION,
+        "case": { "name": case.name, "title": case.title, "hash": case.hash },
+        "version": env!("CARGO_PKG_VERSION"),
+        "discretisation": {
+            "nodes": discretisation.cloud.positions.len(),
+            "boundary_nodes": discretisation.cloud.on_boundary.iter().filter(|b| **b).count(),
+            "quadrature_points": quadrature.positions.len(),
+            "cells": quadrature.cells,
+            "cut_cells": quadrature.cut_cells,
+            "mean_support": discretisation.mean_support(),
+            "worst_condition": discretisation.worst_condition,
+            "enlarged_supports": discretisation.enlarged,
+            "volume_m3": quadrature.weights.iter().sum::<f64>(),
+            "mass_kg": model.lumped_mass.iter().sum::<f64>(),
+        },
+        "warnings": discretisation.warnings().iter().map(Warning::to_string).collect::<Vec<_>>(),
+        "motion": motion_json(case, solved),
+        "work_counters": {
+            "steps": solved.summary.steps,
+            "lanczos_evaluations": solved.summary.lanczos_evaluations,
+            "point_evaluations": point_evaluations(solved),
+            "neighbour_visits": neighbour_visits(solved),
+            "bytes_streamed": internal_forces(solved) * model.bytes_per_step(),
+        },
+        "probes": probes_json(case, record),
+        "reactions": reactions_json(case, record),
+        "energies": energies_json(record),
+        "timings": {
+            "setup_wall_s": solved.prepared.setup_seconds,
+            "solve_wall_s": solved.solve_seconds,
+            "solve_cpu_s": solved.cpu_seconds,
+            "peak_memory_bytes": peak_memory(),
+            "provenance": provenance(),
+        },
+    })
+}
+
+fn internal_forces(solved: &Solved) -> usize {
+    solved.summary.steps + solved.summary.lanczos_evaluations
+}
+
+fn point_evaluations(solved: &Solved) -> usize {
+    internal_forces(solved) * solved.prepared.discretisation.supports.len()
+}
+
+fn neighbour_visits(solved: &Solved) -> usize {
+    internal_forces(solved) * solved.prepared.discretisation.supports.nodes.len()
+}
+
+fn motion_json(case: &Case, solved: &Solved) -> Value {
+    let summary = &solved.summary;
+    let relaxation = summary.relaxation.map(|convergence| {
+        json!({
+            "estimated_error_m": convergence.estimated_error,
+            "relative_residual": convergence.residual,
+        })
+    });
+    json!({
+        "method": match case.problem.motion {
+            Motion::Dynamic { .. } => "dynamic",
+            Motion::Static(_) => "static",
+        },
+        "complete": !summary.stopped,
+        "steps": summary.steps,
+        "time_s": summary.time,
+        "smallest_time_step_s": summary.time_steps.0,
+        "largest_time_step_s": summary.time_steps.1,
+        "critical_time_step_s": summary.critical_time_step,
+        "per_point_bound_s": solved.prepared.model.bound,
+        "smallest_jacobian": summary.smallest_jacobian,
+        "relaxation": relaxation,
+    })
+}
+
+fn array(v: &Vector3) -> [f64; 3] {
+    [v.x, v.y, v.z]
+}
+
+fn probes_json(case: &Case, record: &Record) -> Vec<Value> {
+    let Some(last) = record.samples.last() else { return Vec::new() };
+    let rows = case.probes.iter().zip(&record.references).zip(&last.displacements);
+    rows.map(|((probe, references), displacements)| {
+        json!({
+            "name": probe.name,
+            "kind": match probe.kind {
+                ProbeKind::Point(_) => "point",
+                ProbeKind::Lattice { .. } => "lattice",
+                ProbeKind::CentreOfMass { .. } => "centre_of_mass",
+            },
+            "reference_m": references.iter().map(array).collect::<Vec<_>>(),
+            "displacement_m": displacements.iter().map(array).collect::<Vec<_>>(),
+        })
+    })
+    .collect()
+}
+
+fn reactions_json(case: &Case, record: &Record) -> Vec<Value> {
+    let Some(last) = record.samples.last() else { return Vec::new() };
+    let rows = case.problem.conditions.iter().zip(&last.reactions);
+    rows.map(|(condition, reaction)| {
+        json!({
+            "condition": condition.name,
+            "force_n": array(&reaction.force),
+            "moment_n_m": array(&reaction.moment),
+            "moment_about_m": array(&case.outputs.moment_about),
+        })
+    })
+    .collect()
+}
+
+fn energies_json(record: &Record) -> Value {
+    record.samples.last().map_or(Value::Null, |last| {
+        let e = &last.energies;
+        json!({
+            "kinetic_j": e.kinetic,
+            "strain_j": e.strain,
+            "external_work_j": e.external_work,
+            "constraint_work_j": e.constraint_work,
+            "damping_loss_j": e.damping_loss,
+        })
+    })
+}
+
+/// What a user wants to know at a glance, a line each.
+pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
+    let (d, s) = (&solved.prepared.discretisation, &solved.summary);
+    let mut lines = vec![
+        format!("{}: {}", case.name, case.title),
+        format!(
+            "  {} nodes, {} quadrature points, {:.1} nodes per support",
+            d.cloud.positions.len(),
+            d.supports.len(),
+            d.mean_support()
+        ),
+        format!(
+            "  {} steps of {} to {} s (critical at rest {} s), smallest J {}",
+            s.steps,
+            four_digits(s.time_steps.0),
+            four_digits(s.time_steps.1),
+            four_digits(s.critical_time_step),
+            four_digits(s.smallest_jacobian)
+        ),
+    ];
+    if let Some(convergence) = s.relaxation {
+        lines.push(format!(
+            "  converged: estimated error {} m, residual {} of the largest nodal force",
+            four_digits(convergence.estimated_error),
+            four_digits(convergence.residual)
+        ));
+    }
+    if let Some(last) = record.samples.last() {
+        let probes = case.probes.iter().zip(&record.references).zip(&last.displacements);
+        for ((probe, references), displacements) in probes.filter(|(_, u)| u.len() == 1) {
+            let place = if matches!(probe.kind, ProbeKind::CentreOfMass { .. }) { "centre of mass" } else { "point" };
+            lines.push(format!(
+                "  {place} \"{}\" at ({}) m moved by ({}) m",
+                probe.name,
+                triple(&references[0]),
+                triple(&displacements[0])
+            ));
+        }
+        for (condition, reaction) in case.problem.conditions.iter().zip(&last.reactions) {
+            lines.push(format!("  force of \"{}\": ({}) N", condition.name, triple(&reaction.force)));
+        }
+    }
+    lines.push(format!(
+        "  set-up {:.2} s, march {:.2} s wall ({:.2} s CPU)",
+        solved.prepared.setup_seconds, solved.solve_seconds, solved.cpu_seconds
+    ));
+    lines.join("\n")
+}
+
+fn triple(v: &Vector3) -> String {
+    [v.x, v.y, v.z].map(four_digits).join(", ")
+}
