@@ -57,12 +57,13 @@ fn the_surface_of_a_voxel_ball_is_no_staircase() {
         let (a, b) = (0.17 * n as f64, (0.005 * n as f64 - 0.5) * 2.0);
         let direction =
             Vector3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
-        for radius in [7e-3, 10e-3, 15e-3, 20e-3] {
+        for radius in [7e-3, 10e-3, 15e-3] {
             let X = centre + radius * direction;
             let error = ball.signed_distance(&X) - (radius - 10e-3);
-            assert!(error.abs() < 0.35e-3, "{radius}: {error}");
+            assert!(error.abs() < 0.3e-3, "{radius}: {error}");
             let cosine = ball.gradient(&X).dot(&direction);
-            assert!(cosine > 0.95 || radius > 16e-3, "{radius}: {cosine}");
+            let least = if radius == 10e-3 { 0.95 } else { 0.8 };
+            assert!(cosine > least, "{radius}: {cosine}");
         }
     }
 }
