@@ -1,7 +1,9 @@
 //! Every case in reference/cases can be read, and the schema of the format is
 //! complete.
 
+use mtled::nodes::node_cloud;
 use mtled::problem::{Cloud, Dimension, Motion, Prescribed};
+use mtled::selection::Extent;
 use mtled_verify::scene::{Case, ProbeKind, read_case, schema};
 use std::path::PathBuf;
 
@@ -15,20 +17,46 @@ fn case(name: &str) -> Case {
     })
 }
 
+fn all_cases() -> Vec<Case> {
+    let paths = std::fs::read_dir(cases()).unwrap().map(|entry| entry.unwrap().path());
+    paths
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .map(|path| case(&path.file_stem().unwrap().to_string_lossy()))
+        .collect()
+}
+
 #[test]
 fn every_case_is_valid_and_has_a_title_and_a_source() {
-    let mut count = 0;
-    for entry in std::fs::read_dir(cases()).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "toml") {
-            let case = case(&path.file_stem().unwrap().to_string_lossy());
-            assert!(!case.title.is_empty() && !case.source.is_empty(), "{}", case.name);
-            assert!(!case.probes.is_empty(), "{} records nothing", case.name);
-            assert_eq!(case.hash.len(), 64);
-            count += 1;
+    let cases = all_cases();
+    assert!(cases.len() >= 12, "only {} cases", cases.len());
+    for case in cases {
+        assert!(!case.title.is_empty() && !case.source.is_empty(), "{}", case.name);
+        assert!(!case.probes.is_empty(), "{} records nothing", case.name);
+        assert_eq!(case.hash.len(), 64);
+    }
+}
+
+#[test]
+fn every_case_makes_a_few_hundred_nodes_and_every_condition_selects_some() {
+    for case in all_cases() {
+        let problem = &case.problem;
+        let cloud = &problem.recipe.cloud;
+        let nodes = node_cloud(&problem.body, cloud, &problem.dimension).unwrap();
+        let count = nodes.positions.len();
+        assert!((200..3000).contains(&count), "{}: {count} nodes", case.name);
+        for condition in &problem.conditions {
+            let selected = (nodes.positions.iter().zip(&nodes.on_boundary))
+                .filter(|(_, on_boundary)| **on_boundary || condition.extent == Extent::Volume)
+                .filter(|(position, _)| condition.part.contains(position))
+                .count();
+            println!("{}: {count} nodes, {selected} in {}", case.name, condition.name);
+            assert!(selected >= 3, "{}: {selected} nodes in {}", case.name, condition.name);
+        }
+        for region in &problem.regions {
+            let contains = |position| region.part.contains(position);
+            assert!(nodes.positions.iter().any(contains), "{}: {}", case.name, region.name);
         }
     }
-    assert!(count >= 12, "only {count} cases");
 }
 
 #[test]

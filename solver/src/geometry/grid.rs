@@ -1,7 +1,6 @@
 //! A scalar field on a regular grid, and distances on it.
 
 use crate::tensor::Vector3;
-use std::cmp::Ordering;
 
 /// Samples on a regular grid, first index fastest. An axis with one sample is
 /// an axis along which the field is constant.
@@ -60,17 +59,34 @@ impl ScalarGrid {
     }
 
     /// Signed distance to the zero level of the field, negative where it is
-    /// negative: exact crossings next to the level, the eikonal equation
-    /// |∇φ| = 1 away from it.
+    /// negative: from the crossings of grid lines next to the level, to the
+    /// nearest of the feet of those samples away from it.
     pub fn distance_to_zero_level(&self) -> ScalarGrid {
-        let fixed: Vec<f64> = (0..self.values.len()).map(|at| self.crossing_distance(at)).collect();
-        let mut distance = self.sweep(fixed);
-        for (d, level) in distance.values.iter_mut().zip(&self.values) {
-            if *level < 0.0 {
-                *d = -*d;
-            }
-        }
+        let sign = |at: usize| if self.values[at] < 0.0 { -1.0 } else { 1.0 };
+        let seeds = (0..self.values.len())
+            .filter_map(|at| {
+                let distance = self.crossing_distance(at);
+                let normal = self.slope(at).try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+                let foot = self.local(at) - sign(at) * distance * normal;
+                distance.is_finite().then_some(Seed { at, distance, foot })
+            })
+            .collect();
+        let mut distance = self.distance_to_seeds(seeds);
+        distance.values.iter_mut().enumerate().for_each(|(at, d)| *d *= sign(at));
         distance
+    }
+
+    /// Gradient by central differences, one-sided at the border.
+    fn slope(&self, at: usize) -> Vector3 {
+        let strides = self.strides();
+        Vector3::from_fn(|axis, _| {
+            let (stride, last) = (strides[axis], self.size[axis] - 1);
+            let position = at / stride % self.size[axis];
+            let low = if position > 0 { at - stride } else { at };
+            let high = if position < last { at + stride } else { at };
+            let steps = ((high - low) / stride).max(1) as f64;
+            (self.values[high] - self.values[low]) / (steps * self.step[axis])
+        })
     }
 
     /// Distance to the zero level of a sample next to it from the crossings
@@ -97,73 +113,72 @@ impl ScalarGrid {
         if inverse > 0.0 { 1.0 / inverse.sqrt() } else { f64::INFINITY }
     }
 
-    /// Solves |∇φ| = 1 from the finite `start` values, which stay: fast
-    /// sweeping with the first-order upwind scheme (Zhao 2005).
-    pub fn sweep(&self, start: Vec<f64>) -> ScalarGrid {
-        let fixed: Vec<bool> = start.iter().map(|d| d.is_finite()).collect();
-        let mut distance = ScalarGrid { size: self.size, step: self.step, values: start };
-        let tolerance = 1e-6 * self.step.min();
-        for _round in 0..4 {
-            let mut change = 0.0_f64;
-            for order in 0..8 {
-                change = change.max(distance.one_sweep(order, &fixed));
-            }
-            if change < tolerance {
+    /// Distance to the nearest foot; seeds keep their own. Each sample takes
+    /// over the foot of a neighbour if that is nearer (Danielsson 1980).
+    pub fn distance_to_seeds(&self, seeds: Vec<Seed>) -> ScalarGrid {
+        let count = self.size.iter().product();
+        let mut nearest = Nearest { distance: vec![f64::INFINITY; count], seed: vec![NONE; count] };
+        for (n, seed) in seeds.iter().enumerate() {
+            nearest.distance[seed.at] = seed.distance;
+            nearest.seed[seed.at] = n as u32;
+        }
+        for _round in 0..3 {
+            let changes = (0..8).filter(|order| self.sweep(*order, &seeds, &mut nearest)).count();
+            if changes == 0 {
                 break;
             }
         }
-        distance
+        ScalarGrid { size: self.size, step: self.step, values: nearest.distance }
     }
 
-    fn one_sweep(&mut self, order: usize, fixed: &[bool]) -> f64 {
+    /// One pass in one of eight directions; whether it changed anything.
+    fn sweep(&self, order: usize, seeds: &[Seed], nearest: &mut Nearest) -> bool {
         let [nx, ny, nz] = self.size;
-        let turned = |i: usize, n: usize, axis: usize| {
-            if order >> axis & 1 == 0 { i } else { n - 1 - i }
-        };
-        let mut change = 0.0_f64;
-        for k in 0..nz {
-            for j in 0..ny {
-                let row = self.index(0, turned(j, ny, 1), turned(k, nz, 2));
-                for i in 0..nx {
-                    let at = row + turned(i, nx, 0);
-                    if !fixed[at] {
-                        let updated = self.upwind(at);
-                        if updated < self.values[at] {
-                            change = change.max(self.values[at] - updated);
-                            self.values[at] = updated;
-                        }
-                    }
+        let strides = self.strides();
+        let turned =
+            |i: usize, n: usize, axis: usize| if order >> axis & 1 == 0 { i } else { n - 1 - i };
+        let mut changed = false;
+        for (k, j, i) in
+            (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (k, j, i))))
+        {
+            let ijk = [turned(i, nx, 0), turned(j, ny, 1), turned(k, nz, 2)];
+            let at = self.index(ijk[0], ijk[1], ijk[2]);
+            let own = nearest.seed[at];
+            if own != NONE && seeds[own as usize].at == at {
+                continue;
+            }
+            let here = Vector3::from_fn(|axis, _| ijk[axis] as f64 * self.step[axis]);
+            for (axis, passed) in [i, j, k].into_iter().enumerate() {
+                if passed == 0 {
+                    continue;
+                }
+                let back = order >> axis & 1 == 0;
+                let behind = if back { at - strides[axis] } else { at + strides[axis] };
+                let seed = nearest.seed[behind];
+                if seed == NONE || seed == nearest.seed[at] {
+                    continue;
+                }
+                let distance = (here - seeds[seed as usize].foot).norm();
+                if distance < nearest.distance[at] {
+                    (nearest.distance[at], nearest.seed[at]) = (distance, seed);
+                    changed = true;
                 }
             }
         }
-        change
+        changed
     }
+}
 
-    /// Smallest φ with Σ ((φ − a)/h)² = 1 over the axes with a < φ.
-    fn upwind(&self, at: usize) -> f64 {
-        let mut axes = [(f64::INFINITY, 1.0); 3];
-        for (axis, stride) in self.strides().into_iter().enumerate() {
-            let position = at / stride % self.size[axis];
-            let mut a = f64::INFINITY;
-            if position > 0 {
-                a = a.min(self.values[at - stride]);
-            }
-            if position + 1 < self.size[axis] {
-                a = a.min(self.values[at + stride]);
-            }
-            axes[axis] = (a, self.step[axis]);
-        }
-        axes.sort_by(|p, q| p.0.partial_cmp(&q.0).unwrap_or(Ordering::Equal));
-        let mut phi = axes[0].0 + axes[0].1;
-        let (mut s0, mut s1, mut s2) = (0.0, 0.0, -1.0);
-        for (n, (a, h)) in axes.into_iter().enumerate() {
-            if a.is_infinite() || (n > 0 && phi <= a) {
-                break;
-            }
-            let w = 1.0 / (h * h);
-            (s0, s1, s2) = (s0 + w, s1 + w * a, s2 + w * a * a);
-            phi = (s1 + (s1 * s1 - s0 * s2).max(0.0).sqrt()) / s0;
-        }
-        phi
-    }
+/// A sample whose distance is known and the point it is the distance to.
+pub(crate) struct Seed {
+    pub at: usize,
+    pub distance: f64,
+    pub foot: Vector3,
+}
+
+const NONE: u32 = u32::MAX;
+
+struct Nearest {
+    distance: Vec<f64>,
+    seed: Vec<u32>,
 }

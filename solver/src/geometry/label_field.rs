@@ -160,15 +160,43 @@ fn smooth(image: &mut ScalarGrid, axis: usize) {
 /// Shifts the distance until as many voxels are enclosed as there were;
 /// smoothing pulls convex outlines in.
 fn keep_volume(distance: &mut ScalarGrid, voxels: f64) {
-    let flat = distance.size.map(|n| n == 1);
-    let width = (0..3).filter(|&k| !flat[k]).map(|k| distance.step[k]).fold(0.0, f64::max) * 1.5;
-    for _ in 0..3 {
-        let inside: f64 = distance.values.iter().map(|d| (0.5 - d / width).clamp(0.0, 1.0)).sum();
+    let axes: Vec<usize> = (0..3).filter(|&k| distance.size[k] > 1).collect();
+    let width = axes.iter().map(|&k| distance.step[k]).fold(0.0, f64::max) * 1.5;
+    for _ in 0..4 {
         let near = distance.values.iter().filter(|d| d.abs() < 0.5 * width).count() as f64 / width;
         if near == 0.0 {
             return;
         }
-        let shift = ((voxels - inside) / near).clamp(-0.2 * width, 0.2 * width);
+        let shift = (voxels - enclosed(distance)) / near;
+        let shift = shift.clamp(-0.2 * width, 0.2 * width);
         distance.values.iter_mut().for_each(|d| *d -= shift);
     }
+}
+
+/// Volume below zero in units of voxels, from 4ᵈ points in each cell that
+/// the zero level may cut.
+fn enclosed(distance: &ScalarGrid) -> f64 {
+    const PARTS: usize = 4;
+    let parts = distance.size.map(|n| if n > 1 { PARTS } else { 1 });
+    let diagonal = distance.step.norm();
+    let fine = distance.step.max() / PARTS as f64;
+    let weight = 1.0 / parts.iter().product::<usize>() as f64;
+    let cells = distance.size.map(|n| if n > 1 { n - 1 } else { 1 });
+    let mut total = 0.0;
+    for at in 0..cells.iter().product() {
+        let ijk = [at % cells[0], at / cells[0] % cells[1], at / (cells[0] * cells[1])];
+        let value = distance.values[distance.index(ijk[0], ijk[1], ijk[2])];
+        if value.abs() > diagonal + fine {
+            total += if value < 0.0 { 1.0 } else { 0.0 };
+            continue;
+        }
+        for part in 0..parts.iter().product() {
+            let abc = [part % parts[0], part / parts[0] % parts[1], part / (parts[0] * parts[1])];
+            let local = Vector3::from_fn(|k, _| {
+                (ijk[k] as f64 + (abc[k] as f64 + 0.5) / parts[k] as f64) * distance.step[k]
+            });
+            total += weight * (0.5 - distance.sample(&local) / fine).clamp(0.0, 1.0);
+        }
+    }
+    total
 }

@@ -22,7 +22,7 @@ fn samples(
     let margin = Vector3::new(1.37, 1.41, if flat { 0.0 } else { 1.43 }) * step;
     let (lower, upper) = (lower - margin, upper + margin);
     let count = ((upper - lower) / step).map(|c| c.ceil() + 1.0);
-    if !(count.product() <= MOST_SAMPLES) {
+    if count.product() > MOST_SAMPLES {
         let (what, count) = ("distance samples", count.product());
         return Err(GeometryError::TooMany { what, count, limit: MOST_SAMPLES });
     }

@@ -20,7 +20,7 @@ pub(crate) use boundary_points::{BoundaryPoints, Sizes, boundary_points_sized, p
 pub use error::GeometryError;
 pub(crate) use error::positive;
 pub(crate) use features::lattice_cells;
-pub(crate) use grid::ScalarGrid;
+pub(crate) use grid::{ScalarGrid, Seed};
 pub use label_field::LabelField;
 pub use label_map::LabelMap;
 pub use panels::Panel;

@@ -24,7 +24,8 @@ impl Shape {
     /// Panels with edges of at most `size` \[m\] that cover the boundary, in
     /// a plane that of the cross-section without its ends. Areas and normals
     /// are exact for flat faces, cylinders and spheres. Where members of a
-    /// union or difference meet, panels are kept or dropped whole.
+    /// union or difference meet, the areas of the panels there are cut in
+    /// proportion and their centres stay.
     pub fn boundary_panels(
         &self,
         size: f64,
@@ -32,9 +33,11 @@ impl Shape {
     ) -> Result<Vec<Panel>, GeometryError> {
         positive("the panel size", size)?;
         match dimension {
-            Dimension::Three => surface_panels(self, size),
+            Dimension::Three => surface_panels(self, size, self.finite_bounds(dimension)?),
             Dimension::PlaneStrain { thickness, z } => {
-                let mut panels = curve_panels(&self.section_at(*z)?, size, *z)?;
+                let section = self.section_at(*z)?;
+                let around = section.finite_bounds(dimension)?;
+                let mut panels = curve_panels(&section, size, *z, around)?;
                 panels.iter_mut().for_each(|panel| panel.area *= thickness);
                 Ok(panels)
             }
@@ -42,23 +45,39 @@ impl Shape {
     }
 }
 
+/// Corners of the box outside which half-spaces need no panels \[m\].
+type Bounds = (Vector3, Vector3);
+
+/// The part of a plane that passes the box: its middle and half its edge.
+fn patch(point: &Vector3, normal: &Vector3, (lower, upper): Bounds) -> (Vector3, f64) {
+    let middle = 0.5 * (lower + upper);
+    (middle - (middle - point).dot(normal) * normal, 0.5 * (upper - lower).norm())
+}
+
 /// Panels whose area is a length, of a section.
-fn curve_panels(shape: &Shape, size: f64, z: f64) -> Result<Vec<Panel>, GeometryError> {
+fn curve_panels(
+    shape: &Shape,
+    size: f64,
+    z: f64,
+    around: Bounds,
+) -> Result<Vec<Panel>, GeometryError> {
     match shape {
         Shape::Polygon { points, .. } => Ok(line_panels(&anticlockwise(points), size, z)),
         Shape::Ellipsoid { centre, radii } => Ok(ellipse_panels(centre, radii, size, z)),
+        Shape::HalfSpace { point, normal } => {
+            let (middle, reach) = patch(point, normal, around);
+            let along = reach * Vector3::new(-normal.y, normal.x, 0.0);
+            let (a, b) = (middle - along, middle + along);
+            Ok(segment_panels([a.x, a.y], [b.x, b.y], size, z).collect())
+        }
         Shape::Labels(field) => {
             let curves = marching::contours(shape, z, (0.7 * size).min(field.voxel()))?;
             Ok(curves.iter().flat_map(|curve| line_panels(curve, size, z)).collect())
         }
         Shape::Union(_) | Shape::Difference(..) => {
-            match composite_panels(shape, &|member| curve_panels(member, size, z)) {
-                Err(GeometryError::Unbounded { .. }) if shape.bounding_box().is_some() => {
-                    let curves = marching::contours(shape, z, 0.5 * size)?;
-                    Ok(curves.iter().flat_map(|curve| line_panels(curve, size, z)).collect())
-                }
-                panels => panels,
-            }
+            composite_panels(shape, |panel| panel.area, &|member| {
+                curve_panels(member, size, z, around)
+            })
         }
         _ => Err(GeometryError::Unbounded { shape: shape.name() }),
     }
@@ -71,23 +90,21 @@ fn pieces(length: f64, size: f64) -> usize {
 
 /// Along a closed polyline with the solid to its left.
 fn line_panels(points: &[[f64; 2]], size: f64, z: f64) -> Vec<Panel> {
-    let mut panels = Vec::new();
-    for (n, a) in points.iter().enumerate() {
-        let b = points[(n + 1) % points.len()];
-        let edge = Vector3::new(b[0] - a[0], b[1] - a[1], 0.0);
-        let length = edge.norm();
-        if length == 0.0 {
-            continue;
-        }
-        let normal = Vector3::new(edge.y, -edge.x, 0.0) / length;
-        let count = pieces(length, size);
-        for piece in 0..count {
-            let t = (piece as f64 + 0.5) / count as f64;
-            let centre = Vector3::new(a[0], a[1], z) + t * edge;
-            panels.push(Panel { centre, area: length / count as f64, normal });
-        }
-    }
-    panels
+    (0..points.len())
+        .flat_map(|n| segment_panels(points[n], points[(n + 1) % points.len()], size, z))
+        .collect()
+}
+
+fn segment_panels(a: [f64; 2], b: [f64; 2], size: f64, z: f64) -> impl Iterator<Item = Panel> {
+    let edge = Vector3::new(b[0] - a[0], b[1] - a[1], 0.0);
+    let length = edge.norm();
+    let normal = Vector3::new(edge.y, -edge.x, 0.0) / length;
+    let count = if length > 0.0 { pieces(length, size) } else { 0 };
+    (0..count).map(move |piece| {
+        let t = (piece as f64 + 0.5) / count as f64;
+        let centre = Vector3::new(a[0], a[1], z) + t * edge;
+        Panel { centre, area: length / count as f64, normal }
+    })
 }
 
 fn ellipse_panels(centre: &Vector3, radii: &Vector3, size: f64, z: f64) -> Vec<Panel> {
@@ -106,7 +123,7 @@ fn ellipse_panels(centre: &Vector3, radii: &Vector3, size: f64, z: f64) -> Vec<P
         .collect()
 }
 
-fn surface_panels(shape: &Shape, size: f64) -> Result<Vec<Panel>, GeometryError> {
+fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>, GeometryError> {
     match shape {
         Shape::Box { min, max } => Ok(box_panels(min, max, size)),
         Shape::Cylinder { base, axis, radius, height } => {
@@ -121,19 +138,23 @@ fn surface_panels(shape: &Shape, size: f64) -> Result<Vec<Panel>, GeometryError>
         Shape::Polygon { points, z } if (z.1 - z.0).is_finite() => {
             Ok(prism_panels(points, *z, size))
         }
+        Shape::HalfSpace { point, normal } => {
+            let (middle, reach) = patch(point, normal, around);
+            let (u, v) = perpendicular(normal);
+            let mut panels = Vec::new();
+            let corner = middle - reach * (u + v);
+            rectangle(corner, 2.0 * reach * u, 2.0 * reach * v, size, &mut panels);
+            Ok(panels)
+        }
         Shape::Labels(field) => {
             let triangles = marching::isosurface(shape, (size / 3_f64.sqrt()).min(field.voxel()))?;
             Ok(triangle_panels(triangles.into_iter(), size))
         }
         Shape::Surface(surface) => Ok(triangle_panels(surface.corners(), size)),
         Shape::Union(_) | Shape::Difference(..) => {
-            match composite_panels(shape, &|member| surface_panels(member, size)) {
-                Err(GeometryError::Unbounded { .. }) if shape.bounding_box().is_some() => {
-                    let triangles = marching::isosurface(shape, size / 3_f64.sqrt())?;
-                    Ok(triangle_panels(triangles.into_iter(), size))
-                }
-                panels => panels,
-            }
+            composite_panels(shape, |panel| panel.area.sqrt(), &|member| {
+                surface_panels(member, size, around)
+            })
         }
         _ => Err(GeometryError::Unbounded { shape: shape.name() }),
     }
@@ -277,36 +298,75 @@ fn triangle_panels(triangles: impl Iterator<Item = Triangle>, size: f64) -> Vec<
 
 type PanelsOf<'a> = &'a dyn Fn(&Shape) -> Result<Vec<Panel>, GeometryError>;
 
-/// Panels of the members that lie on the boundary of the composite. Where
-/// faces of two members coincide, the first member's panel stays if their
-/// normals agree (they disagree, for a difference); none stays otherwise.
-fn composite_panels(shape: &Shape, of: PanelsOf) -> Result<Vec<Panel>, GeometryError> {
+/// Which panels of one member stay, by where they lie on another.
+#[derive(Clone, Copy, PartialEq)]
+enum Keep {
+    /// Outside the other; on a face of it, if the normals agree.
+    OutsideOrAlong,
+    /// Outside the other; on a face of it, if the normals are opposite.
+    OutsideOrAgainst,
+    Outside,
+    Inside,
+}
+
+/// The part of a panel of given `width` \[m\] that stays: all, nothing, or, where
+/// the other member cuts it, the distance to the cut along the panel in units
+/// of its width.
+fn part_kept(panel: &Panel, width: f64, other: &Shape, keep: Keep, tolerance: f64) -> f64 {
+    let sign = if keep == Keep::Inside { -1.0 } else { 1.0 };
+    let distance = sign * other.signed_distance(&panel.centre);
+    if distance.abs() > width {
+        return if distance > 0.0 { 1.0 } else { 0.0 };
+    }
+    let gradient = other.gradient(&panel.centre);
+    let along = gradient.dot(&panel.normal);
+    let steepness = (gradient - along * panel.normal).norm();
+    if steepness > 1e-3 {
+        return (0.5 + distance / (width * steepness)).clamp(0.0, 1.0);
+    }
+    let stays = match keep {
+        _ if distance.abs() > tolerance => distance > 0.0,
+        Keep::OutsideOrAlong => along > 0.0,
+        Keep::OutsideOrAgainst => along < 0.0,
+        Keep::Outside | Keep::Inside => false,
+    };
+    if stays { 1.0 } else { 0.0 }
+}
+
+/// Panels of the members that lie on the boundary of the composite, cut in
+/// proportion where members meet. Of coinciding faces one stays, if any.
+/// `width` gives the edge of a panel \[m\].
+fn composite_panels(
+    shape: &Shape,
+    width: impl Fn(&Panel) -> f64,
+    of: PanelsOf,
+) -> Result<Vec<Panel>, GeometryError> {
     let tolerance = 1e-9 * shape.size();
     let mut kept = Vec::new();
+    let mut cut = |panel: Panel, others: &mut dyn Iterator<Item = (&Shape, Keep)>, flip: f64| {
+        let part: f64 = others
+            .map(|(other, keep)| part_kept(&panel, width(&panel), other, keep, tolerance))
+            .product();
+        if part > 1e-6 {
+            kept.push(Panel { area: part * panel.area, normal: flip * panel.normal, ..panel });
+        }
+    };
     match shape {
         Shape::Union(members) => {
             for (n, member) in members.iter().enumerate() {
-                kept.extend(of(member)?.into_iter().filter(|panel| {
-                    members.iter().enumerate().filter(|(other, _)| *other != n).all(
-                        |(other, shape)| {
-                            let distance = shape.signed_distance(&panel.centre);
-                            let along = || shape.gradient(&panel.centre).dot(&panel.normal) > 0.0;
-                            distance > tolerance || (distance > -tolerance && n < other && along())
-                        },
-                    )
-                }));
+                for panel in of(member)? {
+                    let others = members.iter().enumerate().filter(|(other, _)| *other != n);
+                    let rule = |other| if n < other { Keep::OutsideOrAlong } else { Keep::Outside };
+                    cut(panel, &mut others.map(|(other, shape)| (shape, rule(other))), 1.0);
+                }
             }
         }
         Shape::Difference(body, hole) => {
-            kept.extend(of(body)?.into_iter().filter(|panel| {
-                let distance = hole.signed_distance(&panel.centre);
-                let against = || hole.gradient(&panel.centre).dot(&panel.normal) < 0.0;
-                distance > tolerance || (distance > -tolerance && against())
-            }));
+            for panel in of(body)? {
+                cut(panel, &mut std::iter::once((&**hole, Keep::OutsideOrAgainst)), 1.0);
+            }
             for panel in of(hole)? {
-                if body.signed_distance(&panel.centre) < -tolerance {
-                    kept.push(Panel { normal: -panel.normal, ..panel });
-                }
+                cut(panel, &mut std::iter::once((&**body, Keep::Inside)), -1.0);
             }
         }
         _ => {}

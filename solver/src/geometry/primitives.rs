@@ -76,26 +76,29 @@ pub fn closest_on_ellipsoid(d: &Vector3, radii: &Vector3) -> Vector3 {
     let axes = if radii.z.is_finite() { 3 } else { 2 };
     let small = 1e-14 * radii.rows(0, axes).max();
     let y = d.map(|c| c.abs().max(small));
-    let mut t = (0..axes).map(|i| radii[i] * (y[i] - radii[i])).fold(f64::MIN, f64::max);
+    // t + rᵢ² = s + excessᵢ loses no digits where t is close to −min rᵢ².
+    let least = radii.rows(0, axes).min();
+    let excess = radii.map(|r| (r - least) * (r + least));
+    let mut s = (0..axes).map(|i| radii[i] * y[i] - excess[i]).fold(0.0, f64::max);
     for _ in 0..200 {
         let (mut value, mut slope) = (-1.0, 0.0);
         for i in 0..axes {
-            let shifted = t + radii[i] * radii[i];
+            let shifted = s + excess[i];
             let term = (radii[i] * y[i] / shifted).powi(2);
             value += term;
             slope -= 2.0 * term / shifted;
         }
         let step = -value / slope;
         // Converged, or turned back by rounding.
-        if step.is_nan() || step <= 1e-16 * t.abs() {
+        if step.is_nan() || step <= 1e-16 * s {
             break;
         }
-        t += step;
+        s += step;
     }
     let mut closest = *d;
     for i in 0..axes {
         let squared = radii[i] * radii[i];
-        closest[i] = (squared * y[i] / (t + squared)).copysign(d[i]);
+        closest[i] = (squared * y[i] / (s + excess[i])).copysign(d[i]);
     }
     closest
 }

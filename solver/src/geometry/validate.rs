@@ -37,7 +37,7 @@ impl Shape {
                 positive("the ellipsoid radius in z", radii.z)
             }
             Shape::Polygon { points, z: (from, to) } => {
-                if !(from < to) {
+                if from >= to || from.is_nan() || to.is_nan() {
                     return Err(GeometryError::EmptyExtrusion { from: *from, to: *to });
                 }
                 polygon(points)

@@ -40,7 +40,7 @@ pub(super) fn given(
     for (node, near) in nearest.iter().enumerate() {
         let spacing = near.iter().map(|(d, _)| d).sum::<f64>() / near.len() as f64;
         let (distance, other) = near[0];
-        if !(distance > 1e-9 * spacing) {
+        if distance <= 1e-9 * spacing {
             let (first, second) = (node.min(other), node.max(other));
             return Err(GeometryError::DuplicateNodes { first, second, distance });
         }

@@ -3,7 +3,7 @@
 
 use super::{MOST_NODES, NodeCloud};
 use crate::geometry::{
-    GeometryError, PointHash, ScalarGrid, Shape, Sizes, boundary_points_sized, positive,
+    GeometryError, PointHash, ScalarGrid, Seed, Shape, Sizes, boundary_points_sized, positive,
 };
 use crate::problem::{Dimension, Refinement};
 use crate::tensor::Vector3;
@@ -12,7 +12,7 @@ use crate::tensor::Vector3;
 const MOST_SAMPLES: f64 = 4e6;
 /// Nodes are at least this far apart \[spacing\]; with candidates everywhere
 /// this gives about one node per spacing².
-const APART: f64 = 0.8;
+const APART: f64 = 0.85;
 /// Distance of candidates \[spacing\].
 const CANDIDATE: f64 = 1.0 / 3.0;
 
@@ -46,21 +46,22 @@ impl<'a> SizeField<'a> {
         let mut distances = Vec::new();
         for (n, refinement) in refinements.iter().enumerate() {
             let mut inside = false;
-            let start = (0..size.iter().product())
-                .map(|index| {
-                    let X = lower + blank.local(index);
-                    let hit = refinement.part.contains(&X);
-                    inside |= hit && body.signed_distance(&X) < step;
-                    if hit { 0.0 } else { f64::INFINITY }
-                })
-                .collect();
+            let mut seeds = Vec::new();
+            for at in 0..size.iter().product() {
+                let foot = blank.local(at);
+                let X = lower + foot;
+                if refinement.part.contains(&X) {
+                    inside |= body.signed_distance(&X) < step;
+                    seeds.push(Seed { at, distance: 0.0, foot });
+                }
+            }
             if !inside {
                 return Err(GeometryError::RefinementEmpty {
                     refinement: n,
                     size: refinement.size,
                 });
             }
-            distances.push(blank.sweep(start));
+            distances.push(blank.distance_to_seeds(seeds));
         }
         Ok(SizeField { spacing, growth, refinements, corner: lower, distances })
     }
@@ -80,7 +81,7 @@ impl<'a> SizeField<'a> {
 }
 
 /// Boundary points first, then candidates of a tree of lattices, each taken
-/// if no node is nearer than 0.8 of its spacing.
+/// if no node is nearer than 0.85 of its spacing.
 pub(super) fn graded(
     body: &Shape,
     spacing: f64,

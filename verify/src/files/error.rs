@@ -1,5 +1,6 @@
 //! Why a file cannot be used, and what to do about it.
 
+use mtled::geometry::GeometryError;
 use std::path::{Path, PathBuf};
 
 /// A file and what is wrong with it.
@@ -45,10 +46,8 @@ pub enum Mistake {
         "every label is a multiple of 256 (the smallest is {smallest}); the byte order of the header ({order} endian) is wrong"
     )]
     ByteSwapped { smallest: u32, order: &'static str },
-    #[error("the voxel directions have determinant {determinant} mm³; they span no volume")]
-    FlatVoxels { determinant: f64 },
-    #[error("the geometry of the image is not usable: {0}")]
-    Geometry(String),
+    #[error("{0}")]
+    Geometry(GeometryError),
     #[error("line {line} is `{text}`; expected {expected}")]
     BadLine { line: usize, text: String, expected: &'static str },
     #[error("the array has shape {shape:?} and type {kind}; expected (n, 2) or (n, 3) of floats")]

@@ -1,1 +1,235 @@
+use super::{LengthUnit, Mistake, nifti, nrrd, read_label_map};
+use flate2::{Compression, write::GzEncoder};
+use mtled::geometry::LabelMap;
+use mtled::tensor::{Matrix3, Vector3};
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
+fn brain(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference/brain").join(name)
+}
+
+/// Reads bytes as a file of this name in a folder of its own.
+fn read_as(name: &str, bytes: &[u8]) -> Result<LabelMap, Mistake> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    read_label_map(&path, None).map(|read| read.map).map_err(|error| error.mistake)
+}
+
+fn nrrd_text(header: &str, data: &[u8]) -> Vec<u8> {
+    [b"NRRD0004\n", header.as_bytes(), b"\n", data].concat()
+}
+
+fn gzip(data: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(data).unwrap();
+    encoder.finish().unwrap()
+}
+
+/// Eight voxels with labels 0 to 7.
+const SMALL: &str = "type: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 2 3\n";
+const LABELS: [u8; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+
+#[test]
+fn the_brain_slice_is_the_same_in_nrrd_and_nifti() {
+    let first = nrrd::read(&brain("slice.nrrd"), None).unwrap().map;
+    let second = nifti::read(&brain("slice.nii.gz"), None).unwrap();
+    assert_eq!(first.size, [157, 190, 5]);
+    assert_eq!(first.size, second.size);
+    assert!(first.labels == second.labels);
+    assert!((first.origin - Vector3::new(-0.078, -0.111, 0.016)).norm() < 1e-12);
+    assert!((first.origin - second.origin).norm() < 1e-9);
+    assert!((first.directions - Matrix3::from_diagonal_element(0.001)).norm() < 1e-12);
+    assert!((first.directions - second.directions).norm() < 1e-9);
+}
+
+#[test]
+fn the_areas_of_the_brain_slice_are_those_of_its_description() {
+    let map = nrrd::read(&brain("slice.nrrd"), None).unwrap().map;
+    let area = |label: u32| map.labels.iter().filter(|&&l| l == label).count();
+    assert_eq!([area(1), area(2), area(3)], [5 * 17990, 5 * 1001, 5 * 376]);
+}
+
+#[test]
+fn raw_gzip_and_text_hold_the_same_labels() {
+    let raw = nrrd_text(&format!("{SMALL}encoding: raw\n"), &LABELS);
+    let text = nrrd_text(&format!("{SMALL}encoding: ascii\n"), b"0 1 2 3\n4 5 6 7\n");
+    let zipped = nrrd_text(&format!("{SMALL}encoding: gzip\n"), &gzip(&LABELS));
+    for bytes in [raw, text, zipped] {
+        let map = read_as("a.nrrd", &bytes).unwrap();
+        assert_eq!(map.labels, LABELS.map(u32::from));
+        let steps = Vector3::new(0.001, 0.002, 0.003);
+        assert!((map.directions - Matrix3::from_diagonal(&steps)).norm() < 1e-15);
+    }
+}
+
+#[test]
+fn both_byte_orders_and_all_types_are_read() {
+    for (kind, size) in [("int16", 2), ("uint32", 4), ("int64", 8)] {
+        for endian in ["little", "big"] {
+            let header = format!("{SMALL}encoding: raw\nendian: {endian}\n").replace("uint8", kind);
+            let bytes = LABELS.map(|label| {
+                let word = u64::from(label).to_le_bytes()[..size].to_vec();
+                if endian == "big" { word.into_iter().rev().collect() } else { word }
+            });
+            let map = read_as("a.nrrd", &nrrd_text(&header, &bytes.concat())).unwrap();
+            assert_eq!(map.labels, LABELS.map(u32::from), "{kind} {endian}");
+        }
+    }
+}
+
+#[test]
+fn a_rotated_las_image_in_metres_turns_into_ras() {
+    let header = "# comment\r\ntype: uint8\r\ndimension: 3\r\nspace: LAS\r\nsizes: 2 2 2\r\n\
+                  space directions: (0, 0.5, 0) (-0.5,0,0) (0,0,2)\r\nspace origin: (1,2,3)\r\n\
+                  space units: \"m\" \"m\" \"m\"\r\nkey:=value: with colon\r\nencoding: raw\r\n\r\n";
+    let map = read_as("a.nrrd", &[b"NRRD0005\r\n", header.as_bytes(), &LABELS].concat()).unwrap();
+    assert_eq!(map.origin, Vector3::new(-1.0, 2.0, 3.0));
+    let expected = Matrix3::new(0.0, 0.5, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 2.0);
+    assert_eq!(map.directions, expected);
+}
+
+#[test]
+fn a_detached_data_file_is_found_beside_its_header() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = format!("NRRD0004\n{SMALL}encoding: raw\nbyte skip: -1\ndata file: voxels.raw\n");
+    std::fs::write(folder.path().join("a.nhdr"), header).unwrap();
+    std::fs::write(folder.path().join("voxels.raw"), [&[9, 9][..], &LABELS].concat()).unwrap();
+    let read = read_label_map(&folder.path().join("a.nhdr"), Some(LengthUnit::Metre)).unwrap();
+    assert_eq!(read.map.labels, LABELS.map(u32::from));
+    assert_eq!(read.map.directions[(2, 2)], 3.0);
+    assert_eq!(read.files.len(), 2);
+}
+
+#[test]
+fn damaged_nrrd_files_are_refused_with_a_reason() {
+    let raw = format!("{SMALL}encoding: raw\n");
+    let cases: [(Vec<u8>, &str); 12] = [
+        (b"hello".to_vec(), "this is not an NRRD file"),
+        (nrrd_text(&raw, &LABELS[..5]), "promises 8 bytes of data, there are 5"),
+        (nrrd_text(&raw.replace("uint8", "int16"), &LABELS), "header has no `endian`"),
+        (nrrd_text(&raw.replace("sizes: 2 2 2\n", ""), &LABELS), "header has no `sizes`"),
+        (nrrd_text(&raw.replace("spacings: 1 2 3\n", ""), &LABELS), "no `space directions`"),
+        (nrrd_text(&raw.replace("sizes: 2 2 2", "sizes: 2 2 x"), &LABELS), "three whole numbers"),
+        (nrrd_text(&raw.replace("dimension: 3", "dimension: 4"), &LABELS), "`dimension` is `4`"),
+        (nrrd_text(&raw.replace("raw", "bzip2"), &LABELS), "`encoding` is `bzip2`"),
+        (nrrd_text(&raw.replace("spacings: 1", "spacings: 0"), &LABELS), "determinant 0"),
+        (nrrd_text(&raw.replace("2 2 2", "99999999 99999999 99999999"), &LABELS), "sizes"),
+        (nrrd_text(&format!("{raw}nonsense\n"), &LABELS), "`nonsense`; expected `field: value`"),
+        (
+            nrrd_text(&raw.replace("raw", "gzip"), b"this is plainly no gzip stream"),
+            "gzip data cannot be decoded",
+        ),
+    ];
+    for (bytes, reason) in cases {
+        let message = read_as("a.nrrd", &bytes).unwrap_err().to_string();
+        assert!(message.contains(reason), "{message} does not say {reason}");
+    }
+}
+
+#[test]
+fn fractions_and_negative_numbers_are_no_labels() {
+    let header = format!("{SMALL}encoding: ascii\n").replace("uint8", "float");
+    for text in ["0 1 2 3 4 5 6 7.5", "0 1 2 3 4 5 6 -7", "0 1 2 3 4 5 6 nan"] {
+        let error = read_as("a.nrrd", &nrrd_text(&header, text.as_bytes())).unwrap_err();
+        assert!(matches!(error, Mistake::NotALabel { voxel: 7, .. }), "{error}");
+    }
+    assert!(read_as("a.nrrd", &nrrd_text(&header, b"0 1 2 3 4 5 6 7.0")).is_ok());
+}
+
+#[test]
+fn labels_read_in_the_wrong_byte_order_are_noticed() {
+    let header = format!("{SMALL}encoding: raw\nendian: big\n");
+    for (kind, size) in [("uint16", 2), ("int32", 4)] {
+        let bytes = LABELS.map(|label| u64::from(label).to_le_bytes()[..size].to_vec()).concat();
+        let error = read_as("a.nrrd", &nrrd_text(&header.replace("uint8", kind), &bytes));
+        assert!(error.unwrap_err().to_string().contains("big endian) is wrong"));
+    }
+}
+
+/// A NIfTI file of int16 voxels 0 to 7 in either byte order.
+fn nifti_bytes(big: bool, change: impl Fn(&mut dyn FnMut(usize, &[u8]))) -> Vec<u8> {
+    let mut bytes = vec![0u8; 352];
+    let word = |n: i16| if big { n.to_be_bytes() } else { n.to_le_bytes() };
+    let float = |x: f32| if big { x.to_be_bytes() } else { x.to_le_bytes() };
+    let mut put = |at: usize, data: &[u8]| bytes[at..at + data.len()].copy_from_slice(data);
+    put(0, &if big { 348i32.to_be_bytes() } else { 348i32.to_le_bytes() });
+    for (n, size) in [3, 2, 2, 2, 1, 1, 1, 1].into_iter().enumerate() {
+        put(40 + 2 * n, &word(size));
+    }
+    put(70, &word(4));
+    put(72, &word(16));
+    for (n, step) in [1.0, 1.0, 2.0, 3.0].into_iter().enumerate() {
+        put(76 + 4 * n, &float(step));
+    }
+    put(108, &float(352.0));
+    put(344, b"n+1\0");
+    change(&mut put);
+    bytes.extend(LABELS.iter().flat_map(|&label| word(i16::from(label))));
+    bytes
+}
+
+#[test]
+fn nifti_is_read_in_both_byte_orders() {
+    for big in [false, true] {
+        let map = read_as("a.nii", &nifti_bytes(big, |_| {})).unwrap();
+        assert_eq!(map.labels, LABELS.map(u32::from));
+        assert!((map.directions[(2, 2)] - 0.003).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn nifti_prefers_the_sform_to_the_qform_and_turns_the_qform() {
+    // A quarter turn about z with the third axis flipped.
+    let qform = |put: &mut dyn FnMut(usize, &[u8])| {
+        put(76, &(-1.0f32).to_le_bytes());
+        put(252, &1i16.to_le_bytes());
+        put(264, &0.5f32.sqrt().to_le_bytes());
+        put(268, &10.0f32.to_le_bytes());
+    };
+    let map = read_as("a.nii", &nifti_bytes(false, qform)).unwrap();
+    let expected = Matrix3::new(0.0, -2.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -3.0) * 1e-3;
+    assert!((map.directions - expected).norm() < 1e-8);
+    assert!((map.origin.x - 0.01).abs() < 1e-12);
+    let both = |put: &mut dyn FnMut(usize, &[u8])| {
+        qform(put);
+        put(254, &1i16.to_le_bytes());
+        for (at, value) in [(280, 4.0f32), (292, 7.0), (300, 5.0), (320, 6.0)] {
+            put(at, &value.to_le_bytes());
+        }
+        put(123, &[1]);
+    };
+    let map = read_as("a.nii", &nifti_bytes(false, both)).unwrap();
+    assert_eq!(map.directions, Matrix3::from_diagonal(&Vector3::new(4.0, 5.0, 6.0)));
+    assert_eq!(map.origin.x, 7.0);
+}
+
+#[test]
+fn damaged_nifti_files_are_refused_with_a_reason() {
+    let good = nifti_bytes(false, |_| {});
+    let cases: [(Vec<u8>, &str); 6] = [
+        (good[..good.len() - 3].to_vec(), "promises 16 bytes of data, there are 13"),
+        (good[..100].to_vec(), "the header ends after 100 bytes"),
+        (nifti_bytes(false, |put| put(344, b"abc\0")), "this is not a NIfTI-1 file"),
+        (nifti_bytes(false, |put| put(344, b"ni1\0")), "convert the .hdr/.img pair"),
+        (nifti_bytes(false, |put| put(40, &2i16.to_le_bytes())), "three axes"),
+        (nifti_bytes(false, |put| put(70, &128i16.to_le_bytes())), "`datatype` is `128`"),
+    ];
+    for (bytes, reason) in cases {
+        let message = read_as("a.nii", &bytes).unwrap_err().to_string();
+        assert!(message.contains(reason), "{message} does not say {reason}");
+    }
+    let zipped = gzip(&good);
+    let error = read_as("a.nii.gz", &zipped[..zipped.len() - 12]).unwrap_err();
+    assert!(
+        matches!(error, Mistake::Truncated { .. } | Mistake::TruncatedHeader { .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_file_of_another_kind_is_refused_by_its_name() {
+    let error = read_as("a.mha", b"").unwrap_err();
+    assert!(matches!(error, Mistake::UnknownExtension { .. }));
+}

@@ -64,7 +64,7 @@ fn label_map(
     directions: Matrix3,
     labels: Vec<u32>,
 ) -> Result<LabelMap, Mistake> {
-    Ok(LabelMap { size, origin, directions, labels })
+    LabelMap::new(size, origin, directions, labels).map_err(Mistake::Geometry)
 }
 
 /// The bytes of a file.

@@ -24,10 +24,6 @@ fn parse(bytes: Vec<u8>, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> 
     let header = header(&bytes)?;
     let size = size(&header)?;
     let (origin, directions) = frame(&header);
-    let determinant = directions.determinant();
-    if !(determinant != 0.0 && determinant.is_finite()) {
-        return Err(Mistake::FlatVoxels { determinant });
-    }
     let metres = match unit {
         Some(unit) => unit.in_metres(),
         None => stated_unit(&header)?.in_metres(),

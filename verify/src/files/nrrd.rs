@@ -36,10 +36,6 @@ fn map(header: &Header, data: &[u8], unit: Option<LengthUnit>) -> Result<LabelMa
     let (size, scalar, encoding) = (header.sizes()?, header.scalar()?, header.encoding()?);
     let order = header.byte_order(scalar, encoding)?;
     let (origin, directions) = header.frame()?;
-    let determinant = directions.determinant();
-    if determinant == 0.0 {
-        return Err(Mistake::FlatVoxels { determinant });
-    }
     let metres = match unit {
         Some(unit) => unit.in_metres(),
         None => header.unit()?.in_metres(),

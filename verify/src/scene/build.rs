@@ -7,7 +7,7 @@ use super::format::{CaseFormat, DimensionFormat};
 use super::format_geometry::UnitFormat;
 use super::reading::nearest;
 use super::{Case, build_recipe};
-use mtled::geometry::LabelMap;
+use mtled::geometry::{LabelMap, Shape};
 use mtled::problem::{Dimension, Problem};
 use mtled::tensor::Vector3;
 use sha2::{Digest, Sha256};
@@ -23,6 +23,9 @@ pub struct Builder<'a> {
     pub dimension: Dimension,
     /// Of selectors that state none \[m\].
     pub tolerance: f64,
+    pub body: Option<Shape>,
+    /// The body, or its cross-section in plane strain.
+    pub section: Option<Shape>,
     /// The label map of the body, if it has one.
     pub body_map: Option<Arc<LabelMap>>,
     /// Label maps read so far.
@@ -35,6 +38,11 @@ impl Builder<'_> {
     /// Notes a mistake at a key path.
     pub fn mistake(&mut self, key: &str, message: impl Display) {
         self.mistakes.push(self.document.diagnostic(key, message.to_string()));
+    }
+
+    /// How many mistakes have been noted.
+    pub fn count(&self) -> usize {
+        self.mistakes.len()
     }
 
     /// Demands a positive number.
@@ -128,6 +136,8 @@ pub fn build(
         base_dir,
         dimension: Dimension::Three,
         tolerance: build_recipe::tolerance(&format.discretisation),
+        body: None,
+        section: None,
         body_map: None,
         maps: HashMap::new(),
         mistakes: Vec::new(),
@@ -156,9 +166,9 @@ pub fn build(
 impl Builder<'_> {
     fn problem(&mut self, format: &CaseFormat) -> Option<Problem> {
         self.dimension = self.dimension_of(format);
-        let body = self.body(&format.geometry.shape);
+        self.read_body(&format.geometry.shape);
         let regions = self.regions(format);
-        let recipe = self.recipe(&format.discretisation, body.as_ref());
+        let recipe = self.recipe(&format.discretisation);
         let conditions = self.conditions(&format.prescribe);
         let loads = self.loads(format);
         let obstacles = self.obstacles(&format.obstacle);
@@ -166,7 +176,7 @@ impl Builder<'_> {
         self.names(format);
         Some(Problem {
             dimension: self.dimension,
-            body: body?,
+            body: self.body.clone()?,
             regions,
             recipe: recipe?,
             conditions,

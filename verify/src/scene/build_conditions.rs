@@ -134,7 +134,7 @@ impl Builder<'_> {
             .map(|(n, row)| {
                 Some(Obstacle {
                     name: row.name.clone(),
-                    shape: self.shape(&format!("obstacle[{n}].shape"), &row.shape)?,
+                    shape: self.solid(&format!("obstacle[{n}].shape"), &row.shape)?,
                     offset: row.offset,
                     side: match row.side {
                         SideFormat::Outside => ObstacleSide::Outside,

@@ -3,7 +3,7 @@
 use super::build::Builder;
 use super::format_geometry::{SelectorFormat, ShapeFormat, UnitFormat};
 use crate::files::{self, LengthUnit};
-use mtled::geometry::{LabelMap, Shape};
+use mtled::geometry::{LabelField, LabelMap, Shape, Surface};
 use mtled::selection::Selector;
 use mtled::tensor::Vector3;
 use std::path::Path;
@@ -20,14 +20,31 @@ impl From<UnitFormat> for LengthUnit {
 
 impl Builder<'_> {
     /// The solid that deforms; its label map becomes that of label selectors.
-    pub fn body(&mut self, format: &ShapeFormat) -> Option<Shape> {
-        let shape = self.shape("geometry.shape", format);
-        self.body_map = shape.as_ref().and_then(first_map);
-        shape
+    pub fn read_body(&mut self, format: &ShapeFormat) {
+        let key = "geometry.shape";
+        let Some(body) = self.sound_shape(key, format) else { return };
+        let section = body.validate_body().and_then(|()| body.section(&self.dimension));
+        self.section = section.map_err(|error| self.mistake(key, error)).ok();
+        self.body_map = first_map(&body);
+        self.body = Some(body);
+    }
+
+    /// A sound shape, in plane strain its cross-section.
+    pub fn solid(&mut self, key: &str, format: &ShapeFormat) -> Option<Shape> {
+        let shape = self.sound_shape(key, format)?;
+        shape.section(&self.dimension).map_err(|error| self.mistake(key, error)).ok()
+    }
+
+    /// A shape that the solver accepts.
+    fn sound_shape(&mut self, key: &str, format: &ShapeFormat) -> Option<Shape> {
+        let before = self.count();
+        let shape = self.shape(key, format).filter(|_| self.count() == before)?;
+        shape.validate().map_err(|error| self.mistake(key, error)).ok()?;
+        Some(shape)
     }
 
     /// A shape, or `None` and a mistake.
-    pub fn shape(&mut self, key: &str, format: &ShapeFormat) -> Option<Shape> {
+    fn shape(&mut self, key: &str, format: &ShapeFormat) -> Option<Shape> {
         match format {
             ShapeFormat::Box { min, max } => Some(self.box_shape(&format!("{key}.box"), min, max)),
             ShapeFormat::Cylinder { base, axis, radius, height } => {
@@ -131,13 +148,18 @@ impl Builder<'_> {
         unit: Option<UnitFormat>,
     ) -> Option<Shape> {
         let map = self.map(&format!("{key}.file"), file, unit)?;
+        let before = self.count();
         if labels.is_empty() {
             self.mistake(&format!("{key}.labels"), "is empty; it needs at least one label");
         }
         for (n, label) in labels.iter().enumerate() {
             self.known_label(&format!("{key}.labels[{n}]"), *label, &map);
         }
-        Some(Shape::LabelMap { map, labels: labels.to_vec() })
+        if self.count() > before {
+            return None;
+        }
+        let field = LabelField::new(map, labels).map_err(|error| self.mistake(key, error)).ok()?;
+        Some(Shape::Labels(Arc::new(field)))
     }
 
     fn known_label(&mut self, key: &str, label: u32, map: &LabelMap) {
@@ -178,7 +200,7 @@ impl Builder<'_> {
             }
             SelectorFormat::Shape(shape) => {
                 let key = format!("{key}.shape");
-                let shape = self.shape(&key, shape)?;
+                let shape = self.sound_shape(&key, shape)?;
                 Some(self.inside(&key, shape, None))
             }
             SelectorFormat::Label { value, file, unit } => {
@@ -241,24 +263,19 @@ impl Builder<'_> {
     fn surface(&mut self, key: &str, file: &Path, unit: UnitFormat) -> Option<Shape> {
         let path = self.resolve(file);
         let key = format!("{key}.file");
-        match files::stl::read(&path, unit.into()) {
-            Ok(_surface) => {
-                self.hash_file(&key, &path);
-                self.mistake(&key, "surfaces are not linked to the solver in this version");
-                None
-            }
-            Err(error) => {
-                self.mistake(&key, error);
-                None
-            }
-        }
+        let read = files::stl::read(&path, unit.into());
+        let read = read.map_err(|error| self.mistake(&key, error)).ok()?;
+        self.hash_file(&key, &path);
+        let surface = Surface::new(read.vertices, read.triangles);
+        let surface = surface.map_err(|error| self.mistake(&key, error)).ok()?;
+        Some(Shape::Surface(Arc::new(surface)))
     }
 }
 
 /// The first label map in a shape.
 fn first_map(shape: &Shape) -> Option<Arc<LabelMap>> {
     match shape {
-        Shape::LabelMap { map, .. } => Some(map.clone()),
+        Shape::Labels(field) => Some(field.map().clone()),
         Shape::Union(parts) => parts.iter().find_map(first_map),
         Shape::Difference(first, second) => first_map(first).or_else(|| first_map(second)),
         _ => None,

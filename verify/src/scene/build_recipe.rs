@@ -45,11 +45,7 @@ pub fn tolerance(format: &DiscretisationFormat) -> f64 {
 
 impl Builder<'_> {
     /// The recipe, or `None` and a mistake.
-    pub fn recipe(
-        &mut self,
-        format: &DiscretisationFormat,
-        body: Option<&Shape>,
-    ) -> Option<Recipe> {
+    pub fn recipe(&mut self, format: &DiscretisationFormat) -> Option<Recipe> {
         let dilation = format.dilation.unwrap_or(defaults::DILATION);
         if dilation <= 1.0 {
             let message = format!(
@@ -58,11 +54,11 @@ impl Builder<'_> {
             self.mistake("discretisation.dilation", message);
         }
         self.keys_of_cloud(format);
-        if let (Some(body), Some(spacing)) = (body, format.spacing) {
-            self.spacing_fits(body, spacing);
+        if let Some(spacing) = format.spacing {
+            self.spacing_fits(spacing);
         }
         let cloud = self.cloud(format);
-        let grid = self.grid(&format.grid, format.spacing);
+        let grid = self.grid(&format.grid, format);
         Some(Recipe {
             cloud: cloud?,
             dilation,
@@ -77,7 +73,19 @@ impl Builder<'_> {
     }
 
     /// Refuses a spacing that the body cannot hold.
-    fn spacing_fits(&mut self, _body: &Shape, _spacing: f64) {}
+    fn spacing_fits(&mut self, spacing: f64) {
+        let Some((min, max)) = self.section.as_ref().and_then(Shape::bounding_box) else {
+            return;
+        };
+        let edges = max - min;
+        let smallest = edges.iter().copied().fold(f64::INFINITY, f64::min);
+        if spacing > smallest {
+            let message = format!(
+                "is {spacing} m; it must not be larger than the body, which is {smallest} m thick"
+            );
+            self.mistake("discretisation.spacing", message);
+        }
+    }
 
     /// Refuses keys that belong to another kind of cloud.
     fn keys_of_cloud(&mut self, format: &DiscretisationFormat) {
@@ -162,7 +170,11 @@ impl Builder<'_> {
         }
     }
 
-    fn grid(&mut self, format: &GridFormat, spacing: Option<f64>) -> Option<BackgroundGrid> {
+    fn grid(
+        &mut self,
+        format: &GridFormat,
+        recipe: &DiscretisationFormat,
+    ) -> Option<BackgroundGrid> {
         let key = "discretisation.grid";
         let gauss_points = format.gauss_points.unwrap_or(defaults::GAUSS_POINTS);
         if !(1..=5).contains(&gauss_points) {
@@ -180,7 +192,7 @@ impl Builder<'_> {
             refinements.extend(part.map(|part| Refinement { part, size: row.cell }));
         }
         Some(BackgroundGrid {
-            cell: self.cell(key, format, spacing)?,
+            cell: self.cell(key, format, recipe)?,
             boundary_cell: format.boundary_cell,
             refinements,
             gauss_points,
@@ -189,8 +201,13 @@ impl Builder<'_> {
     }
 
     /// Edge of the largest cells \[m\].
-    fn cell(&mut self, key: &str, format: &GridFormat, spacing: Option<f64>) -> Option<f64> {
-        match (format.cell, format.cells_per_spacing, spacing) {
+    fn cell(
+        &mut self,
+        key: &str,
+        format: &GridFormat,
+        recipe: &DiscretisationFormat,
+    ) -> Option<f64> {
+        match (format.cell, format.cells_per_spacing, recipe.spacing) {
             (Some(_), Some(_), _) => {
                 let message = "cannot be given together with cell; remove one";
                 self.mistake(&format!("{key}.cells_per_spacing"), message);
@@ -205,6 +222,8 @@ impl Builder<'_> {
                 self.positive(&format!("{key}.cells_per_spacing"), ratio);
                 Some(spacing / ratio)
             }
+            // The missing spacing has been noted already.
+            (None, _, None) if recipe.cloud != CloudFormat::File => None,
             (None, _, None) => {
                 let message = "is missing; without a nodal spacing the cells need a length";
                 self.mistake(&format!("{key}.cell"), message);

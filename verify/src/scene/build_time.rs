@@ -91,9 +91,15 @@ impl Builder<'_> {
             true => vec!["body"],
             false => format.region.iter().map(|region| region.name.as_str()).collect(),
         };
+        let spacing = format.discretisation.spacing;
         let read: Vec<Option<Probe>> = (format.probe.iter().enumerate())
             .map(|(n, row)| self.probe(&format!("probe[{n}]"), row, &regions))
             .collect();
+        for (n, probe) in read.iter().enumerate() {
+            if let (Some(probe), Some(spacing)) = (probe, spacing) {
+                self.in_the_body(&format!("probe[{n}]"), probe, 0.5 * spacing);
+            }
+        }
         read.into_iter().flatten().collect()
     }
 
@@ -114,6 +120,21 @@ impl Builder<'_> {
             }
         };
         Some(Probe { name: row.name.clone(), kind })
+    }
+
+    /// Refuses positions further outside the body than `margin` \[m\], where
+    /// there is no displacement to record.
+    fn in_the_body(&mut self, key: &str, probe: &Probe, margin: f64) {
+        let Some(body) = self.section.clone() else { return };
+        let mut outside = probe.kind.positions().into_iter().filter_map(|position| {
+            let distance = body.signed_distance(&position);
+            (distance > margin).then_some((position, distance))
+        });
+        if let Some((position, distance)) = outside.next() {
+            let [x, y, z]: [f64; 3] = position.into();
+            let message = format!("({x}, {y}, {z}) m lies {distance:.3} m outside the body");
+            self.mistake(key, message);
+        }
     }
 
     fn lattice(&mut self, key: &str, format: &LatticeFormat) -> ProbeKind {

@@ -4,6 +4,7 @@
 use super::diagnostic::Diagnostic;
 use super::document::Document;
 use super::format::CaseFormat;
+use std::ops::Range;
 
 /// Reads the tables; the first mistake of a key or type is returned.
 pub fn deserialise(document: &Document) -> Result<CaseFormat, Diagnostic> {
@@ -20,19 +21,36 @@ fn located(document: &Document, error: &toml::de::Error) -> Diagnostic {
         return document.diagnostic_at(span, key, "is missing".to_string());
     }
     if message.starts_with("unknown field") {
-        let (name, known) = (quoted[0], &quoted[1..]);
-        let key = if path.rsplit('.').next() == Some(name) { path } else { join(&path, name) };
-        let message = format!("is not a key that is known here{}", choices(name, known));
-        return document.diagnostic_at(span, key, message);
+        return unknown_key(document, span, path, quoted[0], &quoted[1..]);
+    }
+    // A table of an enum has a message of its own.
+    if let Some(lists) = message.strip_prefix("unexpected keys in table: ") {
+        let (names, known) = lists.split_once(", available keys: ").unwrap_or((lists, ""));
+        let name = names.split(", ").next().unwrap_or(names);
+        return unknown_key(document, span, path, name, &known.split(", ").collect::<Vec<_>>());
     }
     if message.starts_with("unknown variant") {
         let (name, known) = (quoted[0], &quoted[1..]);
+        let path = path.strip_suffix(&format!(".{name}")).unwrap_or(&path).to_string();
+        let path = path.strip_suffix(&format!(".{name}")).unwrap_or(&path).to_string();
         let message =
             format!("`{name}` is not a choice that is known here{}", choices(name, known));
         return document.diagnostic_at(span, path, message);
     }
     let message = message.replace("expected f64", "expected a number").replace('\n', ", ");
     document.diagnostic_at(span, path, message)
+}
+
+fn unknown_key(
+    document: &Document,
+    span: Range<usize>,
+    path: String,
+    name: &str,
+    known: &[&str],
+) -> Diagnostic {
+    let key = if path.rsplit('.').next() == Some(name) { path } else { join(&path, name) };
+    let message = format!("is not a key that is known here{}", choices(name, known));
+    document.diagnostic_at(span, key, message)
 }
 
 fn join(path: &str, name: &str) -> String {

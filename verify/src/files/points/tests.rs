@@ -1,1 +1,157 @@
+use super::{csv, legacy_vtk, npy, read, vtu};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::{Compression, write::ZlibEncoder};
+use mtled::tensor::Vector3;
+use npyz::WriterBuilder;
+use std::io::Write;
 
+const COORDINATES: [f64; 6] = [0.0, 0.5, 1.0, -2.0, 0.25, 3.5];
+
+fn expected() -> Vec<Vector3> {
+    vec![Vector3::new(0.0, 0.5, 1.0), Vector3::new(-2.0, 0.25, 3.5)]
+}
+
+#[test]
+fn csv_is_read_with_and_without_a_header() {
+    assert_eq!(csv::parse(b"0,0.5,1\n-2, 0.25 ,3.5\n").unwrap(), expected());
+    assert_eq!(csv::parse(b"# nodes\nid,z,x,y\n1,1,0,0.5\n2,3.5,-2,0.25\n").unwrap(), expected());
+    assert_eq!(csv::parse(b"x,y\n1,2\n").unwrap(), [Vector3::new(1.0, 2.0, 0.0)]);
+}
+
+#[test]
+fn a_bad_line_of_csv_is_named() {
+    let message = csv::parse(b"x,y,z\n1,2,3\n1,two,3\n").unwrap_err().to_string();
+    assert!(message.contains("line 3 is `1,two,3`"), "{message}");
+    assert!(csv::parse(b"a,b,c\n1,2,3\n").is_err());
+    assert!(csv::parse(b"1,2,3,4\n").is_err());
+}
+
+fn npy_bytes<T: npyz::AutoSerialize + Copy>(
+    values: &[T],
+    shape: &[u64],
+    order: npyz::Order,
+) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let options = npyz::WriteOptions::new().default_dtype().shape(shape).order(order);
+    let mut writer = options.writer(&mut bytes).begin_nd().unwrap();
+    writer.extend(values.iter().copied()).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+#[test]
+fn numpy_arrays_are_read_in_both_orders_and_precisions() {
+    let by_rows = npy_bytes(&COORDINATES, &[2, 3], npyz::Order::C);
+    assert_eq!(npy::parse(&by_rows).unwrap(), expected());
+    let by_columns = [0.0, -2.0, 0.5, 0.25, 1.0, 3.5];
+    let by_columns = npy_bytes(&by_columns, &[2, 3], npyz::Order::Fortran);
+    assert_eq!(npy::parse(&by_columns).unwrap(), expected());
+    let single = npy_bytes(&COORDINATES.map(|x| x as f32), &[2, 3], npyz::Order::C);
+    assert_eq!(npy::parse(&single).unwrap(), expected());
+    let plane = npy_bytes(&[1.0, 2.0], &[1, 2], npyz::Order::C);
+    assert_eq!(npy::parse(&plane).unwrap(), [Vector3::new(1.0, 2.0, 0.0)]);
+}
+
+#[test]
+fn numpy_arrays_of_another_shape_or_type_are_refused() {
+    let wide = npy_bytes(&COORDINATES, &[1, 6], npyz::Order::C);
+    assert!(npy::parse(&wide).unwrap_err().to_string().contains("shape [1, 6]"));
+    let whole = npy_bytes(&[1i32, 2, 3], &[1, 3], npyz::Order::C);
+    assert!(npy::parse(&whole).unwrap_err().to_string().contains("of floats"));
+    let whole = npy_bytes(&COORDINATES, &[2, 3], npyz::Order::C);
+    assert!(npy::parse(&whole[..whole.len() - 4]).is_err());
+}
+
+#[test]
+fn legacy_vtk_is_read_as_text_and_binary() {
+    let header = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n";
+    let text = format!("{header}0 0.5 1\n-2 0.25 3.5\nVERTICES 0 0\n");
+    assert_eq!(legacy_vtk::parse(text.as_bytes()).unwrap(), expected());
+    let header = header.replace("ASCII", "BINARY").replace("float", "double");
+    let data = COORDINATES.map(f64::to_be_bytes).concat();
+    let bytes = [header.as_bytes(), &data].concat();
+    assert_eq!(legacy_vtk::parse(&bytes).unwrap(), expected());
+    assert!(legacy_vtk::parse(&bytes[..bytes.len() - 8]).is_err());
+}
+
+fn vtu_text(attributes: &str, array: &str, content: &str, appended: &str) -> Vec<u8> {
+    format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" {attributes}>\n\
+         <UnstructuredGrid><Piece NumberOfPoints=\"2\" NumberOfCells=\"0\">\n\
+         <PointData><DataArray type=\"Float64\" Name=\"u\" format=\"ascii\">9 9</DataArray></PointData>\n\
+         <Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" {array}>{content}</DataArray>\
+         </Points></Piece></UnstructuredGrid>{appended}</VTKFile>\n"
+    )
+    .into_bytes()
+}
+
+fn little() -> Vec<u8> {
+    COORDINATES.map(f64::to_le_bytes).concat()
+}
+
+#[test]
+fn vtu_is_read_as_text_and_inline_binary() {
+    let text = vtu_text("", "format=\"ascii\"", "0 0.5 1\n-2 0.25 3.5", "");
+    assert_eq!(vtu::parse(&text).unwrap(), expected());
+    let short = STANDARD.encode([&48u32.to_le_bytes()[..], &little()].concat());
+    let inline = vtu_text("byte_order=\"LittleEndian\"", "format=\"binary\"", &short, "");
+    assert_eq!(vtu::parse(&inline).unwrap(), expected());
+    let big = COORDINATES.map(f64::to_be_bytes).concat();
+    let long = STANDARD.encode([&48u64.to_be_bytes()[..], &big].concat());
+    let attributes = "byte_order=\"BigEndian\" header_type=\"UInt64\"";
+    let inline = vtu_text(attributes, "format=\"binary\"", &long, "");
+    assert_eq!(vtu::parse(&inline).unwrap(), expected());
+}
+
+/// The coordinates in two compressed blocks with their header, in base64.
+fn compressed() -> String {
+    let blocks: Vec<Vec<u8>> = (little().chunks(32))
+        .map(|block| {
+            let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+            encoder.write_all(block).unwrap();
+            encoder.finish().unwrap()
+        })
+        .collect();
+    let lengths = [2, 32, 16, blocks[0].len() as u32, blocks[1].len() as u32];
+    let header: Vec<u8> = lengths.iter().flat_map(|n| n.to_le_bytes()).collect();
+    STANDARD.encode(header) + &STANDARD.encode(blocks.concat())
+}
+
+#[test]
+fn vtu_is_read_compressed_and_appended() {
+    let attributes = "header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"";
+    let inline = vtu_text(attributes, "format=\"binary\"", &compressed(), "");
+    assert_eq!(vtu::parse(&inline).unwrap(), expected());
+    let tail = format!("<AppendedData encoding=\"base64\">\n_AAAA{}</AppendedData>", compressed());
+    let appended = vtu_text(attributes, "format=\"appended\" offset=\"4\"", "", &tail);
+    assert_eq!(vtu::parse(&appended).unwrap(), expected());
+    let mut raw = vtu_text("", "format=\"appended\" offset=\"0\"", "", "");
+    raw.truncate(raw.len() - "</VTKFile>\n".len());
+    raw.extend(b"<AppendedData encoding=\"raw\">_");
+    raw.extend([&48u32.to_le_bytes()[..], &little()].concat());
+    raw.extend(b"</AppendedData></VTKFile>");
+    assert_eq!(vtu::parse(&raw).unwrap(), expected());
+}
+
+#[test]
+fn damaged_vtu_files_are_refused_with_a_reason() {
+    let short = STANDARD.encode([&99u32.to_le_bytes()[..], &little()].concat());
+    let truncated = vtu_text("", "format=\"binary\"", &short, "");
+    let message = vtu::parse(&truncated).unwrap_err().to_string();
+    assert!(message.contains("promises 99 bytes of data, there are 48"), "{message}");
+    assert!(vtu::parse(b"<html></html>").unwrap_err().to_string().contains("not a VTU file"));
+    let lz4 = vtu_text("compressor=\"vtkLZ4DataCompressor\"", "format=\"binary\"", &short, "");
+    assert!(vtu::parse(&lz4).unwrap_err().to_string().contains("vtkZLibDataCompressor or none"));
+}
+
+#[test]
+fn files_without_usable_points_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("nodes.csv");
+    std::fs::write(&path, "x,y,z\n").unwrap();
+    assert!(read(&path).unwrap_err().to_string().contains("no points"));
+    std::fs::write(&path, "1,2,inf\n").unwrap();
+    assert!(read(&path).unwrap_err().to_string().contains("not finite"));
+    assert!(read(&folder.path().join("nodes.xyz")).is_err());
+}

@@ -1,0 +1,198 @@
+//! Every mistake in a case file is reported with its place, its key and what
+//! was expected.
+
+use mtled_verify::scene::{Diagnostic, read_case};
+use std::path::{Path, PathBuf};
+
+/// File, line, key, part of the message.
+type Expected = (&'static str, usize, &'static str, &'static str);
+
+#[rustfmt::skip]
+const BAD_CASES: &[Expected] = &[
+    ("syntax_error", 7, "", "unclosed table"),
+    ("duplicate_key", 10, "", "duplicate key"),
+    ("unknown_key", 9, "material.tissue.densty", "did you mean `density`?"),
+    ("unknown_table", 26, "solver", "is not a key that is known here; expected one of title"),
+    ("unknown_law", 8, "material.tissue.law", "did you mean `neo_hookean_log_j`?"),
+    ("unknown_shape", 5, "geometry.shape", "`cube` is not a choice that is known here"),
+    ("unknown_key_in_shape", 5, "geometry.shape.box.mx", "did you mean `max`?"),
+    ("missing_law", 7, "material.tissue.law", "is missing"),
+    ("missing_time", 1, "time", "is missing"),
+    ("missing_extent", 17, "prescribe[0].of", "is missing"),
+    ("wrong_type", 15, "discretisation.spacing", "expected a number"),
+    ("short_vector", 5, "geometry.shape.box.max", "expected an array of length 3"),
+    ("not_a_number", 9, "material.tissue.density", "must be a finite number"),
+    ("infinite_offset", 29, "obstacle[0].offset", "is inf; it must be a finite number"),
+    ("incompressible", 11, "material.tissue.poisson_ratio", "is 0.5; it must lie in -1 < ν < 0.5"),
+    ("unstable_rubber", 12, "material.tissue.poisson_ratio", "loses its stiffness in tension; use ν ≥ 0.4000"),
+    ("mixed_constants", 11, "material.tissue.lame_modulus", "young_modulus with lame_modulus cannot be used"),
+    ("missing_constant", 10, "material.tissue.young_modulus", "young_modulus cannot be used; give young_modulus and poisson_ratio"),
+    ("no_constants", 7, "material.tissue", "has no elastic constants"),
+    ("rubber_constant_elsewhere", 12, "material.tissue.A", "belongs to law = \"mooney_rivlin\""),
+    ("volumetric_elsewhere", 12, "material.tissue.volumetric", "belongs to law = \"neo_hookean_isochoric\""),
+    ("negative_density", 9, "material.tissue.density", "is -1000; it must be positive"),
+    ("negative_stiffness", 10, "material.tissue.young_modulus", "is -3000; it must be positive"),
+    ("several_materials_no_region", 7, "material", "say with [[region]]"),
+    ("unknown_material", 10, "region[0].material", "did you mean `tissue`?"),
+    ("negative_radius", 5, "geometry.shape.sphere.radius", "is -0.1; it must be positive"),
+    ("empty_box", 5, "geometry.shape.box.max[1]", "must be larger than min, which is 0"),
+    ("crossed_polygon", 5, "geometry.shape", "cross or touch"),
+    ("unbounded_body", 5, "geometry.shape", "has no end"),
+    ("zero_normal", 20, "prescribe[0].where.plane.normal", "is zero; it must be a direction"),
+    ("empty_union", 20, "prescribe[0].where.union", "is empty"),
+    ("negative_spacing", 15, "discretisation.spacing", "is -0.02; it must be positive"),
+    ("missing_spacing", 13, "discretisation.spacing", "is missing"),
+    ("coarse_spacing", 15, "discretisation.spacing", "must not be larger than the body, which is 0.1 m"),
+    ("large_jitter", 16, "discretisation.jitter", "must lie in 0 ≤ jitter < 0.5"),
+    ("jitter_elsewhere", 16, "discretisation.jitter", "belongs to cloud = \"jittered\""),
+    ("small_dilation", 16, "discretisation.dilation", "it must be larger than 1"),
+    ("no_gauss_points", 16, "discretisation.grid.gauss_points", "is 0; it must be 1 to 5"),
+    ("many_gauss_points", 16, "discretisation.grid.gauss_points", "is 6; it must be 1 to 5"),
+    ("two_cell_sizes", 16, "discretisation.grid.cells_per_spacing", "cannot be given together with cell"),
+    ("missing_nodes_file", 15, "discretisation.file", "no_such_nodes.csv: the file cannot be read"),
+    ("nothing_prescribed", 17, "prescribe[0]", "prescribes nothing"),
+    ("no_component", 21, "prescribe[0].displacement", "has no component"),
+    ("two_motions", 22, "prescribe[0].rotation", "cannot be given together with displacement"),
+    ("empty_table", 22, "prescribe[0].amplitude.table", "is empty"),
+    ("times_decrease", 22, "prescribe[0].amplitude.table[2]", "has time 1 after 1; times must increase"),
+    ("negative_duration", 22, "prescribe[0].amplitude.smooth.duration", "must be positive"),
+    ("early_release", 22, "prescribe[0].release", "is 0; it must be positive"),
+    ("duplicate_name", 27, "traction[0].name", "`bottom` is already the name of prescribe[0]"),
+    ("missing_end", 23, "time.end", "is missing"),
+    ("negative_end", 25, "time.end", "is -1; it must be positive"),
+    ("large_safety_factor", 25, "time.safety_factor", "is 1.1; it must lie in (0, 1]"),
+    ("negative_damping", 26, "time.damping", "must not be negative"),
+    ("damping_elsewhere", 25, "time.damping", "belongs to method = \"dynamic\""),
+    ("unknown_region", 28, "probe[0].centre_of_mass", "did you mean `body`?"),
+    ("empty_probe", 26, "probe[0]", "exactly one of point, lattice, centre_of_mass"),
+    ("probe_outside", 26, "probe[0]", "lies 0.100 m outside the body"),
+    ("plane_in_3d", 4, "plane", "belongs to dimension = \"plane_strain\""),
+    ("missing_plane", 3, "dimension", "needs a [plane]"),
+    ("z_in_plane_strain", 26, "prescribe[0].displacement.z", "there is no motion along z in plane strain"),
+    ("gravity_out_of_plane", 32, "body_force[0].acceleration", "it must be 0 in plane strain"),
+    ("tilted_axis", 26, "prescribe[0].rotation.axis", "in plane strain it must be along z"),
+    ("plane_misses_body", 10, "geometry.shape", "does not reach the plane z = 0.5 m"),
+    ("missing_label_map", 5, "geometry.shape.label_map.file", "no_such_slice.nrrd: the file cannot be read"),
+    ("unknown_label", 5, "geometry.shape.label_map.labels[2]", "label 7 does not occur; the map has [1, 2, 3]"),
+    ("label_without_map", 20, "prescribe[0].where.label", "needs a `file`"),
+    ("missing_surface", 5, "geometry.shape.stl.file", "no_such.stl: the file cannot be read"),
+];
+
+fn folder() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bad_cases"))
+}
+
+fn mistakes(path: &Path) -> Vec<Diagnostic> {
+    match read_case(path) {
+        Ok(_) => panic!("{} is accepted", path.display()),
+        Err(mistakes) => mistakes,
+    }
+}
+
+fn printed(mistakes: &[Diagnostic]) -> String {
+    mistakes.iter().map(|mistake| format!("{mistake}\n")).collect()
+}
+
+#[test]
+fn every_mistake_is_found_at_its_place() {
+    let mut wrong = String::new();
+    for (name, line, key, fragment) in BAD_CASES {
+        let path = folder().join(format!("{name}.toml"));
+        let found = mistakes(&path);
+        let first = &found[0];
+        let right = first.location.line == *line
+            && first.location.file == path.display().to_string()
+            && first.key == *key
+            && first.message.contains(fragment);
+        if !right {
+            wrong += &format!("expected {line}: {key}: {fragment}\n{}\n", printed(&found));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn a_mistake_is_reported_once() {
+    for (name, ..) in BAD_CASES {
+        let found = mistakes(&folder().join(format!("{name}.toml")));
+        assert_eq!(found.len(), 1, "{name}:\n{}", printed(&found));
+    }
+}
+
+#[test]
+fn every_bad_case_is_in_the_table() {
+    for entry in std::fs::read_dir(folder()).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_string_lossy().to_string();
+        assert!(BAD_CASES.iter().any(|row| row.0 == name), "{name} is not tested");
+    }
+}
+
+#[test]
+fn a_mistake_is_printed_with_its_line_and_a_caret() {
+    let found = mistakes(&folder().join("incompressible.toml"));
+    let printed = found[0].to_string();
+    let lines: Vec<&str> = printed.lines().collect();
+    assert!(lines[0].ends_with(
+        "incompressible.toml:11:17: material.tissue.poisson_ratio: is 0.5; it must lie in \
+         -1 < ν < 0.5 (0.499 for nearly incompressible tissue)"
+    ));
+    assert_eq!(lines[1..], ["11 | poisson_ratio = 0.5", "   |                 ^^^"]);
+}
+
+#[test]
+fn several_mistakes_are_reported_together() {
+    let text = std::fs::read_to_string(folder().join("negative_density.toml")).unwrap();
+    let text = text.replace("spacing = 0.02", "spacing = 0.02\ndilation = 0.5");
+    let found = mtled_verify::scene::parse_case(&text, "two.toml", &folder()).unwrap_err();
+    let keys: Vec<&str> = found.iter().map(|mistake| mistake.key.as_str()).collect();
+    assert_eq!(keys, ["material.tissue.density", "discretisation.dilation"]);
+}
+
+#[test]
+fn a_case_file_that_does_not_exist_is_named() {
+    let found = mistakes(Path::new("no/such/case.toml"));
+    assert!(found[0].to_string().starts_with("no/such/case.toml:1:1: cannot be read: "));
+}
+
+/// A case in a folder of its own whose body is the label map `labels.nrrd`.
+fn case_with_label_map(bytes: &[u8]) -> Vec<Diagnostic> {
+    let text = std::fs::read_to_string(folder().join("missing_label_map.toml")).unwrap();
+    let text = text.replace("../../../reference/brain/no_such_slice.nrrd", "labels.nrrd");
+    let temporary = tempfile::tempdir().unwrap();
+    std::fs::write(temporary.path().join("labels.nrrd"), bytes).unwrap();
+    let case = temporary.path().join("case.toml");
+    std::fs::write(&case, text).unwrap();
+    mistakes(&case)
+}
+
+fn one_label_map_mistake(found: &[Diagnostic], fragment: &str) {
+    let (count, first) = (found.len(), &found[0]);
+    assert_eq!((count, first.location.line), (1, 5), "{}", printed(found));
+    assert_eq!(first.key, "geometry.shape.label_map.file");
+    assert!(first.message.contains(fragment), "{first}");
+}
+
+#[test]
+fn a_truncated_label_map_is_refused_with_its_length() {
+    let slice = folder().join("../../../reference/brain/slice.nrrd");
+    let bytes = std::fs::read(slice).unwrap();
+    let found = case_with_label_map(&bytes[..bytes.len() / 2]);
+    one_label_map_mistake(&found, "truncated: its header promises 149150 bytes of data, there are");
+}
+
+#[test]
+fn a_label_map_of_the_wrong_byte_order_is_refused() {
+    let header = "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\
+                  endian: big\nspace directions: (10,0,0) (0,10,0) (0,0,10)\n\n";
+    let mut bytes = header.as_bytes().to_vec();
+    (0..64u16).for_each(|voxel| bytes.extend((voxel % 4).to_le_bytes()));
+    let found = case_with_label_map(&bytes);
+    one_label_map_mistake(&found, "the byte order of the header (big endian) is wrong");
+}
+
+#[test]
+fn a_label_map_that_is_something_else_is_refused() {
+    let found = case_with_label_map(b"P5 157 190 255 ");
+    one_label_map_mistake(&found, "this is not an NRRD file");
+}
