@@ -64,8 +64,7 @@ fn march(
 ) -> Result<Summary, Error> {
     let mut buffers = Buffers::new(model, observer.tracks_work());
     let mut pace = Pace::new(model, control, state, &mut buffers)?;
-    let mut stopped =
-        watch(model, state, &mut buffers, 1.0, 0.0, observer) == Continue::Stop;
+    let mut stopped = watch(model, state, &mut buffers, 1.0, 0.0, observer) == Continue::Stop;
     while !stopped && state.time < end * (1.0 - 1e-12) {
         pace.reevaluate(model, state, &mut buffers);
         let remaining = end - state.time;

@@ -64,7 +64,11 @@ pub fn prepare(problem: &Problem) -> Result<Prepared, Error> {
 }
 
 /// Marches a prepared problem.
-pub fn march(problem: &Problem, prepared: Prepared, observer: &mut dyn Observer) -> Result<Solved, Error> {
+pub fn march(
+    problem: &Problem,
+    prepared: Prepared,
+    observer: &mut dyn Observer,
+) -> Result<Solved, Error> {
     let (start, cpu) = (Instant::now(), cpu_seconds());
     let mut state = State::new(&prepared.model);
     let summary = simulate(&prepared.model, &problem.motion, &mut state, observer)?;

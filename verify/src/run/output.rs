@@ -26,7 +26,10 @@ fn write_frames(case: &Case, solved: &Solved, record: &Record, dir: &Path) -> Re
         let name = format!("nodes_{index:04}.vtu");
         // A static run has no time of its own: its steps tell frames apart.
         let time = if dynamic { frame.time } else { frame.step as f64 };
-        write_vtu(&dir.join(&name), &node_frame(&case.problem, solved, &points, &frame.displacement, time)?)?;
+        write_vtu(
+            &dir.join(&name),
+            &node_frame(&case.problem, solved, &points, &frame.displacement, time)?,
+        )?;
         series.push((time, name));
     }
     write_pvd(&dir.join(format!("{}.pvd", case.name)), &series)
@@ -65,7 +68,8 @@ fn averaged(problem: &Problem, solved: &Solved, u: &[f64]) -> (Vec<f64>, Vec<f64
     let discretisation = &solved.prepared.discretisation;
     let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
     let nodes = discretisation.cloud.positions.len();
-    let (mut total, mut jacobian, mut stress) = (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; 9 * nodes]);
+    let (mut total, mut jacobian, mut stress) =
+        (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; 9 * nodes]);
     for point in 0..rows.len() {
         let F = rows.deformation_gradient(point, u, solved.prepared.model.components);
         let law = &problem.regions[quadrature.regions[point] as usize].material.law;
@@ -94,9 +98,11 @@ fn history_csv(case: &Case, record: &Record) -> Result<String> {
     let axes = ["x", "y", "z"];
     let single: Vec<usize> =
         (0..case.probes.len()).filter(|&i| record.references[i].len() == 1).collect();
-    let mut header: Vec<String> = ["step", "time_s", "smallest_jacobian", "touching_nodes"].map(String::from).into();
+    let mut header: Vec<String> =
+        ["step", "time_s", "smallest_jacobian", "touching_nodes"].map(String::from).into();
     header.extend(
-        ["kinetic_j", "strain_j", "external_work_j", "constraint_work_j", "damping_loss_j"].map(String::from),
+        ["kinetic_j", "strain_j", "external_work_j", "constraint_work_j", "damping_loss_j"]
+            .map(String::from),
     );
     for &probe in &single {
         header.extend(axes.map(|axis| format!("{}.u{axis}_m", case.probes[probe].name)));
@@ -108,7 +114,8 @@ fn history_csv(case: &Case, record: &Record) -> Result<String> {
     writer.write_record(&header)?;
     for sample in &record.samples {
         let e = &sample.energies;
-        let mut row = vec![sample.step as f64, sample.time, sample.smallest_jacobian, sample.touching as f64];
+        let mut row =
+            vec![sample.step as f64, sample.time, sample.smallest_jacobian, sample.touching as f64];
         row.extend([e.kinetic, e.strain, e.external_work, e.constraint_work, e.damping_loss]);
         for &probe in &single {
             row.extend(sample.displacements[probe][0].iter());

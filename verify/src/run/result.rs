@@ -171,7 +171,11 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
     if let Some(last) = record.samples.last() {
         let probes = case.probes.iter().zip(&record.references).zip(&last.displacements);
         for ((probe, references), displacements) in probes.filter(|(_, u)| u.len() == 1) {
-            let place = if matches!(probe.kind, ProbeKind::CentreOfMass { .. }) { "centre of mass" } else { "point" };
+            let place = if matches!(probe.kind, ProbeKind::CentreOfMass { .. }) {
+                "centre of mass"
+            } else {
+                "point"
+            };
             lines.push(format!(
                 "  {place} \"{}\" at ({}) m moved by ({}) m",
                 probe.name,
@@ -180,7 +184,11 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
             ));
         }
         for (condition, reaction) in case.problem.conditions.iter().zip(&last.reactions) {
-            lines.push(format!("  force of \"{}\": ({}) N", condition.name, triple(&reaction.force)));
+            lines.push(format!(
+                "  force of \"{}\": ({}) N",
+                condition.name,
+                triple(&reaction.force)
+            ));
         }
     }
     lines.push(format!(

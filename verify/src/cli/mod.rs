@@ -1,0 +1,120 @@
+//! The command line: parse, dispatch, exit code.
+
+mod case;
+mod solve;
+mod verify;
+
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::io::IsTerminal;
+use std::process::ExitCode;
+
+/// Meshless soft-tissue solver that can be checked.
+///
+/// Exit codes: 0 all is well, 1 a check failed, 2 could not run, 130 stopped
+/// by Ctrl-C (files are complete up to that moment). Data go to standard
+/// output, progress and messages to standard error.
+#[derive(Debug, Parser)]
+#[command(name = "mtled", version, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    #[command(flatten)]
+    common: Common,
+}
+
+const EXAMPLES: &str = "Examples:
+  mtled verify                                  check the solver, write reports/verify/index.html
+  mtled verify --only brain --out /tmp/brain    one study
+  mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON
+  mtled case check my_case.toml                 find the mistakes in a case file
+  mtled case list                               the cases that the program carries";
+
+#[derive(Debug, Args)]
+struct Common {
+    /// Threads to use; results do not depend on it [default: all processors].
+    #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// No progress and no summary, only errors.
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    /// What is written to standard output.
+    #[arg(long, global = true, value_enum, default_value_t = Format::Human)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Text for people.
+    Human,
+    /// One JSON document.
+    Json,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Solve a case file.
+    Solve(solve::SolveArgs),
+    /// Run the verification studies and write their report (the main job).
+    Verify(verify::VerifyArgs),
+    /// Check, list or describe case files.
+    #[command(subcommand)]
+    Case(case::CaseCommand),
+    /// Print a completion script for a shell.
+    Completions { shell: clap_complete::Shell },
+}
+
+/// Exit code of something that could not run.
+const COULD_NOT_RUN: u8 = 2;
+/// Exit code of a run that the user stopped.
+const STOPPED: u8 = 130;
+
+/// Runs the command line and returns the exit code.
+pub fn run() -> ExitCode {
+    let cli = Cli::parse();
+    let pool = cli.common.threads.map(|threads| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global()
+    });
+    // A second Ctrl-C ends the program at once.
+    let handler = ctrlc::set_handler(|| {
+        if crate::run::interrupted() {
+            std::process::exit(STOPPED as i32);
+        }
+        crate::run::interrupt();
+    });
+    let result = match (pool, handler) {
+        (Some(Err(error)), _) => Err(error.into()),
+        (_, Err(error)) => Err(error.into()),
+        _ => dispatch(&cli),
+    };
+    match result {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(COULD_NOT_RUN)
+        }
+    }
+}
+
+fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
+    match &cli.command {
+        Command::Solve(arguments) => solve::solve(arguments, &cli.common),
+        Command::Verify(arguments) => verify::verify(arguments, &cli.common),
+        Command::Case(command) => case::case(command),
+        Command::Completions { shell } => {
+            clap_complete::generate(*shell, &mut Cli::command(), "mtled", &mut std::io::stdout());
+            Ok(0)
+        }
+    }
+}
+
+impl Common {
+    /// Whether progress may be drawn on standard error.
+    fn draws(&self) -> bool {
+        !self.quiet && std::io::stderr().is_terminal()
+    }
+
+    /// Whether standard output takes colour.
+    fn colours(&self) -> bool {
+        std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+    }
+}

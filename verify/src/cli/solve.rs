@@ -1,0 +1,98 @@
+//! `mtled solve`.
+
+use super::case::{diagnose, load};
+use super::{COULD_NOT_RUN, Common, Format, STOPPED};
+use crate::run::{Recorder, march, prepare, result_json, summary_text, write_outputs};
+use crate::scene::Case;
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct SolveArgs {
+    /// Case file (TOML).
+    case: PathBuf,
+    /// Folder for VTU frames, history.csv and result.json
+    /// [default: reports/<case>].
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
+    let Some(case) = load(&arguments.case) else { return Ok(COULD_NOT_RUN) };
+    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(&case.name));
+    // A folder that cannot be written must not cost a whole run.
+    std::fs::create_dir_all(&out)?;
+    match solve_to(&case, &out, common) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("{}", diagnose(&case, &error));
+            Ok(COULD_NOT_RUN)
+        }
+    }
+}
+
+fn solve_to(
+    case: &Case,
+    out: &std::path::Path,
+    common: &Common,
+) -> Result<anyhow::Result<u8>, mtled::error::Error> {
+    let prepared = prepare(&case.problem)?;
+    if !common.quiet {
+        for warning in prepared.discretisation.warnings() {
+            eprintln!("warning: {warning}");
+        }
+    }
+    let bar = progress_bar(common);
+    let show = |progress: f64, step: usize| {
+        if step.is_multiple_of(16) {
+            bar.set_position((1000.0 * progress) as u64);
+            bar.set_message(format!("step {step}"));
+        }
+    };
+    let mut recorder = Recorder::new(case, &prepared, case.outputs.frames)?.with_progress(&show);
+    let solved = march(&case.problem, prepared, &mut recorder);
+    bar.finish_and_clear();
+    let record = recorder.finish();
+    let solved = solved.inspect_err(|_| {
+        if let Some(last) = record.samples.last() {
+            eprintln!("the last sound sample was step {}, t = {:.6} s", last.step, last.time);
+        }
+    })?;
+    Ok(finish(case, &solved, &record, out, common))
+}
+
+fn finish(
+    case: &Case,
+    solved: &crate::run::Solved,
+    record: &crate::run::Record,
+    out: &std::path::Path,
+    common: &Common,
+) -> anyhow::Result<u8> {
+    write_outputs(case, solved, record, out)?;
+    match common.format {
+        Format::Json => println!("{:#}", result_json(case, solved, record)),
+        Format::Human if !common.quiet => {
+            println!("{}\n  results in {}", summary_text(case, solved, record), out.display());
+        }
+        Format::Human => {}
+    }
+    if solved.summary.stopped {
+        eprintln!(
+            "stopped at t = {:.6} s; the files hold what was done until then",
+            solved.state.time
+        );
+        return Ok(STOPPED);
+    }
+    Ok(0)
+}
+
+fn progress_bar(common: &Common) -> ProgressBar {
+    if !common.draws() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr_with_hz(10));
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
