@@ -4,32 +4,36 @@
 use mtled::nodes::node_cloud;
 use mtled::problem::{Cloud, Dimension, Motion, Prescribed};
 use mtled::selection::Extent;
-use mtled_verify::scene::{Case, ProbeKind, read_case, schema};
+use mtled_verify::scene::{Case, ProbeKind, parse_case, read_case, schema};
+use sha2::{Digest, Sha256};
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
 fn cases() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../reference/cases"))
 }
 
-fn case(name: &str) -> Case {
-    read_case(&cases().join(format!("{name}.toml"))).unwrap_or_else(|mistakes| {
-        panic!("{}", mistakes.iter().map(|m| format!("{m}\n")).collect::<String>())
-    })
-}
-
-fn all_cases() -> Vec<Case> {
+/// All cases, read once.
+static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
     let paths = std::fs::read_dir(cases()).unwrap().map(|entry| entry.unwrap().path());
     paths
         .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-        .map(|path| case(&path.file_stem().unwrap().to_string_lossy()))
+        .map(|path| {
+            read_case(&path).unwrap_or_else(|mistakes| {
+                panic!("{}", mistakes.iter().map(|m| format!("{m}\n")).collect::<String>())
+            })
+        })
         .collect()
+});
+
+fn case(name: &str) -> &'static Case {
+    CASES.iter().find(|case| case.name == name).unwrap()
 }
 
 #[test]
 fn every_case_is_valid_and_has_a_title_and_a_source() {
-    let cases = all_cases();
-    assert!(cases.len() >= 12, "only {} cases", cases.len());
-    for case in cases {
+    assert!(CASES.len() >= 12, "only {} cases", CASES.len());
+    for case in CASES.iter() {
         assert!(!case.title.is_empty() && !case.source.is_empty(), "{}", case.name);
         assert!(!case.probes.is_empty(), "{} records nothing", case.name);
         assert_eq!(case.hash.len(), 64);
@@ -38,7 +42,7 @@ fn every_case_is_valid_and_has_a_title_and_a_source() {
 
 #[test]
 fn every_case_makes_a_few_hundred_nodes_and_every_condition_selects_some() {
-    for case in all_cases() {
+    for case in CASES.iter() {
         let problem = &case.problem;
         let cloud = &problem.recipe.cloud;
         let nodes = node_cloud(&problem.body, cloud, &problem.dimension).unwrap();
@@ -132,4 +136,26 @@ fn a_lattice_lists_its_positions_with_x_fastest() {
     assert_eq!(positions.len(), 1331);
     assert!((positions[1].x - 0.01).abs() < 1e-15 && positions[1].y == 0.0);
     assert!((positions[1330] - nalgebra::Vector3::repeat(0.1)).norm() < 1e-15);
+}
+
+#[test]
+fn the_hash_covers_the_file_and_the_files_it_refers_to() {
+    let hash = |files: &[&str]| {
+        let mut hash = Sha256::new();
+        files.iter().for_each(|file| hash.update(std::fs::read(cases().join(file)).unwrap()));
+        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<String>()
+    };
+    assert_eq!(case("cube_shear").hash, hash(&["cube_shear.toml"]));
+    assert_eq!(case("brain_slice").hash, hash(&["brain_slice.toml", "../brain/slice.nrrd"]));
+}
+
+#[test]
+fn a_case_cut_short_anywhere_is_refused_or_read_but_never_panics() {
+    let text = std::fs::read_to_string(cases().join("cook_membrane.toml")).unwrap();
+    for (end, _) in text.char_indices() {
+        if let Err(mistakes) = parse_case(&text[..end], "cut.toml", &cases()) {
+            assert!(!mistakes.is_empty());
+            mistakes.iter().for_each(|mistake| assert!(!mistake.to_string().is_empty()));
+        }
+    }
 }

@@ -233,3 +233,19 @@ fn a_file_of_another_kind_is_refused_by_its_name() {
     let error = read_as("a.mha", b"").unwrap_err();
     assert!(matches!(error, Mistake::UnknownExtension { .. }));
 }
+
+#[test]
+fn a_label_map_cut_short_anywhere_is_refused() {
+    let raw = nrrd_text(&format!("{SMALL}encoding: raw\n"), &LABELS);
+    let zipped = nrrd_text(&format!("{SMALL}encoding: gzip\n"), &gzip(&[3; 8]));
+    for (name, bytes, needed) in [
+        ("a.nrrd", raw.clone(), raw.len()),
+        // The check sum at the end of the stream is not needed.
+        ("a.nrrd", zipped.clone(), zipped.len() - 10),
+        ("a.nii", nifti_bytes(true, |_| {}), 368),
+    ] {
+        for end in 0..needed {
+            assert!(read_as(name, &bytes[..end]).is_err(), "{name} of {end} bytes");
+        }
+    }
+}

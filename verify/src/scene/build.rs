@@ -7,7 +7,7 @@ use super::format::{CaseFormat, DimensionFormat};
 use super::format_geometry::UnitFormat;
 use super::reading::nearest;
 use super::{Case, build_recipe};
-use mtled::geometry::{LabelMap, Shape};
+use mtled::geometry::{LabelField, LabelMap, Shape};
 use mtled::problem::{Dimension, Problem};
 use mtled::tensor::Vector3;
 use sha2::{Digest, Sha256};
@@ -30,6 +30,8 @@ pub struct Builder<'a> {
     pub body_map: Option<Arc<LabelMap>>,
     /// Label maps read so far.
     pub maps: HashMap<(PathBuf, Option<UnitFormat>), Arc<LabelMap>>,
+    /// Solids made of labels so far, costly to make.
+    pub fields: Vec<Arc<LabelField>>,
     mistakes: Vec<Diagnostic>,
     hash: Sha256,
 }
@@ -140,6 +142,7 @@ pub fn build(
         section: None,
         body_map: None,
         maps: HashMap::new(),
+        fields: Vec::new(),
         mistakes: Vec::new(),
         hash: Sha256::new_with_prefix(document.text()),
     };

@@ -158,8 +158,19 @@ impl Builder<'_> {
         if self.count() > before {
             return None;
         }
-        let field = LabelField::new(map, labels).map_err(|error| self.mistake(key, error)).ok()?;
-        Some(Shape::Labels(Arc::new(field)))
+        self.field(key, map, labels).map(Shape::Labels)
+    }
+
+    /// The solid of some labels, made once.
+    fn field(&mut self, key: &str, map: Arc<LabelMap>, labels: &[u32]) -> Option<Arc<LabelField>> {
+        let same =
+            |made: &&Arc<LabelField>| Arc::ptr_eq(made.map(), &map) && made.labels() == labels;
+        if let Some(made) = self.fields.iter().find(same) {
+            return Some(made.clone());
+        }
+        let made = LabelField::new(map, labels).map_err(|error| self.mistake(key, error)).ok()?;
+        self.fields.push(Arc::new(made));
+        self.fields.last().cloned()
     }
 
     fn known_label(&mut self, key: &str, label: u32, map: &LabelMap) {
@@ -189,9 +200,8 @@ impl Builder<'_> {
                 Some(self.inside(&format!("{key}.half_space"), shape, *tolerance))
             }
             SelectorFormat::Box { min, max, tolerance } => {
-                let key = format!("{key}.box");
-                let shape = self.box_shape(&key, min, max);
-                Some(self.inside(&key, shape, *tolerance))
+                let shape = self.box_shape(&format!("{key}.box"), min, max);
+                Some(self.inside(&format!("{key}.box"), shape, *tolerance))
             }
             SelectorFormat::Sphere { centre, radius, tolerance } => {
                 self.positive(&format!("{key}.sphere.radius"), *radius);

@@ -155,3 +155,17 @@ fn files_without_usable_points_are_refused() {
     assert!(read(&path).unwrap_err().to_string().contains("not finite"));
     assert!(read(&folder.path().join("nodes.xyz")).is_err());
 }
+
+#[test]
+fn binary_points_cut_short_anywhere_are_refused_or_read_but_never_panic() {
+    let data = COORDINATES.map(f64::to_be_bytes).concat();
+    let header = b"# vtk DataFile Version 3.0\ntitle\nBINARY\nDATASET POLYDATA\nPOINTS 2 double\n";
+    let vtk = [&header[..], &data].concat();
+    assert!((0..vtk.len()).all(|end| legacy_vtk::parse(&vtk[..end]).is_err()));
+    let attributes = "compressor=\"vtkZLibDataCompressor\"";
+    let tail = format!("<AppendedData encoding=\"base64\">\n_AAAA{}</AppendedData>", compressed());
+    let vtu = vtu_text(attributes, "format=\"appended\" offset=\"4\"", "", &tail);
+    (0..vtu.len()).for_each(|end| drop(vtu::parse(&vtu[..end])));
+    let npy = npy_bytes(&COORDINATES, &[2, 3], npyz::Order::C);
+    assert!((0..npy.len()).all(|end| npy::parse(&npy[..end]).is_err()));
+}
