@@ -27,6 +27,7 @@ pub struct LabelField {
     corner: Vector3,
     /// Rows: unit vectors along the indices.
     frame: Matrix3,
+    bounds: (Vector3, Vector3),
 }
 
 impl LabelField {
@@ -94,7 +95,8 @@ impl LabelField {
         let first = Vector3::from_fn(|k, _| shift[k] as f64);
         let corner = map.origin - map.directions * first;
         let frame = Matrix3::from_fn(|k, c| map.directions[(c, k)] / step[k]);
-        LabelField { map, labels, distance, corner, frame }
+        let bounds = bounds(&distance, &corner, &frame);
+        LabelField { map, labels, distance, corner, frame, bounds }
     }
 
     /// Signed distance \[m\], negative inside.
@@ -120,19 +122,22 @@ impl LabelField {
     /// Around all samples within a voxel of the solid; infinite along the
     /// axis of a plane cross-section.
     pub(super) fn bounding_box(&self) -> (Vector3, Vector3) {
-        let grid = &self.distance;
-        let reach = grid.step.max();
-        let mut lower = Vector3::repeat(f64::INFINITY);
-        let mut upper = -lower;
-        for (index, _) in grid.values.iter().enumerate().filter(|(_, d)| **d < reach) {
-            let X = self.corner + self.frame.transpose() * grid.local(index);
-            (lower, upper) = (lower.inf(&X), upper.sup(&X));
-        }
-        if grid.size.contains(&1) {
-            (lower.z, upper.z) = (f64::NEG_INFINITY, f64::INFINITY);
-        }
-        (lower, upper)
+        self.bounds
     }
+}
+
+fn bounds(grid: &ScalarGrid, corner: &Vector3, frame: &Matrix3) -> (Vector3, Vector3) {
+    let reach = grid.step.max();
+    let mut lower = Vector3::repeat(f64::INFINITY);
+    let mut upper = -lower;
+    for (index, _) in grid.values.iter().enumerate().filter(|(_, d)| **d < reach) {
+        let X = corner + frame.transpose() * grid.local(index);
+        (lower, upper) = (lower.inf(&X), upper.sup(&X));
+    }
+    if grid.size.contains(&1) {
+        (lower.z, upper.z) = (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    (lower, upper)
 }
 
 /// Gaussian along one axis, zero outside the grid.

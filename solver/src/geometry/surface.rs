@@ -16,6 +16,7 @@ pub struct Surface {
     vertices: Vec<Vector3>,
     triangles: Vec<[u32; 3]>,
     mesh: TriMesh,
+    bounds: (Vector3, Vector3),
 }
 
 impl Surface {
@@ -37,7 +38,9 @@ impl Surface {
         let points = vertices.iter().map(parry).collect();
         let mesh = TriMesh::with_flags(points, triangles.clone(), TriMeshFlags::ORIENTED)
             .map_err(|_| empty)?;
-        let surface = Surface { vertices, triangles, mesh };
+        let first = (vertices[0], vertices[0]);
+        let bounds = vertices.iter().fold(first, |(l, u), v| (l.inf(v), u.sup(v)));
+        let surface = Surface { vertices, triangles, mesh, bounds };
         let volume = surface.volume();
         if volume > 0.0 { Ok(surface) } else { Err(GeometryError::SurfaceInsideOut { volume }) }
     }
@@ -62,8 +65,7 @@ impl Surface {
     }
 
     pub(super) fn bounding_box(&self) -> (Vector3, Vector3) {
-        let first = self.vertices[0];
-        self.vertices.iter().fold((first, first), |(l, u), v| (l.inf(v), u.sup(v)))
+        self.bounds
     }
 
     /// Ends of the edges whose triangles enclose more than 30°.
