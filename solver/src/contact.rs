@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::discretisation::Discretisation;
+use crate::error::Error;
 use crate::essential::Constraints;
 use crate::problem::{Friction, Obstacle, ObstacleSide, Problem};
 use crate::state::vector_at;
@@ -37,19 +38,23 @@ impl ContactPlan {
         problem: &Problem,
         discretisation: &Discretisation,
         constraints: &Constraints,
-    ) -> ContactPlan {
+    ) -> Result<ContactPlan, Error> {
         let cloud = &discretisation.cloud;
         if problem.obstacles.is_empty() {
-            return ContactPlan::default();
+            return Ok(ContactPlan::default());
         }
         let free =
             |node: &u32| cloud.on_boundary[*node as usize] && !constraints.always_holds(*node);
         let mean = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
-        ContactPlan {
-            obstacles: problem.obstacles.clone(),
+        let section = |obstacle: &Obstacle| -> Result<Obstacle, Error> {
+            let shape = obstacle.shape.section(&problem.dimension)?;
+            Ok(Obstacle { shape, ..obstacle.clone() })
+        };
+        Ok(ContactPlan {
+            obstacles: problem.obstacles.iter().map(section).collect::<Result<_, _>>()?,
             nodes: (0..cloud.positions.len() as u32).filter(free).collect(),
             skin: mean,
-        }
+        })
     }
 }
 

@@ -122,11 +122,13 @@ impl Discretisation {
     /// Nodes and quadrature points of a problem with their supports. Points
     /// are sorted by region and along a space-filling curve.
     pub fn new(problem: &Problem) -> Result<Discretisation, Error> {
-        problem.body.validate()?;
+        problem.body.validate_body()?;
         let dimension = problem.dimension;
+        // In a plane only the cross-section counts: the ends are no boundary.
+        let body = problem.body.section(&dimension)?;
         let recipe = &problem.recipe;
         let cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
-        let mut quadrature = quadrature(&problem.body, &problem.regions, &recipe.grid, &dimension)?;
+        let mut quadrature = quadrature(&body, &problem.regions, &recipe.grid, &dimension)?;
         sort_along_curve(&mut quadrature);
         let influence_radius = cloud.spacing.iter().map(|h| recipe.dilation * h).collect();
         let approximation = Approximation::new(

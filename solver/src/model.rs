@@ -74,7 +74,7 @@ impl Model {
             positions: discretisation.cloud.positions.clone(),
             blocks: blocks(problem, discretisation),
             loads: load_patterns(problem, discretisation, &density)?,
-            contact: ContactPlan::new(problem, discretisation, &constraints),
+            contact: ContactPlan::new(problem, discretisation, &constraints)?,
             initial_velocity: initial_velocity(problem, discretisation),
             point_positions: quadrature.positions.clone(),
             extent: extent(&discretisation.cloud.positions),
