@@ -30,43 +30,53 @@ pub struct LabelField {
     bounds: (Vector3, Vector3),
 }
 
+fn check_labels(map: &LabelMap, labels: &[u32]) -> Result<(), GeometryError> {
+    if labels.is_empty() {
+        return Err(GeometryError::NoLabels);
+    }
+    match labels.iter().find(|label| !map.labels.contains(label)) {
+        Some(&label) => Err(GeometryError::NoSuchLabel { label }),
+        None => Ok(()),
+    }
+}
+
 impl LabelField {
     /// The solid of all voxels that have one of `labels`.
     pub fn new(map: Arc<LabelMap>, labels: &[u32]) -> Result<Self, GeometryError> {
-        if labels.is_empty() {
-            return Err(GeometryError::NoLabels);
-        }
-        if let Some(&label) = labels.iter().find(|label| !map.labels.contains(label)) {
-            return Err(GeometryError::NoSuchLabel { label });
-        }
+        check_labels(&map, labels)?;
         let size = map.size.map(|n| n + 2 * MARGIN);
-        let shift = [MARGIN as i64; 3];
-        Ok(Self::sampled(map, labels.to_vec(), size, shift))
+        Ok(Self::sampled(map, labels.to_vec(), size, [MARGIN as i64; 3]))
     }
 
-    /// The cross-section at height z \[m\], without ends: that of the layer
-    /// of voxels nearest to z. One index must run along z.
-    pub fn slice(&self, z: f64) -> Result<LabelField, GeometryError> {
-        if self.distance.size.contains(&1) {
-            return Ok(self.clone());
-        }
+    /// The cross-section of [`LabelField::new`] at height z \[m\], without ends:
+    /// that of the layer of voxels nearest to z. One index must run along z.
+    pub fn section(map: Arc<LabelMap>, labels: &[u32], z: f64) -> Result<Self, GeometryError> {
+        check_labels(&map, labels)?;
         let shape = "label map";
-        let axis = (0..3)
-            .find(|&k| self.frame[(k, 2)].abs() > 1.0 - 1e-6)
-            .ok_or(GeometryError::SectionUnsupported { shape, z })?;
-        let at = Vector3::new(self.map.origin.x, self.map.origin.y, z);
-        let layer = self.map.index_of(&at)[axis];
-        let last = self.map.size[axis] as f64 - 1.0;
+        let step = map.voxel();
+        let along_z = |k: &usize| map.directions[(2, *k)].abs() > (1.0 - 1e-6) * step[*k];
+        let axis = (0..3).find(along_z).ok_or(GeometryError::SectionUnsupported { shape, z })?;
+        let at = Vector3::new(map.origin.x, map.origin.y, z);
+        let layer = map.index_of(&at)[axis];
+        let last = map.size[axis] as f64 - 1.0;
         let empty = GeometryError::SectionEmpty { shape, z };
         if !(layer > -0.5 - 1e-9 && layer < last + 0.5 + 1e-9) {
             return Err(empty);
         }
-        let mut size = self.map.size.map(|n| n + 2 * MARGIN);
+        let mut size = map.size.map(|n| n + 2 * MARGIN);
         let mut shift = [MARGIN as i64; 3];
         size[axis] = 1;
         shift[axis] = -(layer.round().clamp(0.0, last) as i64);
-        let section = Self::sampled(self.map.clone(), self.labels.clone(), size, shift);
+        let section = Self::sampled(map, labels.to_vec(), size, shift);
         if section.distance.values.iter().all(|&d| d >= 0.0) { Err(empty) } else { Ok(section) }
+    }
+
+    /// The cross-section at height z \[m\]; that of a section is itself.
+    pub fn slice(&self, z: f64) -> Result<LabelField, GeometryError> {
+        if self.distance.size.contains(&1) {
+            return Ok(self.clone());
+        }
+        LabelField::section(self.map.clone(), &self.labels, z)
     }
 
     /// Sample (i, j, k) is voxel (i, j, k) − `shift`.

@@ -8,7 +8,7 @@ mod result;
 pub use output::write_outputs;
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Record, Recorder, Sample};
-pub use result::{result_json, summary_text};
+pub use result::{neighbour_visits, result_json, summary_text};
 
 use crate::machine::cpu_seconds;
 use crate::scene::Case;

@@ -4,6 +4,7 @@ use super::build::Builder;
 use super::format_geometry::{SelectorFormat, ShapeFormat, UnitFormat};
 use crate::files::{self, LengthUnit};
 use mtled::geometry::{LabelField, LabelMap, Shape, Surface};
+use mtled::problem::Dimension;
 use mtled::selection::Selector;
 use mtled::tensor::Vector3;
 use std::path::Path;
@@ -168,7 +169,11 @@ impl Builder<'_> {
         if let Some(made) = self.fields.iter().find(same) {
             return Some(made.clone());
         }
-        let made = LabelField::new(map, labels).map_err(|error| self.mistake(key, error)).ok()?;
+        let made = match self.dimension {
+            Dimension::Three => LabelField::new(map, labels),
+            Dimension::PlaneStrain { z, .. } => LabelField::section(map, labels, z),
+        };
+        let made = made.map_err(|error| self.mistake(key, error)).ok()?;
         self.fields.push(Arc::new(made));
         self.fields.last().cloned()
     }
