@@ -1,6 +1,6 @@
 //! Files that are either whole or absent.
 
-use super::{html, json, junit, markdown};
+use super::{html, json, junit, markdown, svg};
 use crate::study::Report;
 use anyhow::{Context, Result};
 use std::io::Write;
@@ -17,6 +17,17 @@ pub fn write_report(report: &Report, dir: &Path) -> Result<()> {
     ];
     for (name, text) in files {
         write_atomically(&dir.join(name), text.as_bytes())?;
+    }
+    write_figures(report, &dir.join("figures"))
+}
+
+/// Every figure as a picture of its own, `<study>-<number>.svg`.
+fn write_figures(report: &Report, dir: &Path) -> Result<()> {
+    for study in &report.studies {
+        for (number, figure) in study.figures.iter().enumerate() {
+            let name = format!("{}-{}.svg", study.id, number + 1);
+            write_atomically(&dir.join(name), svg::to_svg_file(figure).as_bytes())?;
+        }
     }
     Ok(())
 }

@@ -36,7 +36,7 @@ pub fn benchmarks(bench: &Workbench, study: &mut Study) -> Result<()> {
         ],
         rows,
     });
-    swing(&bench.case("turek_hron_csm3")?, study, bench.pick(0.005, 0.0025))
+    swing(&bench.case("turek_hron_csm3")?, study, bench.pick(0.0033333, 0.0025))
 }
 
 /// The tip of a static case over a ladder of spacings; the finest is gated.

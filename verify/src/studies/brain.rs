@@ -1,4 +1,5 @@
 //! The seed's experiment: a slice of brain pushed at a craniotomy.
+#![allow(non_snake_case)]
 
 use super::{Workbench, respaced, spacing_of};
 use crate::run::{MassCentre, Recorder, Solved, centres_of_mass, march, prepare};
@@ -45,7 +46,9 @@ pub fn brain(bench: &Workbench, study: &mut Study) -> Result<()> {
     check_changes(study, &run, &finer, &smaller_step);
     study.tables.push(centres_table(&run));
     study.tables.push(changes_table(&run, &finer, &smaller_step));
-    study.figures.push(Figure::Drawing(drawing(&run)?));
+    for (moment, when) in [(1, "at the release"), (2, "at the end")] {
+        study.figures.push(Figure::Drawing(drawing(&run, moment, when)?));
+    }
     let discretisation = &run.solved.prepared.discretisation;
     study.notes.push(format!(
         "{} nodes, {} quadrature points, {} steps of {:.1} µs; damping, push and skull gap are stated in \
@@ -284,8 +287,8 @@ fn changes_table(run: &Run, finer: &Run, smaller_step: &Run) -> Table {
     }
 }
 
-/// Outlines before, at the release and at the end, with the skull.
-fn drawing(run: &Run) -> Result<Drawing> {
+/// Outlines before and at a moment, with the skull and the pushed nodes.
+fn drawing(run: &Run, moment: usize, when: &str) -> Result<Drawing> {
     let Dimension::PlaneStrain { z, .. } = run.case.problem.dimension else {
         anyhow::bail!("the slice is not plane");
     };
@@ -316,19 +319,39 @@ fn drawing(run: &Run) -> Result<Drawing> {
             lines: in_millimetres(lines),
         };
         layers.push(layer("before", LayerStyle::Dashed, lines));
-        layers.push(layer("at the release", LayerStyle::Outline, &displaced(run, lines, 1, z)?));
+        layers.push(layer(when, LayerStyle::Outline, &displaced(run, lines, moment, z)?));
     }
+    layers.push(Layer {
+        name: "pushed nodes".into(),
+        style: LayerStyle::Dots,
+        colour: 3,
+        closed: false,
+        lines: in_millimetres(&[pushed_nodes(run, moment)]),
+    });
+    let seconds = run.moments[moment].time;
     Ok(Drawing {
-        title: "Brain slice before and at the release".into(),
+        title: format!("Brain slice before and {when}"),
         caption: format!(
-            "Dashed: before. Solid: after {:.1} s of pushing at the craniotomy (upper right). The skull is \
-             rigid, {:.0} mm from the brain.",
-            run.moments[1].time,
+            "Dashed: before. Solid: {when}, t = {seconds:.1} s. Dots: the nodes that were pushed inward at the \
+             craniotomy. The skull is rigid, {:.0} mm from the brain.",
             1e3 * skull.offset
         ),
         unit: "mm".into(),
         layers,
     })
+}
+
+/// Where the nodes of the craniotomy are at a moment \[m\].
+fn pushed_nodes(run: &Run, moment: usize) -> Vec<[f64; 2]> {
+    let model = &run.solved.prepared.model;
+    let u = &run.moments[moment].displacement;
+    let sets = model.constraints.active(0.0);
+    let rows = sets.first().map_or(&[][..], |set| set.rows.as_slice());
+    let place = |node: usize| {
+        let X = model.positions[node];
+        [X.x + u[model.components * node], X.y + u[model.components * node + 1]]
+    };
+    rows.iter().map(|row| place(row.node as usize)).collect()
 }
 
 /// Outlines carried along by the displacement field of a moment.
