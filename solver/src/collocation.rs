@@ -1,7 +1,6 @@
 //! Collocation of prescribed values for functions that do not interpolate.
 
 use crate::discretisation::{Discretisation, Rows};
-use crate::essential::ConstraintRow;
 use crate::tensor::Vector3;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::{
@@ -38,10 +37,10 @@ impl Collocation {
     pub fn new(
         discretisation: &Discretisation,
         mass: &[f64],
-        rows: &[ConstraintRow],
+        nodes: &[u32],
     ) -> Option<Collocation> {
         let positions: Vec<Vector3> =
-            rows.iter().map(|row| discretisation.cloud.positions[row.node as usize]).collect();
+            nodes.iter().map(|&node| discretisation.cloud.positions[node as usize]).collect();
         let rows = discretisation.rows_at(&positions).ok()?;
         let matrix = gram_matrix(&rows, mass)?;
         let symbolic = factorize_symbolic_cholesky(

@@ -5,8 +5,7 @@ use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::essential::Constraints;
 use crate::problem::{Friction, Obstacle, ObstacleSide, Problem};
-use crate::state::vector_at;
-use crate::tensor::Vector3;
+use crate::tensor::{Vector3, vector_at};
 
 /// The obstacles of a problem and the nodes that may touch them.
 #[derive(Debug, Clone, Default)]

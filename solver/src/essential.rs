@@ -34,6 +34,29 @@ pub struct ConstraintSet {
     collocation: Option<Collocation>,
 }
 
+impl ConstraintSet {
+    fn new(
+        component: usize,
+        rows: Vec<ConstraintRow>,
+        problem: &Problem,
+        discretisation: &Discretisation,
+        mass: &[f64],
+    ) -> Result<ConstraintSet, Error> {
+        let collocation = match problem.recipe.enforcement {
+            Enforcement::Direct => None,
+            Enforcement::Collocation => {
+                let nodes: Vec<u32> = rows.iter().map(|row| row.node).collect();
+                let dependent = Error::DependentConstraints {
+                    component: ['x', 'y', 'z'][component],
+                    rows: rows.len(),
+                };
+                Some(Collocation::new(discretisation, mass, &nodes).ok_or(dependent)?)
+            }
+        };
+        Ok(ConstraintSet { component, rows, collocation })
+    }
+}
+
 /// One constrained component of one node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConstraintRow {
@@ -77,30 +100,18 @@ impl Constraints {
         ends.push(f64::INFINITY);
         ends.sort_by(f64::total_cmp);
         ends.dedup();
-        let build = |until: f64| -> Result<Stage, Error> {
+        let stage = |until: f64| -> Result<Stage, Error> {
             let active = |c: usize| conditions[c].release.is_none_or(|release| release >= until);
             let mut sets = Vec::new();
             for component in 0..problem.dimension.components() {
                 let rows = claim(&conditions, &selected, component, active, mass.len());
-                if rows.is_empty() {
-                    continue;
+                if !rows.is_empty() {
+                    sets.push(ConstraintSet::new(component, rows, problem, discretisation, mass)?);
                 }
-                let collocation = match problem.recipe.enforcement {
-                    Enforcement::Direct => None,
-                    Enforcement::Collocation => {
-                        Some(Collocation::new(discretisation, mass, &rows).ok_or(
-                            Error::DependentConstraints {
-                                component: ['x', 'y', 'z'][component],
-                                rows: rows.len(),
-                            },
-                        )?)
-                    }
-                };
-                sets.push(ConstraintSet { component, rows, collocation });
             }
             Ok(Stage { until, sets })
         };
-        let stages = ends.into_iter().map(build).collect::<Result<_, _>>()?;
+        let stages = ends.into_iter().map(stage).collect::<Result<_, _>>()?;
         Ok(Constraints { conditions, stages })
     }
 

@@ -10,9 +10,8 @@
 //! Everything is total Lagrangian: `X` is a reference position, `Grad` means
 //! ∂/∂X, and `grad_phi` is Grad φ. Units are SI throughout.
 
+// The floors of the house: a module uses only what stands above it.
 pub mod tensor;
-
-pub mod error;
 
 pub mod material;
 
@@ -21,9 +20,10 @@ pub mod selection;
 
 pub mod problem;
 
-pub mod nodes;
+pub mod error;
 
 pub mod neighbours;
+pub mod nodes;
 pub mod weight_function;
 
 pub mod mls;
@@ -31,19 +31,31 @@ pub mod quadrature;
 
 pub mod discretisation;
 
-pub mod collocation;
-pub mod contact;
-pub mod essential;
-pub mod load;
 pub mod mass;
+pub mod time_step_bound;
+
+pub mod collocation;
+pub mod load;
+
+pub mod essential;
+
+pub mod contact;
+
 pub mod model;
 
-pub mod critical_time_step;
 pub mod internal_force;
-pub mod relaxation;
+
+pub mod critical_time_step;
 pub mod state;
+
 pub mod step;
 
 pub mod energy;
+
 pub mod observe;
+
+pub mod pace;
+
+pub mod relaxation;
+
 pub mod simulate;

@@ -9,6 +9,7 @@ use crate::mass::lumped_mass;
 use crate::material::Law;
 use crate::problem::Problem;
 use crate::tensor::Vector3;
+use crate::time_step_bound::per_point_bound;
 use std::ops::Range;
 
 /// A discretised body with its materials, conditions and loads.
@@ -67,8 +68,7 @@ impl Model {
             .collect();
         let lumped_mass = lumped_mass(discretisation, &density, problem.recipe.mass)?;
         let constraints = Constraints::new(problem, discretisation, &lumped_mass)?;
-        let bound =
-            crate::critical_time_step::per_point_bound(problem, discretisation, &lumped_mass);
+        let bound = per_point_bound(problem, discretisation, &lumped_mass);
         Ok(Model {
             components: problem.dimension.components(),
             positions: discretisation.cloud.positions.clone(),

@@ -4,8 +4,8 @@ use crate::error::Error;
 use crate::internal_force::internal_force;
 use crate::model::Model;
 use crate::observe::{Continue, Observer};
+use crate::pace::{Convergence, Pace, Summary, check, watch};
 use crate::problem::Relaxation;
-use crate::simulate::{Convergence, Pace, Summary, check, watch};
 use crate::state::State;
 use crate::step::{Buffers, Scheme, external_force, step};
 

@@ -3,7 +3,7 @@
 use crate::contact::ContactState;
 use crate::essential::ConstraintForces;
 use crate::model::Model;
-use crate::tensor::Vector3;
+use crate::tensor::{Vector3, vector_at};
 
 /// Displacements and velocities at one instant, and what has been done so far.
 #[derive(Debug)]
@@ -58,13 +58,4 @@ impl State {
     pub fn displacement_of(&self, node: usize, components: usize) -> Vector3 {
         vector_at(&self.displacement, node, components)
     }
-}
-
-/// Entry `node` of a packed nodal field.
-pub(crate) fn vector_at(field: &[f64], node: usize, components: usize) -> Vector3 {
-    let mut value = Vector3::zeros();
-    for k in 0..components {
-        value[k] = field[components * node + k];
-    }
-    value
 }

@@ -2,8 +2,8 @@
 
 use crate::internal_force::{SmallestJacobian, Workspace, internal_force};
 use crate::model::Model;
-use crate::state::{State, vector_at};
-use crate::tensor::Vector3;
+use crate::state::State;
+use crate::tensor::{Vector3, vector_at};
 
 /// v(t + Δt/2) = keep · v(t − Δt/2) + push · M⁻¹(f_ext − f_int), then
 /// u(t + Δt) = u(t) + Δt v(t + Δt/2).

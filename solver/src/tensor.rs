@@ -26,6 +26,16 @@ pub fn rotation(axis: &Vector3, angle: f64) -> Matrix3 {
     nalgebra::Rotation3::from_axis_angle(&unit, angle).into_inner()
 }
 
+/// Entry `node` of a packed nodal field with `components` per node; what is
+/// missing in a plane is 0.
+pub fn vector_at(field: &[f64], node: usize, components: usize) -> Vector3 {
+    let mut value = Vector3::zeros();
+    for k in 0..components {
+        value[k] = field[components * node + k];
+    }
+    value
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
