@@ -68,8 +68,9 @@ fn march(
     while !stopped && state.time < end * (1.0 - 1e-12) {
         pace.reevaluate(model, state, &mut buffers);
         let remaining = end - state.time;
-        // Whole steps to the end: the last one must not be a sliver.
-        let time_step = remaining / (remaining / pace.time_step).ceil();
+        // Whole steps to the end: the last one must not be a sliver, and
+        // round-off must not halve it.
+        let time_step = remaining / (remaining / pace.time_step - 1e-9).ceil().max(1.0);
         let scheme = Scheme::central_difference(time_step, state.time_step, damping);
         let (now, then) = (state.time, state.time + time_step);
         let report = step(model, &scheme, now, then, state, &mut buffers);
