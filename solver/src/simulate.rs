@@ -2,6 +2,7 @@
 
 use crate::critical_time_step::critical_time_step;
 use crate::error::Error;
+use crate::internal_force::{SmallestJacobian, internal_force};
 use crate::model::Model;
 use crate::observe::{Continue, Observer, View};
 use crate::problem::{Motion, StepControl};
@@ -80,6 +81,11 @@ fn march(
         let jacobian = report.smallest_jacobian.jacobian;
         stopped = watch(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
     }
+    // A step sees the points before it moves them: look at the last ones too.
+    let smallest_jacobian =
+        internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
+    pace.see(smallest_jacobian);
+    check(model, state, &StepReport { smallest_jacobian, largest_increment: 0.0 })?;
     Ok(pace.summary(state, stopped))
 }
 
@@ -199,8 +205,11 @@ impl Pace {
         self.since += 1;
         let (low, high) = self.summary.time_steps;
         self.summary.time_steps = (low.min(time_step), high.max(time_step));
-        let jacobian = report.smallest_jacobian.jacobian;
-        self.summary.smallest_jacobian = self.summary.smallest_jacobian.min(jacobian);
+        self.see(report.smallest_jacobian);
+    }
+
+    fn see(&mut self, smallest: SmallestJacobian) {
+        self.summary.smallest_jacobian = self.summary.smallest_jacobian.min(smallest.jacobian);
     }
 
     pub fn summary(&self, state: &State, stopped: bool) -> Summary {

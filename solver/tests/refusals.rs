@@ -3,9 +3,11 @@
 mod common;
 
 use common::*;
+use mtled::critical_time_step::critical_time_step;
 use mtled::discretisation::{Discretisation, Warning};
 use mtled::error::Error;
 use mtled::geometry::Shape;
+use mtled::internal_force::Workspace;
 use mtled::material::{MaterialError, MooneyRivlin};
 use mtled::model::Model;
 use mtled::observe::Unobserved;
@@ -195,13 +197,32 @@ fn steps_beyond_the_stable_limit_end_in_an_error_and_never_in_a_result() {
     assert_eq!(recorder.seen, state.step);
 }
 
-#[test]
-fn a_point_that_turns_inside_out_is_reported_with_its_index_place_and_jacobian() {
+/// A square between its base and a press that goes down by `share` of its edge.
+fn pressed(share: f64, duration: f64) -> Problem {
     let mut problem = square(6);
     problem.conditions.push(condition("base", face(1, 0.0), [None, Some(0.0), None]));
-    let mut press = condition("press", face(1, EDGE), [None, Some(-1.5 * EDGE), None]);
-    press.amplitude = Amplitude::Linear { duration: 0.02 };
+    let mut press = condition("press", face(1, EDGE), [None, Some(-share * EDGE), None]);
+    press.amplitude = Amplitude::Linear { duration };
     problem.conditions.push(press);
+    problem
+}
+
+#[test]
+fn a_fixed_step_that_compression_makes_unstable_ends_in_an_error() {
+    let mut problem = pressed(0.7, 0.5);
+    let (_, model) = build(&problem);
+    let rest = vec![0.0; model.size()];
+    let mut workspace = Workspace::new(&model);
+    let critical = critical_time_step(&model, &rest, 0.0, None, &mut workspace).time_step;
+    problem.motion = dynamic(10.0, 0.98 * critical, 0.0);
+    let (error, recorder, state, _) = failure(&problem);
+    assert!(matches!(error, Error::Diverged { .. } | Error::Inverted { .. }), "{error}");
+    assert!(recorder.seen == state.step && state.step > 1);
+}
+
+#[test]
+fn a_point_that_turns_inside_out_is_reported_with_its_index_place_and_jacobian() {
+    let mut problem = pressed(1.5, 0.02);
     problem.motion = dynamic(0.02, 1e-3, 0.0);
     let (error, recorder, state, model) = failure(&problem);
     let message = error.to_string();
@@ -211,6 +232,15 @@ fn a_point_that_turns_inside_out_is_reported_with_its_index_place_and_jacobian()
     assert!(jacobian <= 0.0 && position == model.point_positions[point]);
     assert!(step == state.step && time == state.time && recorder.seen == step);
     assert!(message.contains(&format!("point {point} ")), "{message}");
+}
+
+#[test]
+fn a_point_that_the_very_last_step_turns_inside_out_is_reported() {
+    let mut problem = pressed(1.5, 0.02);
+    problem.motion = dynamic(0.02, 1e-3, 0.0);
+    let (.., state, _) = failure(&problem);
+    problem.motion = dynamic(1e-3 * (state.step - 1) as f64, 1e-3, 0.0);
+    assert!(matches!(failure(&problem).0, Error::Inverted { .. }));
 }
 
 #[test]
