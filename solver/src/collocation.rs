@@ -89,6 +89,11 @@ impl Collocation {
         }
     }
 
+    /// The displacement field \[m\] at collocation node `i`.
+    pub fn displacement(&self, i: usize, u: &[f64], components: usize) -> Vector3 {
+        self.rows.interpolate(i, u, components)
+    }
+
     /// Hands the changes M⁻¹Φᵀλ to `correct(node, Δu)`.
     pub fn corrections(
         &self,

@@ -6,7 +6,7 @@ use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::problem::{Enforcement, EssentialCondition, Prescribed, Problem};
 use crate::selection::Extent;
-use crate::tensor::{Matrix3, Vector3, rotation};
+use crate::tensor::{Matrix3, Vector3, rotation, vector_at};
 
 /// The conditions of a problem, resolved to nodes and components.
 #[derive(Debug, Clone)]
@@ -198,25 +198,34 @@ impl Constraints {
         }
     }
 
-    /// Force and moment about `about` that each condition exerts on the body,
-    /// from the multipliers of the last step times `force_factor` \[1/s²\].
+    /// Force and moment about `about` that each condition exerts on the body
+    /// with reference `positions` \[m\] and nodal parameters `u` \[m\], from the
+    /// multipliers of the last step times `force_factor` \[1/s²\].
     pub fn reactions(
         &self,
         forces: &ConstraintForces,
         force_factor: f64,
         about: &Vector3,
-        position_of: impl Fn(u32) -> Vector3,
+        positions: &[Vector3],
+        u: &[f64],
     ) -> Vec<Reaction> {
+        let components = u.len() / positions.len();
         let nothing = Reaction { force: Vector3::zeros(), moment: Vector3::zeros() };
         let mut reactions = vec![nothing; self.conditions.len()];
         let sets = &self.stages[forces.stage].sets;
         for (set, multipliers) in sets.iter().zip(&forces.multipliers) {
-            for (row, multiplier) in set.rows.iter().zip(multipliers) {
+            for (i, (row, multiplier)) in set.rows.iter().zip(multipliers).enumerate() {
+                let node = row.node as usize;
+                // A constraint acts on the field where it prescribes the field.
+                let displacement = match &set.collocation {
+                    Some(collocation) => collocation.displacement(i, u, components),
+                    None => vector_at(u, node, components),
+                };
                 let mut force = Vector3::zeros();
                 force[set.component] = multiplier * force_factor;
                 let reaction = &mut reactions[row.condition as usize];
                 reaction.force += force;
-                reaction.moment += (position_of(row.node) - about).cross(&force);
+                reaction.moment += (positions[node] + displacement - about).cross(&force);
             }
         }
         reactions

@@ -28,9 +28,13 @@ impl View<'_> {
     /// body, in the order of the problem's conditions.
     pub fn reactions(&self, about: &Vector3) -> Vec<Reaction> {
         let (model, state) = (self.model, self.state);
-        model.constraints.reactions(&state.constraint_forces, state.force_factor, about, |node| {
-            model.positions[node as usize] + state.displacement_of(node as usize, model.components)
-        })
+        model.constraints.reactions(
+            &state.constraint_forces,
+            state.force_factor,
+            about,
+            &model.positions,
+            &state.displacement,
+        )
     }
 }
 

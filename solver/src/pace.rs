@@ -3,6 +3,7 @@
 
 use crate::critical_time_step::critical_time_step;
 use crate::error::Error;
+use crate::internal_force::SmallestJacobian;
 use crate::model::Model;
 use crate::observe::{Continue, Observer, View};
 use crate::problem::StepControl;
@@ -154,8 +155,11 @@ impl Pace {
         self.since += 1;
         let (low, high) = self.summary.time_steps;
         self.summary.time_steps = (low.min(time_step), high.max(time_step));
-        let jacobian = report.smallest_jacobian.jacobian;
-        self.summary.smallest_jacobian = self.summary.smallest_jacobian.min(jacobian);
+        self.see(report.smallest_jacobian);
+    }
+
+    pub fn see(&mut self, smallest: SmallestJacobian) {
+        self.summary.smallest_jacobian = self.summary.smallest_jacobian.min(smallest.jacobian);
     }
 
     pub fn summary(&self, state: &State, stopped: bool) -> Summary {

@@ -28,6 +28,9 @@ pub(crate) fn relax(
     let mut damping = Damping::new(model, settings);
     let mut convergence = Convergence { estimated_error: f64::INFINITY, residual: f64::INFINITY };
     watch(model, state, &mut buffers, 1.0, 0.0, observer);
+    // At a turning point a single increment says nothing: take the largest
+    // since the last look.
+    let mut increment = 0.0f64;
     for count in 1..=settings.max_steps {
         if pace.reevaluate(model, state, &mut buffers) {
             damping.forget();
@@ -39,10 +42,14 @@ pub(crate) fn relax(
             step(model, &scheme, load_time(count - 1), load_time(count), state, &mut buffers);
         pace.record(pace.time_step, &report);
         check(model, state, &report)?;
+        increment = increment.max(report.largest_increment);
         damping.learn(model, state, &buffers, pace.time_step);
         let held = count > settings.load_steps;
         if held && count.is_multiple_of(LOOK_EVERY) {
-            convergence = assess(model, state, &mut buffers, damping.c, report.largest_increment);
+            convergence = assess(model, state, &mut buffers, damping.c, increment);
+        }
+        if count.is_multiple_of(LOOK_EVERY) {
+            increment = 0.0;
         }
         let size = largest(&state.displacement).max(1e-12 * model.extent);
         let converged = convergence.estimated_error <= settings.tolerance * size

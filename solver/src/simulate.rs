@@ -1,6 +1,7 @@
 //! The loop over time, and the choice between motion and relaxation.
 
 use crate::error::Error;
+use crate::internal_force::internal_force;
 use crate::model::Model;
 use crate::observe::{Continue, Observer};
 pub use crate::pace::{Convergence, Summary};
@@ -8,7 +9,7 @@ use crate::pace::{Pace, check, watch};
 use crate::problem::{Motion, StepControl};
 use crate::relaxation::relax;
 use crate::state::State;
-use crate::step::{Buffers, Scheme, step};
+use crate::step::{Buffers, Scheme, StepReport, step};
 
 /// Marches `state` through the motion of a problem while `observer` watches.
 /// After an error the state and the observer keep what they had.
@@ -40,8 +41,9 @@ fn march(
     while !stopped && state.time < end * (1.0 - 1e-12) {
         pace.reevaluate(model, state, &mut buffers);
         let remaining = end - state.time;
-        // Whole steps to the end: the last one must not be a sliver.
-        let time_step = remaining / (remaining / pace.time_step).ceil();
+        // Whole steps to the end: the last one must not be a sliver, and
+        // round-off must not halve it.
+        let time_step = remaining / (remaining / pace.time_step - 1e-9).ceil().max(1.0);
         let scheme = Scheme::central_difference(time_step, state.time_step, damping);
         let (now, then) = (state.time, state.time + time_step);
         let report = step(model, &scheme, now, then, state, &mut buffers);
@@ -51,5 +53,10 @@ fn march(
         let jacobian = report.smallest_jacobian.jacobian;
         stopped = watch(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
     }
+    // A step sees the points before it moves them: look at the last ones too.
+    let smallest_jacobian =
+        internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
+    pace.see(smallest_jacobian);
+    check(model, state, &StepReport { smallest_jacobian, largest_increment: 0.0 })?;
     Ok(pace.summary(state, stopped))
 }

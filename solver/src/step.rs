@@ -15,19 +15,27 @@ pub struct Scheme {
     pub keep: f64,
     /// \[s\]
     pub push: f64,
+    /// From the middle of the last step to the middle of this one \[s\].
+    pub mean_step: f64,
     /// Mass-proportional damping α \[1/s\]; for the work of damping only.
     pub damping: f64,
 }
 
 impl Scheme {
-    /// Central differences with damping α: with a = αΔt/2,
-    /// (1 + a) v⁺ = (1 − a) v⁻ + Δt̄ M⁻¹f, Δt̄ the mean of the two steps. For
+    /// Central differences with damping α: with a = αΔt̄/2 and Δt̄ the mean of
+    /// the two steps, (1 + a) v⁺ = (1 − a) v⁻ + Δt̄ M⁻¹f. For
     /// α = 0 and equal steps this is the seed's eq. 3. The first step starts
     /// from v(0), half a step back.
     pub fn central_difference(time_step: f64, last_step: f64, damping: f64) -> Scheme {
-        let a = 0.5 * damping * time_step;
         let mean_step = 0.5 * (time_step + last_step);
-        Scheme { time_step, keep: (1.0 - a) / (1.0 + a), push: mean_step / (1.0 + a), damping }
+        let a = 0.5 * damping * mean_step;
+        Scheme {
+            time_step,
+            keep: (1.0 - a) / (1.0 + a),
+            push: mean_step / (1.0 + a),
+            mean_step,
+            damping,
+        }
     }
 
     /// Dynamic relaxation (Joldes, Wittek, Miller 2011, eq. 10):
@@ -37,6 +45,7 @@ impl Scheme {
             time_step,
             keep: c * c,
             push: 0.25 * (c + 1.0) * (c + 1.0) * time_step,
+            mean_step: time_step,
             damping: 0.0,
         }
     }
@@ -151,8 +160,8 @@ fn largest_or_nan(values: &[f64]) -> f64 {
     if sum.is_nan() { f64::NAN } else { largest }
 }
 
-/// Adds the work of the step from t − Δt/2 to t + Δt/2: force at t times the
-/// mean of the two half-step displacements.
+/// Adds the work from the middle of the last step to the middle of this one:
+/// force at t times Δt̄ times the mean of the two velocities.
 fn add_work(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers) {
     let d = model.components;
     let (mut external, mut total, mut damping) = (0.0, 0.0, 0.0);
@@ -160,9 +169,9 @@ fn add_work(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers
         for i in d * node..d * (node + 1) {
             let mean = 0.5 * (state.velocity[i] + buffers.velocity_before[i]);
             let gained = mass * (state.velocity[i] - buffers.velocity_before[i]);
-            let dissipated = scheme.damping * mass * mean * mean * scheme.time_step;
-            let given = (buffers.f_ext[i] - buffers.f_int[i]) * mean * scheme.time_step;
-            external += buffers.f_ext[i] * mean * scheme.time_step;
+            let dissipated = scheme.damping * mass * mean * mean * scheme.mean_step;
+            let given = (buffers.f_ext[i] - buffers.f_int[i]) * mean * scheme.mean_step;
+            external += buffers.f_ext[i] * mean * scheme.mean_step;
             // What the forces did not give, constraints and contact gave.
             total += gained * mean - given + dissipated;
             damping += dissipated;

@@ -1,0 +1,147 @@
+//! A step allocates nothing.
+#![allow(unsafe_code)] // Counting allocations needs a `GlobalAlloc`, which is an unsafe trait.
+
+mod common;
+
+use common::*;
+use mtled::geometry::Shape;
+use mtled::problem::*;
+use mtled::state::State;
+use mtled::step::{Buffers, Scheme, step};
+use mtled::tensor::Vector3;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The system's allocator; counts what the watched threads ask for.
+struct Counting;
+
+static COUNT: AtomicUsize = AtomicUsize::new(0);
+/// One measurement at a time.
+static TURN: Mutex<()> = Mutex::new(());
+
+thread_local! {
+    static WATCHED: Cell<bool> = const { Cell::new(false) };
+}
+
+fn count() {
+    if WATCHED.get() {
+        COUNT.fetch_add(1, Ordering::SeqCst);
+    }
+}
+
+// SAFETY: every call goes to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of all threads of a rayon pool, rayon's own bookkeeping
+/// included, over 50 steps that follow 10 steps of warming up.
+fn allocations(problem: &Problem, threads: usize) -> usize {
+    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let (_, model) = build(problem);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .start_handler(|_| WATCHED.set(true))
+        .build()
+        .unwrap();
+    pool.install(|| {
+        let (mut state, mut buffers) = (State::new(&model), Buffers::new(&model, true));
+        let time_step = 0.5 * model.bound;
+        let mut march = |steps: usize| {
+            for _ in 0..steps {
+                let scheme = Scheme::central_difference(time_step, state.time_step, 1.0);
+                let then = state.time + time_step;
+                step(&model, &scheme, state.time, then, &mut state, &mut buffers);
+            }
+        };
+        march(10);
+        let before = COUNT.load(Ordering::SeqCst);
+        march(50);
+        COUNT.load(Ordering::SeqCst) - before
+    })
+}
+
+/// A cube held at its base and pulled, by tables and in a straight line.
+fn held() -> Problem {
+    let mut problem = cube(4);
+    problem.conditions.push(condition("base", face(2, 0.0), [Some(0.0); 3]));
+    let mut pulled = condition("top", face(2, EDGE), [None, None, Some(0.1 * EDGE)]);
+    pulled.amplitude = Amplitude::Table(vec![(0.0, 0.0), (0.1, 0.5), (1.0, 1.0)]);
+    problem.conditions.push(pulled);
+    gravity(&mut problem, Vector3::new(0.0, 1.0, 0.0));
+    problem
+}
+
+/// More than 1024 points, so that there are several blocks.
+fn finer(mut problem: Problem) -> Problem {
+    problem.recipe.grid.cell = EDGE / 12.0;
+    assert!(build(&problem).1.blocks.len() > 1);
+    problem
+}
+
+fn falling(friction: Friction) -> Problem {
+    let mut problem = cube(4);
+    gravity(&mut problem, Vector3::new(1.0, 0.0, -9.81));
+    problem.obstacles.push(Obstacle {
+        name: "floor".into(),
+        shape: Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::z() },
+        offset: 0.0,
+        side: ObstacleSide::Outside,
+        friction,
+    });
+    problem
+}
+
+#[test]
+fn a_step_with_direct_conditions_allocates_nothing() {
+    assert_eq!(allocations(&held(), 1), 0);
+}
+
+#[test]
+fn a_step_with_collocation_allocates_nothing() {
+    assert_eq!(allocations(&collocated(held()), 1), 0);
+}
+
+#[test]
+fn a_step_with_contact_allocates_nothing() {
+    assert_eq!(allocations(&falling(Friction::Frictionless), 1), 0);
+    assert_eq!(allocations(&falling(Friction::NoSlip), 1), 0);
+}
+
+#[test]
+fn a_step_over_several_blocks_allocates_nothing() {
+    assert_eq!(allocations(&finer(held()), 1), 0);
+    assert_eq!(allocations(&finer(collocated(held())), 1), 0);
+}
+
+#[test]
+fn a_step_over_several_blocks_on_several_threads_allocates_nothing() {
+    assert_eq!(allocations(&finer(held()), 3), 0);
+}
+
+#[test]
+fn the_counter_sees_an_allocation_of_a_watched_thread() {
+    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    WATCHED.set(true);
+    let before = COUNT.load(Ordering::SeqCst);
+    std::hint::black_box(vec![1.0; 10]);
+    assert!(COUNT.load(Ordering::SeqCst) > before);
+    WATCHED.set(false);
+}

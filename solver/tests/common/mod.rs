@@ -1,0 +1,231 @@
+//! Small problems for the tests: a cube and a square in plane strain.
+#![allow(dead_code)] // Every test binary uses only a part of this.
+
+use mtled::discretisation::Discretisation;
+use mtled::energy::Energies;
+use mtled::essential::Reaction;
+use mtled::geometry::Shape;
+use mtled::material::*;
+use mtled::model::Model;
+use mtled::observe::{Continue, Observer, View};
+use mtled::problem::*;
+use mtled::selection::{Extent, Selector};
+use mtled::tensor::Vector3;
+
+/// Edge of the cube and of the square \[m\].
+pub const EDGE: f64 = 0.1;
+/// Thickness of the square \[m\].
+pub const THICKNESS: f64 = 0.02;
+
+pub fn constants() -> ElasticConstants {
+    ElasticConstants::from_young_poisson(3000.0, 0.3).unwrap()
+}
+
+/// Every objective law; the small-strain one is not.
+pub fn objective_laws() -> Vec<Law> {
+    vec![
+        Law::MooneyRivlin(MooneyRivlin::new(1052.0, 100.0, 0.49).unwrap()),
+        Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants())),
+        Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(constants(), VolumetricTerm::Quadratic)),
+        Law::StVenantKirchhoff(StVenantKirchhoff::new(constants())),
+    ]
+}
+
+pub fn material(law: Law) -> Material {
+    Material { density: 1000.0, law }
+}
+
+pub fn neo_hookean(young_modulus: f64, poisson_ratio: f64) -> Law {
+    let constants = ElasticConstants::from_young_poisson(young_modulus, poisson_ratio).unwrap();
+    Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants))
+}
+
+fn body(dimension: Dimension, cells: usize) -> Problem {
+    let spacing = EDGE / cells as f64;
+    Problem {
+        dimension,
+        body: Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(EDGE) },
+        regions: vec![Region {
+            name: "tissue".into(),
+            part: Selector::All,
+            material: material(neo_hookean(3000.0, 0.3)),
+        }],
+        recipe: Recipe {
+            cloud: Cloud::Regular { spacing },
+            dilation: 1.8,
+            basis: Basis::Linear,
+            weight_function: WeightFunction::QuarticSpline,
+            grid: BackgroundGrid {
+                cell: spacing / 1.5,
+                boundary_cell: None,
+                refinements: vec![],
+                gauss_points: 1,
+                inside: InsideRule::VolumeFraction,
+            },
+            mass: MassRule::RowSum,
+            enforcement: Enforcement::Direct,
+        },
+        conditions: vec![],
+        loads: Loads::default(),
+        obstacles: vec![],
+        motion: Motion::Dynamic { end: 0.1, step: StepControl::default(), damping: 0.0 },
+    }
+}
+
+/// A cube with one corner at the origin and `cells` nodal spacings per edge.
+pub fn cube(cells: usize) -> Problem {
+    body(Dimension::Three, cells)
+}
+
+/// A square in plane strain with one corner at the origin.
+pub fn square(cells: usize) -> Problem {
+    body(Dimension::PlaneStrain { thickness: THICKNESS, z: 0.03 }, cells)
+}
+
+pub fn with_law(mut problem: Problem, law: Law) -> Problem {
+    problem.regions[0].material = material(law);
+    problem
+}
+
+/// The half x < EDGE/2 of another law.
+pub fn with_stiff_half(mut problem: Problem, law: Law) -> Problem {
+    let half = Region { name: "half".into(), part: half_space(), material: material(law) };
+    problem.regions.insert(0, half);
+    problem
+}
+
+fn half_space() -> Selector {
+    let shape =
+        Shape::HalfSpace { point: Vector3::new(0.5 * EDGE, 0.0, 0.0), normal: Vector3::x() };
+    Selector::Inside { shape, tolerance: 0.0 }
+}
+
+pub fn jittered(mut problem: Problem, jitter: f64, seed: u64) -> Problem {
+    if let Cloud::Regular { spacing } = problem.recipe.cloud {
+        problem.recipe.cloud = Cloud::Jittered { spacing, jitter, seed };
+    }
+    problem
+}
+
+pub fn quadratic(mut problem: Problem) -> Problem {
+    problem.recipe.basis = Basis::Quadratic;
+    problem.recipe.dilation = 2.6;
+    // Row sums of quadratic functions are negative at the corners.
+    problem.recipe.mass = MassRule::EvenSplit;
+    problem
+}
+
+pub fn collocated(mut problem: Problem) -> Problem {
+    problem.recipe.enforcement = Enforcement::Collocation;
+    problem
+}
+
+/// The face of the body where coordinate `axis` is `at` \[m\].
+pub fn face(axis: usize, at: f64) -> Selector {
+    let mut point = Vector3::zeros();
+    point[axis] = at;
+    let mut normal = Vector3::zeros();
+    normal[axis] = 1.0;
+    Selector::Plane { point, normal, tolerance: 1e-9 }
+}
+
+pub fn condition(name: &str, part: Selector, values: [Option<f64>; 3]) -> EssentialCondition {
+    EssentialCondition {
+        name: name.into(),
+        extent: Extent::Surface,
+        part,
+        prescribed: Prescribed::Displacement(values),
+        amplitude: Amplitude::Constant,
+        release: None,
+    }
+}
+
+pub fn gravity(problem: &mut Problem, acceleration: Vector3) {
+    let amplitude = Amplitude::Constant;
+    problem.loads.body_forces.push(BodyForce { acceleration, amplitude });
+}
+
+pub fn build(problem: &Problem) -> (Discretisation, Model) {
+    let discretisation = Discretisation::new(problem).unwrap();
+    let model = Model::new(problem, &discretisation).unwrap();
+    (discretisation, model)
+}
+
+pub fn dynamic(end: f64, fixed: f64, damping: f64) -> Motion {
+    let step = StepControl { fixed: Some(fixed), ..StepControl::default() };
+    Motion::Dynamic { end, step, damping }
+}
+
+/// The displacements u(X) of all nodes, packed.
+pub fn field(model: &Model, u: impl Fn(&Vector3) -> Vector3) -> Vec<f64> {
+    let components = model.components;
+    model
+        .positions
+        .iter()
+        .flat_map(|x| u(x).iter().take(components).copied().collect::<Vec<_>>())
+        .collect()
+}
+
+/// Random displacements up to `size` \[m\] per component.
+pub fn noise(model: &Model, size: f64, seed: u64) -> Vec<f64> {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        size * (2.0 * (state >> 11) as f64 / (1u64 << 53) as f64 - 1.0)
+    };
+    (0..model.size()).map(|_| next()).collect()
+}
+
+/// Entry `node` of a packed field as a vector.
+pub fn vector(field: &[f64], node: usize, components: usize) -> Vector3 {
+    Vector3::from_fn(|k, _| if k < components { field[components * node + k] } else { 0.0 })
+}
+
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |a: f64, x| a.max(x.abs()))
+}
+
+/// Mass-weighted mean of a packed field.
+pub fn mean_by_mass(model: &Model, field: &[f64]) -> Vector3 {
+    let total: f64 = model.lumped_mass.iter().sum();
+    let sum: Vector3 = (0..model.positions.len())
+        .map(|node| vector(field, node, model.components) * model.lumped_mass[node])
+        .sum();
+    sum / total
+}
+
+/// Records energies and reactions at every step.
+#[derive(Default)]
+pub struct Recorder {
+    pub energies: Vec<Energies>,
+    /// About the origin.
+    pub reactions: Vec<Reaction>,
+    pub seen: usize,
+}
+
+impl Observer for Recorder {
+    fn observe(&mut self, view: &mut View) -> Continue {
+        self.seen += 1;
+        self.energies.push(view.energies());
+        if view.state.step > 0 {
+            self.reactions = view.reactions(&Vector3::zeros());
+        }
+        Continue::Yes
+    }
+
+    fn tracks_work(&self) -> bool {
+        true
+    }
+}
+
+/// Calls a function at every step.
+pub struct Watch<F: FnMut(&mut View)>(pub F);
+
+impl<F: FnMut(&mut View)> Observer for Watch<F> {
+    fn observe(&mut self, view: &mut View) -> Continue {
+        (self.0)(view);
+        Continue::Yes
+    }
+}

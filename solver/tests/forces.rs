@@ -1,0 +1,134 @@
+//! What internal forces must do whatever the cloud, the basis and the law.
+#![allow(non_snake_case)]
+
+mod common;
+
+use common::*;
+use mtled::internal_force::{Workspace, internal_force, strain_energy};
+use mtled::model::Model;
+use mtled::problem::Problem;
+use mtled::tensor::{Matrix3, Vector3, rotation};
+use proptest::prelude::*;
+
+fn forces(model: &Model, u: &[f64]) -> Vec<f64> {
+    let mut f = vec![0.0; model.size()];
+    internal_force(model, u, &mut Workspace::new(model), &mut f);
+    f
+}
+
+/// Cube and square, regular and jittered, linear and quadratic.
+fn bodies() -> Vec<Problem> {
+    vec![
+        cube(3),
+        jittered(cube(4), 0.3, 5),
+        quadratic(jittered(cube(4), 0.2, 6)),
+        square(6),
+        jittered(square(6), 0.3, 7),
+        quadratic(jittered(square(8), 0.3, 8)),
+    ]
+}
+
+/// Largest force of a ten per cent stretch along x.
+fn typical_force(model: &Model) -> f64 {
+    largest(&forces(model, &field(model, |X| Vector3::new(0.1 * X.x, 0.0, 0.0))))
+}
+
+fn assert_no_force(problem: &Problem, u: impl Fn(&Vector3) -> Vector3) {
+    for law in objective_laws() {
+        let (_, model) = build(&with_law(problem.clone(), law));
+        let ratio = largest(&forces(&model, &field(&model, &u))) / typical_force(&model);
+        assert!(ratio < 1e-12, "{law:?}: {ratio:e}");
+    }
+}
+
+#[test]
+fn a_rigid_translation_gives_no_force() {
+    for problem in bodies() {
+        assert_no_force(&problem, |_| Vector3::new(0.03, -0.02, 0.05));
+    }
+}
+
+#[test]
+fn a_rigid_rotation_through_a_large_angle_gives_no_force() {
+    for problem in bodies() {
+        let axis = match problem.dimension.components() {
+            2 => Vector3::z(),
+            _ => Vector3::new(1.0, -2.0, 0.5).normalize(),
+        };
+        let turn = rotation(&axis, 2.1) - Matrix3::identity();
+        assert_no_force(&problem, |X| turn * (X - Vector3::repeat(0.02)));
+    }
+}
+
+#[test]
+fn an_affine_displacement_gives_the_same_deformation_gradient_everywhere() {
+    for problem in bodies() {
+        let (discretisation, model) = build(&problem);
+        let d = model.components;
+        let mut G = Matrix3::new(0.1, -0.2, 0.05, 0.3, -0.1, 0.15, -0.25, 0.08, 0.2);
+        if d == 2 {
+            G.fill_column(2, 0.0);
+            G.fill_row(2, 0.0);
+        }
+        let u = field(&model, |X| G * X);
+        let wanted = Matrix3::identity() + G;
+        for point in 0..discretisation.supports.len() {
+            let F = discretisation.supports.deformation_gradient(point, &u, d);
+            assert!((F - wanted).amax() < 1e-12, "{:e}", (F - wanted).amax());
+        }
+    }
+}
+
+#[test]
+fn the_internal_force_is_the_gradient_of_the_strain_energy() {
+    for law in objective_laws() {
+        for problem in [with_stiff_half(cube(3), law), with_stiff_half(square(5), law)] {
+            let (_, model) = build(&problem);
+            let mut workspace = Workspace::new(&model);
+            let u = noise(&model, 2e-3, 1);
+            let v = noise(&model, 1.0, 2);
+            let step = 1e-6;
+            let mut energy = |sign: f64| {
+                let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + sign * step * v).collect();
+                strain_energy(&model, &moved, &mut workspace)
+            };
+            let slope = (energy(1.0) - energy(-1.0)) / (2.0 * step);
+            let f = forces(&model, &u);
+            let exact: f64 = f.iter().zip(&v).map(|(f, v)| f * v).sum();
+            let size: f64 = f.iter().zip(&v).map(|(f, v)| (f * v).abs()).sum();
+            assert!((slope - exact).abs() < 1e-6 * size, "{law:?}: {slope:e} {exact:e}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn internal_forces_and_their_moments_sum_to_zero(
+        body in 0..6usize, law in 0..4usize, seed in 1..1000u64,
+        about in prop::array::uniform3(-1.0..1.0f64),
+    ) {
+        let problem = with_stiff_half(bodies()[body].clone(), objective_laws()[law]);
+        let (_, model) = build(&problem);
+        let d = model.components;
+        let u = noise(&model, 1e-3, seed);
+        let f = forces(&model, &u);
+        let about = Vector3::from(about);
+        let (mut force, mut moment, mut size, mut arm) = (Vector3::zeros(), Vector3::zeros(), 0.0, 0.0);
+        for (node, X) in model.positions.iter().enumerate() {
+            let lever = X + vector(&u, node, d) - about;
+            let share = vector(&f, node, d);
+            force += share;
+            moment += lever.cross(&share);
+            size += share.norm();
+            arm += lever.norm() * share.norm();
+        }
+        if d == 2 {
+            // Only the moment about z is a sum of forces in the plane.
+            moment = Vector3::new(0.0, 0.0, moment.z);
+        }
+        prop_assert!(force.norm() < 1e-12 * size, "{:e}", force.norm() / size);
+        prop_assert!(moment.norm() < 1e-12 * arm, "{:e}", moment.norm() / arm);
+    }
+}

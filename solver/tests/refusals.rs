@@ -1,0 +1,266 @@
+//! What user input can break is refused with the place named.
+
+mod common;
+
+use common::*;
+use mtled::critical_time_step::critical_time_step;
+use mtled::discretisation::{Discretisation, Warning};
+use mtled::error::Error;
+use mtled::geometry::Shape;
+use mtled::internal_force::Workspace;
+use mtled::material::{MaterialError, MooneyRivlin};
+use mtled::model::Model;
+use mtled::observe::Unobserved;
+use mtled::problem::*;
+use mtled::selection::Selector;
+use mtled::simulate::{Summary, simulate};
+use mtled::state::State;
+use mtled::tensor::Vector3;
+
+fn refusal(problem: &Problem) -> Error {
+    let made = Discretisation::new(problem).and_then(|d| Model::new(problem, &d));
+    made.err().expect("the problem was not refused")
+}
+
+/// The error of a run that must fail, what it had seen and the state it left.
+fn failure(problem: &Problem) -> (Error, Recorder, State, Model) {
+    let (_, model) = build(problem);
+    let (mut state, mut recorder) = (State::new(&model), Recorder::default());
+    let result: Result<Summary, Error> =
+        simulate(&model, &problem.motion, &mut state, &mut recorder);
+    (result.expect_err("the run did not fail"), recorder, state, model)
+}
+
+#[test]
+fn a_condition_that_selects_nothing_is_refused_by_name() {
+    let mut problem = square(4);
+    problem.conditions.push(condition("far face", face(0, 5.0), [Some(0.0); 3]));
+    let error = refusal(&problem);
+    assert!(matches!(error, Error::EmptySelection { .. }));
+    assert!(error.to_string().contains("far face"), "{error}");
+}
+
+#[test]
+fn a_traction_on_no_part_of_the_boundary_is_refused_by_name() {
+    let mut problem = square(4);
+    problem.loads.tractions.push(Traction {
+        name: "pressure".into(),
+        part: face(0, 5.0),
+        traction: Vector3::x(),
+        amplitude: Amplitude::Constant,
+    });
+    let error = refusal(&problem);
+    assert!(matches!(error, Error::EmptyTraction { .. }));
+    assert!(error.to_string().contains("pressure"), "{error}");
+}
+
+#[test]
+fn a_grid_without_a_point_in_the_body_is_refused() {
+    let mut problem = cube(4);
+    let core = Shape::Sphere { centre: Vector3::repeat(0.5 * EDGE), radius: 0.03 };
+    problem.body = Shape::Difference(Box::new(problem.body), Box::new(core));
+    problem.recipe.grid.inside = InsideRule::Centre;
+    problem.recipe.grid.cell = 2.0 * EDGE;
+    assert!(matches!(refusal(&problem), Error::NoQuadraturePoints));
+}
+
+#[test]
+fn a_point_without_a_region_is_refused_with_its_place() {
+    let mut problem = square(4);
+    let half = Shape::HalfSpace { point: Vector3::repeat(0.05), normal: Vector3::x() };
+    problem.regions[0].part = Selector::Inside { shape: half, tolerance: 0.0 };
+    let Error::PointWithoutRegion { position } = refusal(&problem) else { panic!() };
+    assert!(position.x > 0.05);
+}
+
+#[test]
+fn a_support_that_stays_too_small_is_refused_with_its_place_and_size() {
+    let mut problem = cube(4);
+    problem.recipe.dilation = 0.3;
+    let Error::SmallSupport { support_size, smallest, position, .. } = refusal(&problem) else {
+        panic!()
+    };
+    assert!(support_size < smallest && smallest == 8);
+    let message = refusal(&problem).to_string();
+    assert!(message.contains(&format!("{:.6}", position.x)), "{message}");
+}
+
+#[test]
+fn a_support_that_is_merely_poor_is_enlarged_with_a_warning() {
+    let mut problem = cube(4);
+    problem.recipe.dilation = 1.05;
+    let warnings = Discretisation::new(&problem).unwrap().warnings();
+    assert!(
+        warnings
+            .iter()
+            .any(|w| matches!(w, Warning::EnlargedSupports { points, of } if points <= of)),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_node_that_no_point_covers_is_refused_with_its_place() {
+    let mut problem = square(8);
+    problem.recipe.grid.cell = 0.5 * EDGE;
+    let Error::UncoveredNode { node, position } = refusal(&problem) else { panic!() };
+    let (cloud, _) = build(&square(8));
+    assert_eq!(cloud.cloud.positions[node], position);
+}
+
+#[test]
+fn a_node_whose_row_sum_is_negative_is_refused_with_its_place_and_mass() {
+    let mut problem = quadratic(cube(4));
+    problem.recipe.mass = MassRule::RowSum;
+    let error = refusal(&problem);
+    assert!(matches!(error, Error::MasslessNode { mass, .. } if mass < 0.0), "{error}");
+    assert!(error.to_string().contains("even_split"), "{error}");
+}
+
+#[test]
+fn a_plate_of_boundary_nodes_alone_is_refused() {
+    let mut problem = cube(4);
+    problem.body = Shape::Box { min: Vector3::zeros(), max: Vector3::new(EDGE, EDGE, 0.25 * EDGE) };
+    let error = refusal(&problem);
+    assert!(matches!(error, Error::IsolatedBoundaryNode { .. }), "{error}");
+}
+
+#[test]
+fn a_probe_outside_every_influence_domain_is_refused_with_its_place() {
+    let (discretisation, _) = build(&square(4));
+    let error = discretisation.rows_at(&[Vector3::repeat(7.0)]).unwrap_err();
+    assert!(matches!(error, Error::ProbeOutside { .. }));
+    assert!(error.to_string().contains("7.000000"), "{error}");
+}
+
+#[test]
+fn fewer_points_than_nodes_give_a_warning_that_names_hourglassing() {
+    let mut problem = square(6);
+    problem.recipe.grid.cell = EDGE / 5.0;
+    let (discretisation, _) = build(&problem);
+    let warnings = discretisation.warnings();
+    assert_eq!(warnings[0], Warning::FewerPointsThanNodes { points: 25, nodes: 49 });
+    assert!(warnings[0].to_string().contains("hourglassing"));
+}
+
+#[test]
+fn a_sound_recipe_gives_no_warning() {
+    assert!(build(&square(6)).0.warnings().is_empty());
+    assert!(build(&cube(4)).0.warnings().is_empty());
+}
+
+#[test]
+fn a_rubber_that_softens_in_tension_is_refused_with_the_smallest_ratio() {
+    let error = MooneyRivlin::new(1052.0, 0.0, 0.3).unwrap_err();
+    assert!(matches!(error, MaterialError::UnstableRubber { smallest, .. } if smallest == 0.4));
+    assert!(error.to_string().contains("0.4000"), "{error}");
+}
+
+#[test]
+fn a_fixed_step_above_the_critical_one_is_refused_with_both() {
+    let mut problem = square(4);
+    problem.motion = dynamic(1.0, 0.5, 0.0);
+    let (error, recorder, state, _) = failure(&problem);
+    let Error::UnstableStep { fixed, critical } = error else { panic!("{error}") };
+    assert!(fixed == 0.5 && critical < 0.5);
+    assert_eq!((recorder.seen, state.step), (0, 0));
+}
+
+#[test]
+fn a_body_that_is_thrown_away_is_reported_with_step_time_and_node() {
+    let mut problem = square(4);
+    gravity(&mut problem, Vector3::new(0.0, 1e9, 0.0));
+    problem.loads.body_forces[0].amplitude =
+        Amplitude::Table(vec![(0.0, 0.0), (0.0049, 0.0), (0.005, 1.0)]);
+    problem.motion = dynamic(1.0, 1e-3, 0.0);
+    let (error, recorder, state, model) = failure(&problem);
+    let message = error.to_string();
+    let Error::Diverged { step, time, node, position, displacement, time_step } = error else {
+        panic!("{message}")
+    };
+    assert_eq!(step, 6);
+    assert!((time - 0.006).abs() < 1e-12 && (time_step - 1e-3).abs() < 1e-12);
+    assert!(displacement > EDGE && position == model.positions[node]);
+    assert!(message.contains("step 6"), "{message}");
+    // The observer has the start and every step but the last; the state all.
+    assert_eq!((recorder.seen, state.step), (6, 6));
+}
+
+#[test]
+fn steps_beyond_the_stable_limit_end_in_an_error_and_never_in_a_result() {
+    let mut problem = square(4);
+    problem.loads.initial_velocities = vec![(face(0, 0.0), Vector3::x() * 0.01)];
+    let step =
+        StepControl { safety_factor: 1.3, reevaluate_every: usize::MAX, ..StepControl::default() };
+    problem.motion = Motion::Dynamic { end: 1e3, step, damping: 0.0 };
+    let (error, recorder, state, _) = failure(&problem);
+    assert!(matches!(error, Error::Diverged { .. } | Error::Inverted { .. }), "{error}");
+    assert_eq!(recorder.seen, state.step);
+}
+
+/// A square between its base and a press that goes down by `share` of its edge.
+fn pressed(share: f64, duration: f64) -> Problem {
+    let mut problem = square(6);
+    problem.conditions.push(condition("base", face(1, 0.0), [None, Some(0.0), None]));
+    let mut press = condition("press", face(1, EDGE), [None, Some(-share * EDGE), None]);
+    press.amplitude = Amplitude::Linear { duration };
+    problem.conditions.push(press);
+    problem
+}
+
+#[test]
+fn a_fixed_step_that_compression_makes_unstable_ends_in_an_error() {
+    let mut problem = pressed(0.7, 0.5);
+    let (_, model) = build(&problem);
+    let rest = vec![0.0; model.size()];
+    let mut workspace = Workspace::new(&model);
+    let critical = critical_time_step(&model, &rest, 0.0, None, &mut workspace).time_step;
+    problem.motion = dynamic(10.0, 0.98 * critical, 0.0);
+    let (error, recorder, state, _) = failure(&problem);
+    assert!(matches!(error, Error::Diverged { .. } | Error::Inverted { .. }), "{error}");
+    assert!(recorder.seen == state.step && state.step > 1);
+}
+
+#[test]
+fn a_point_that_turns_inside_out_is_reported_with_its_index_place_and_jacobian() {
+    let mut problem = pressed(1.5, 0.02);
+    problem.motion = dynamic(0.02, 1e-3, 0.0);
+    let (error, recorder, state, model) = failure(&problem);
+    let message = error.to_string();
+    let Error::Inverted { step, time, point, position, jacobian } = error else {
+        panic!("{message}")
+    };
+    assert!(jacobian <= 0.0 && position == model.point_positions[point]);
+    assert!(step == state.step && time == state.time && recorder.seen == step);
+    assert!(message.contains(&format!("point {point} ")), "{message}");
+}
+
+#[test]
+fn a_point_that_the_very_last_step_turns_inside_out_is_reported() {
+    let mut problem = pressed(1.5, 0.02);
+    problem.motion = dynamic(0.02, 1e-3, 0.0);
+    let (.., state, _) = failure(&problem);
+    problem.motion = dynamic(1e-3 * (state.step - 1) as f64, 1e-3, 0.0);
+    assert!(matches!(failure(&problem).0, Error::Inverted { .. }));
+}
+
+#[test]
+fn a_relaxation_that_runs_out_of_steps_says_how_far_it_came() {
+    let mut problem = square(6);
+    problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
+    gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
+    let (_, model) = build(&problem);
+    let settings = Relaxation {
+        load_end: 1.0,
+        load_steps: 20,
+        tolerance: 1e-9,
+        max_steps: 50,
+        step: StepControl::default(),
+    };
+    let mut state = State::new(&model);
+    let run = simulate(&model, &Motion::Static(settings), &mut state, &mut Unobserved);
+    let Err(Error::NotConverged { steps, error, tolerance, residual }) = run else {
+        panic!("{run:?}")
+    };
+    assert!(steps == 50 && error > tolerance && residual > 0.0 && residual.is_finite());
+    assert_eq!(state.step, 50);
+}

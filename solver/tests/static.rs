@@ -1,0 +1,188 @@
+//! Dynamic relaxation against closed forms and balances.
+
+mod common;
+
+use common::*;
+use mtled::discretisation::Discretisation;
+use mtled::model::Model;
+use mtled::problem::*;
+use mtled::simulate::{Summary, simulate};
+use mtled::state::State;
+use mtled::tensor::Vector3;
+
+const TOLERANCE: f64 = 1e-5;
+
+fn relaxation(tolerance: f64) -> Motion {
+    Motion::Static(Relaxation {
+        load_end: 1.0,
+        load_steps: 200,
+        tolerance,
+        max_steps: 50_000,
+        step: StepControl::default(),
+    })
+}
+
+struct Solved {
+    discretisation: Discretisation,
+    model: Model,
+    state: State,
+    recorder: Recorder,
+    summary: Summary,
+}
+
+fn solve(problem: &Problem) -> Solved {
+    solve_to(problem, TOLERANCE)
+}
+
+fn solve_to(problem: &Problem, tolerance: f64) -> Solved {
+    let (discretisation, model) = build(problem);
+    let (mut state, mut recorder) = (State::new(&model), Recorder::default());
+    let summary = simulate(&model, &relaxation(tolerance), &mut state, &mut recorder).unwrap();
+    Solved { discretisation, model, state, recorder, summary }
+}
+
+/// A cube on rollers, stretched along x by a fifth.
+fn bar() -> Problem {
+    let mut problem = cube(4);
+    problem.conditions = vec![
+        condition("x0", face(0, 0.0), [Some(0.0), None, None]),
+        condition("y0", face(1, 0.0), [None, Some(0.0), None]),
+        condition("z0", face(2, 0.0), [None, None, Some(0.0)]),
+        condition("pull", face(0, EDGE), [Some(0.2 * EDGE), None, None]),
+    ];
+    problem.conditions[3].amplitude = Amplitude::Smooth { duration: 1.0 };
+    problem
+}
+
+/// Clamped at its base, its top moved aside, under its own weight.
+fn leaning(problem: Problem) -> Problem {
+    let mut problem = problem;
+    let up = problem.dimension.components() - 1;
+    problem.conditions.push(condition("base", face(up, 0.0), [Some(0.0); 3]));
+    let mut top = condition("top", face(up, EDGE), [Some(0.15 * EDGE), Some(0.05 * EDGE), None]);
+    top.amplitude = Amplitude::Linear { duration: 1.0 };
+    problem.conditions.push(top);
+    let mut down = Vector3::zeros();
+    down[up] = -2.0;
+    gravity(&mut problem, down);
+    problem
+}
+
+/// λ across with μ(λ² − 1) + Λ ln(λ_x λ²) = 0, by Newton's method; and the
+/// nominal stress μ(λ_x − 1/λ_x) + Λ ln J/λ_x.
+fn uniaxial(stretch: f64) -> (f64, f64) {
+    let (mu, lame) = (constants().shear_modulus, constants().lame_modulus());
+    let mut across: f64 = 1.0;
+    for _ in 0..30 {
+        let value = mu * (across * across - 1.0) + lame * (stretch * across * across).ln();
+        across -= value / (2.0 * mu * across + 2.0 * lame / across);
+    }
+    let volume = stretch * across * across;
+    (across, mu * (stretch - 1.0 / stretch) + lame * volume.ln() / stretch)
+}
+
+#[test]
+fn a_stretched_bar_on_rollers_reaches_the_uniaxial_state() {
+    let (across, nominal) = uniaxial(1.2);
+    for problem in [bar(), collocated(bar())] {
+        let solved = solve(&problem);
+        let d = &solved.discretisation;
+        // Measured: 4e-4 in the displacement, 5e-5 in the force.
+        let rows = d.rows_at(&[Vector3::repeat(EDGE), Vector3::repeat(0.5 * EDGE)]).unwrap();
+        for (i, edge) in [EDGE, 0.5 * EDGE].into_iter().enumerate() {
+            let u = rows.interpolate(i, &solved.state.displacement, 3);
+            let exact = Vector3::new(0.2, across - 1.0, across - 1.0) * edge;
+            assert!((u - exact).norm() < 2e-3 * 0.2 * EDGE, "{u} {exact}");
+        }
+        let pull = solved.recorder.reactions[3].force.x;
+        let exact = nominal * EDGE * EDGE;
+        assert!((pull / exact - 1.0).abs() < 1e-3, "{pull} {exact}");
+    }
+}
+
+#[test]
+fn the_estimated_error_and_the_residual_are_reported_and_small() {
+    let solved = solve(&bar());
+    let convergence = solved.summary.relaxation.unwrap();
+    assert!(convergence.estimated_error <= TOLERANCE * largest(&solved.state.displacement));
+    assert!(convergence.residual <= 10.0 * TOLERANCE);
+    assert!(solved.summary.steps == solved.state.step && !solved.summary.stopped);
+}
+
+#[test]
+fn the_result_is_as_close_to_the_static_one_as_the_tolerance_asks() {
+    let slender = {
+        let mut problem = with_law(square(4), neo_hookean(3000.0, 0.45));
+        problem.body = mtled::geometry::Shape::Box {
+            min: Vector3::zeros(),
+            max: Vector3::new(4.0 * EDGE, EDGE, EDGE),
+        };
+        problem.conditions.push(condition("root", face(0, 0.0), [Some(0.0); 3]));
+        gravity(&mut problem, Vector3::new(0.0, -0.1, 0.0));
+        problem
+    };
+    for problem in [leaning(jittered(cube(4), 0.2, 1)), slender] {
+        let exact = solve_to(&problem, 1e-10).state.displacement;
+        for tolerance in [1e-2, 1e-3, 1e-5] {
+            let found = solve_to(&problem, tolerance);
+            let u = &found.state.displacement;
+            let error = u.iter().zip(&exact).fold(0.0f64, |a, (u, v)| a.max((u - v).abs()));
+            let share = error / largest(&exact) / tolerance;
+            // Measured: 0.07 to 0.78.
+            assert!(share < 1.0, "{share} times the tolerance of {tolerance:e}");
+        }
+    }
+}
+
+#[test]
+fn reactions_balance_each_other_and_the_loads_and_so_do_their_moments() {
+    for problem in [leaning(jittered(cube(4), 0.2, 1)), leaning(jittered(square(6), 0.2, 1))] {
+        for problem in [problem.clone(), collocated(problem)] {
+            let Solved { model, state, recorder, .. } = solve(&problem);
+            let d = model.components;
+            let mut force: Vector3 = recorder.reactions.iter().map(|r| r.force).sum();
+            let mut moment: Vector3 = recorder.reactions.iter().map(|r| r.moment).sum();
+            // Measured: 8e-7 in the plane, 3e-9 in space.
+            let size = recorder.reactions[0].force.norm();
+            assert!(size > 0.0);
+            for (node, X) in model.positions.iter().enumerate() {
+                let weight = vector(&model.loads[0].force, node, d);
+                force += weight;
+                moment += (X + state.displacement_of(node, d)).cross(&weight);
+            }
+            if d == 2 {
+                moment = Vector3::new(0.0, 0.0, moment.z);
+            }
+            assert!(force.norm() < 1e-5 * size, "{:e}", force.norm() / size);
+            let lever = 1e-5 * size * EDGE;
+            assert!(
+                moment.norm() < lever,
+                "{:?} {:e}",
+                problem.recipe.enforcement,
+                moment.norm() / lever
+            );
+        }
+    }
+}
+
+#[test]
+fn with_collocation_the_field_takes_the_prescribed_values_at_the_nodes() {
+    let solved = solve(&collocated(leaning(jittered(cube(4), 0.2, 2))));
+    let on_top: Vec<Vector3> =
+        solved.model.positions.iter().filter(|x| x.z == EDGE).copied().collect();
+    let rows = solved.discretisation.rows_at(&on_top).unwrap();
+    for i in 0..on_top.len() {
+        let u = rows.interpolate(i, &solved.state.displacement, 3);
+        assert!((u.x - 0.15 * EDGE).abs() < 1e-10 && (u.y - 0.05 * EDGE).abs() < 1e-10);
+    }
+}
+
+#[test]
+fn with_direct_enforcement_the_nodal_parameters_take_the_prescribed_values() {
+    let solved = solve(&leaning(jittered(cube(4), 0.2, 2)));
+    for (node, x) in solved.model.positions.iter().enumerate() {
+        let u = solved.state.displacement_of(node, 3);
+        assert!(x.z != 0.0 || u == Vector3::zeros());
+        assert!(x.z != EDGE || (u.x == 0.15 * EDGE && u.y == 0.05 * EDGE));
+    }
+}

@@ -1,0 +1,62 @@
+//! The same bits on any number of threads.
+
+mod common;
+
+use common::*;
+use mtled::internal_force::{Workspace, internal_force};
+use mtled::model::Model;
+use mtled::observe::Unobserved;
+use mtled::problem::Problem;
+use mtled::simulate::simulate;
+use mtled::state::State;
+use mtled::tensor::Vector3;
+
+const THREADS: [usize; 5] = [1, 2, 3, 4, 8];
+
+/// Two materials, jittered nodes, more than 4096 points in several blocks.
+fn large_problem() -> Problem {
+    let mut problem = jittered(with_stiff_half(cube(8), neo_hookean(9000.0, 0.4)), 0.2, 3);
+    problem.recipe.grid.cell = EDGE / 17.0;
+    problem.conditions.push(condition("base", face(2, 0.0), [Some(0.0); 3]));
+    gravity(&mut problem, Vector3::new(3.0, 0.0, -9.81));
+    problem
+}
+
+fn on_each_pool(run: impl Fn() -> Vec<u64> + Sync) {
+    let mut first: Option<Vec<u64>> = None;
+    for threads in THREADS {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let bits = pool.install(&run);
+        let same = first.get_or_insert_with(|| bits.clone()) == &bits;
+        assert!(same, "{threads} threads give other bits than {}", THREADS[0]);
+    }
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|x| x.to_bits()).collect()
+}
+
+fn forces(model: &Model) -> Vec<u64> {
+    let mut f = vec![0.0; model.size()];
+    internal_force(model, &noise(model, 1e-3, 1), &mut Workspace::new(model), &mut f);
+    bits(&f)
+}
+
+#[test]
+fn the_internal_force_has_the_same_bits_on_any_number_of_threads() {
+    let (discretisation, model) = build(&large_problem());
+    assert!(discretisation.supports.len() > 4096 && model.blocks.len() > 2);
+    on_each_pool(|| forces(&model));
+}
+
+#[test]
+fn a_whole_run_from_the_cloud_on_has_the_same_bits_on_any_number_of_threads() {
+    let problem = collocated(large_problem());
+    on_each_pool(|| {
+        let (_, model) = build(&problem);
+        let mut state = State::new(&model);
+        let motion = dynamic(0.02, 1e-3, 0.5);
+        simulate(&model, &motion, &mut state, &mut Unobserved).unwrap();
+        bits(&state.displacement)
+    });
+}
