@@ -1,6 +1,6 @@
 //! `mtled case …`.
 
-use super::COULD_NOT_RUN;
+use super::{COULD_NOT_RUN, print_data};
 use crate::cases::CASES;
 use crate::scene::{Case, Diagnostic, read_case, schema};
 use anyhow::bail;
@@ -24,26 +24,26 @@ pub enum CaseCommand {
 
 pub fn case(command: &CaseCommand) -> anyhow::Result<u8> {
     match command {
-        CaseCommand::Check { files } => Ok(check(files)),
+        CaseCommand::Check { files } => check(files),
         CaseCommand::List => {
-            CASES.iter().for_each(|(name, _)| println!("{name}"));
+            print_data(&CASES.iter().map(|(name, _)| format!("{name}\n")).collect::<String>())?;
             Ok(0)
         }
         CaseCommand::Show { name } => match CASES.iter().find(|(carried, _)| carried == name) {
             Some((_, text)) => {
-                print!("{text}");
+                print_data(text)?;
                 Ok(0)
             }
             None => bail!("there is no case \"{name}\"; `mtled case list` names them"),
         },
         CaseCommand::Schema => {
-            println!("{}", schema());
+            print_data(&format!("{}\n", schema()))?;
             Ok(0)
         }
     }
 }
 
-fn check(files: &[PathBuf]) -> u8 {
+fn check(files: &[PathBuf]) -> anyhow::Result<u8> {
     let mut code = 0;
     for file in files {
         match load(file) {
@@ -51,7 +51,7 @@ fn check(files: &[PathBuf]) -> u8 {
                 // What only a discretisation can show: empty selections, poor supports.
                 match crate::run::prepare(&case.problem) {
                     Ok(prepared) => {
-                        println!("{}: no mistakes", file.display());
+                        print_data(&format!("{}: no mistakes\n", file.display()))?;
                         for warning in prepared.discretisation.warnings() {
                             eprintln!("{}: warning: {warning}", file.display());
                         }
@@ -65,7 +65,7 @@ fn check(files: &[PathBuf]) -> u8 {
             None => code = COULD_NOT_RUN,
         }
     }
-    code
+    Ok(code)
 }
 
 /// Reads a case and prints its mistakes if it has any.

@@ -5,7 +5,7 @@ mod solve;
 mod verify;
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
 /// Meshless soft-tissue solver that can be checked.
@@ -101,9 +101,21 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
         Command::Case(command) => case::case(command),
         Command::Completions { shell } => {
-            clap_complete::generate(*shell, &mut Cli::command(), "mtled", &mut std::io::stdout());
+            let mut script = Vec::new();
+            clap_complete::generate(*shell, &mut Cli::command(), "mtled", &mut script);
+            print_data(&String::from_utf8_lossy(&script))?;
             Ok(0)
         }
+    }
+}
+
+/// Writes data to standard output. A reader that has left, as `head` does, is
+/// no failure.
+fn print_data(text: &str) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
     }
 }
 

@@ -1,9 +1,10 @@
 //! `mtled solve`.
 
 use super::case::{diagnose, load};
-use super::{COULD_NOT_RUN, Common, Format, STOPPED};
+use super::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
 use crate::run::{Recorder, march, prepare, result_json, summary_text, write_outputs};
 use crate::scene::Case;
+use anyhow::Context;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
@@ -22,7 +23,8 @@ pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
     let Some(case) = load(&arguments.case) else { return Ok(COULD_NOT_RUN) };
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(&case.name));
     // A folder that cannot be written must not cost a whole run.
-    std::fs::create_dir_all(&out)?;
+    std::fs::create_dir_all(&out)
+        .with_context(|| format!("cannot make the folder {}", out.display()))?;
     match solve_to(&case, &out, common) {
         Ok(code) => code,
         Err(error) => {
@@ -71,9 +73,10 @@ fn finish(
 ) -> anyhow::Result<u8> {
     write_outputs(case, solved, record, out)?;
     match common.format {
-        Format::Json => println!("{:#}", result_json(case, solved, record)),
+        Format::Json => print_data(&format!("{:#}\n", result_json(case, solved, record)))?,
         Format::Human if !common.quiet => {
-            println!("{}\n  results in {}", summary_text(case, solved, record), out.display());
+            let summary = summary_text(case, solved, record);
+            print_data(&format!("{summary}\n  results in {}\n", out.display()))?;
         }
         Format::Human => {}
     }

@@ -1,6 +1,6 @@
 //! `mtled verify`.
 
-use super::{COULD_NOT_RUN, Common, Format, STOPPED};
+use super::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
 use crate::machine::provenance;
 use crate::report::{human, json, write_report};
 use crate::studies::{STUDIES, Suite, Workbench};
@@ -66,10 +66,11 @@ pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
     };
     write_report(&report, &arguments.out)?;
     match common.format {
-        Format::Json => println!("{}", json::to_json(&report)),
+        Format::Json => print_data(&json::to_json(&report))?,
         Format::Human if !common.quiet => {
-            println!("{}", human::to_table(&report, common.colours()));
-            println!("report: {}", arguments.out.join("index.html").display());
+            let table = human::to_table(&report, common.colours());
+            let page = arguments.out.join("index.html");
+            print_data(&format!("{table}\nreport: {}\n", page.display()))?;
         }
         Format::Human => {}
     }

@@ -1,0 +1,144 @@
+//! The table of benchmarks from Criterion's files.
+
+use anyhow::{Context, Result, ensure};
+use mtled_verify::machine::provenance;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// `new/benchmark.json`.
+#[derive(Deserialize)]
+struct Benchmark {
+    full_id: String,
+}
+
+/// `new/estimates.json`; times in ns.
+#[derive(Deserialize)]
+struct Estimates {
+    median: Estimate,
+}
+
+#[derive(Deserialize)]
+struct Estimate {
+    point_estimate: f64,
+    confidence_interval: Interval,
+}
+
+#[derive(Deserialize)]
+struct Interval {
+    lower_bound: f64,
+    upper_bound: f64,
+}
+
+/// `size.json`, which the benchmark itself leaves.
+#[derive(Deserialize)]
+struct Size {
+    nodes: usize,
+    points: usize,
+    /// Mean number of nodes per support.
+    neighbours: f64,
+}
+
+/// A Markdown table of every benchmark under `criterion`.
+pub fn table(criterion: &Path) -> Result<String> {
+    let mut sizes = Vec::new();
+    find_sizes(criterion, &mut sizes)?;
+    sizes.sort();
+    let mut text = String::from(
+        "| bench | nodes | points | neighbours | median | points per second | ns per point and neighbour |\n\
+         |---|--:|--:|--:|--:|--:|--:|\n",
+    );
+    let mut rows = 0;
+    for size in sizes {
+        let dir = size.with_file_name("new");
+        // A smoke run leaves a size without a measurement.
+        if dir.join("estimates.json").exists() {
+            text.push_str(&row(
+                &read(&dir.join("benchmark.json"))?,
+                &read(&size)?,
+                &read(&dir.join("estimates.json"))?,
+            ));
+            rows += 1;
+        }
+    }
+    ensure!(rows > 0, "no measurement under {}; run `cargo bench`", criterion.display());
+    let p = provenance();
+    let _ = writeln!(
+        text,
+        "\nMedians of wall time with the half-width of their 95 % interval, {} with {} threads, mtled {} ({}), {}, {}.",
+        p.processor, p.threads, p.version, p.commit, p.compiler, p.date
+    );
+    Ok(text)
+}
+
+fn row(benchmark: &Benchmark, size: &Size, estimates: &Estimates) -> String {
+    let median = estimates.median.point_estimate;
+    let interval = &estimates.median.confidence_interval;
+    let half = 50.0 * (interval.upper_bound - interval.lower_bound) / median;
+    let visits = size.points as f64 * size.neighbours;
+    format!(
+        "| {} | {} | {} | {:.1} | {} ± {half:.1} % | {:.2} M | {:.2} |\n",
+        benchmark.full_id,
+        size.nodes,
+        size.points,
+        size.neighbours,
+        time(median),
+        1e3 * size.points as f64 / median,
+        median / visits,
+    )
+}
+
+/// A time given in ns, with its unit.
+fn time(ns: f64) -> String {
+    match ns {
+        ns if ns < 1e3 => format!("{ns:.1} ns"),
+        ns if ns < 1e6 => format!("{:.1} µs", ns / 1e3),
+        ns if ns < 1e9 => format!("{:.2} ms", ns / 1e6),
+        ns => format!("{:.2} s", ns / 1e9),
+    }
+}
+
+fn find_sizes(dir: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
+    let entries = std::fs::read_dir(dir)
+        .with_context(|| format!("cannot read {}; run `cargo bench` first", dir.display()))?;
+    for entry in entries {
+        let path = entry?.path();
+        if path.is_dir() {
+            find_sizes(&path, found)?;
+        } else if path.file_name().is_some_and(|name| name == "size.json") {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+fn read<T: DeserializeOwned>(path: &Path) -> Result<T> {
+    let context = || format!("cannot use {}", path.display());
+    let text = std::fs::read_to_string(path).with_context(context)?;
+    serde_json::from_str(&text).with_context(context)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_states_rates_per_point_and_per_neighbour() {
+        let benchmark = Benchmark { full_id: "internal_force/cube".into() };
+        let size = Size { nodes: 700, points: 1000, neighbours: 20.0 };
+        let interval = Interval { lower_bound: 99e3, upper_bound: 101e3 };
+        let median = Estimate { point_estimate: 100e3, confidence_interval: interval };
+        let row = row(&benchmark, &size, &Estimates { median });
+        let wanted =
+            "| internal_force/cube | 700 | 1000 | 20.0 | 100.0 µs ± 1.0 % | 10.00 M | 5.00 |\n";
+        assert_eq!(row, wanted);
+    }
+
+    #[test]
+    fn times_take_the_unit_that_suits_them() {
+        assert_eq!(time(12.34), "12.3 ns");
+        assert_eq!(time(2.5e6), "2.50 ms");
+        assert_eq!(time(2.5e9), "2.50 s");
+    }
+}

@@ -1,0 +1,238 @@
+//! The program as its users meet it: exit codes, what goes to which stream,
+//! what lies in the folders afterwards.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// A block that is pulled, a few hundred points, a fraction of a second.
+const CASE: &str = r#"
+title = "Pulled block"
+
+[geometry]
+shape = { box = { min = [0.0, 0.0, 0.0], max = [0.1, 0.1, 0.1] } }
+
+[material.tissue]
+law = "neo_hookean_log_j"
+density = 1000.0
+young_modulus = 3000.0
+poisson_ratio = 0.3
+
+[discretisation]
+cloud = "regular"
+spacing = 0.02
+
+[[prescribe]]
+name = "bottom"
+of = "surface"
+where = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] } }
+displacement = { x = 0.0, y = 0.0, z = 0.0 }
+
+[[body_force]]
+acceleration = [0.0, 0.0, 1.0]
+
+[time]
+method = "dynamic"
+end = 0.2
+
+[[probe]]
+name = "top"
+point = [0.05, 0.05, 0.1]
+
+[output]
+frames = 3
+history = 5
+"#;
+
+fn mtled(arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("mtled").unwrap();
+    command.args(arguments).timeout(Duration::from_secs(120));
+    command
+}
+
+/// Exit code, standard output and standard error.
+fn run(arguments: &[&str]) -> (i32, String, String) {
+    let output = mtled(arguments).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+}
+
+/// A folder with `case.toml` in it, one part of the text replaced.
+fn case_with(from: &str, to: &str) -> (TempDir, PathBuf) {
+    assert!(from.is_empty() || CASE.contains(from), "{from} is not in the case");
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("case.toml");
+    std::fs::write(&path, CASE.replacen(from, to, if from.is_empty() { 0 } else { 1 })).unwrap();
+    (dir, path)
+}
+
+fn solve(case: &Path, out: &Path, more: &[&str]) -> (i32, String, String) {
+    let mut arguments = vec!["solve", case.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    arguments.extend(more);
+    run(&arguments)
+}
+
+fn result(out: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(out.join("result.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn help_and_version_are_data() {
+    for arguments in [&["--version"][..], &["--help"], &["solve", "--help"], &["verify", "--help"]]
+    {
+        let (code, out, err) = run(arguments);
+        assert_eq!((code, err.as_str()), (0, ""), "{arguments:?}");
+        assert!(!out.is_empty(), "{arguments:?}");
+    }
+    assert_eq!(run(&["--version"]).1, format!("mtled {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn wrong_usage_cannot_run_and_says_so_on_standard_error() {
+    let wrong: [&[&str]; 7] = [
+        &[],
+        &["slove"],
+        &["solve", "--nodes", "3"],
+        &["solve", "no_such_case.toml"],
+        &["case", "check", "no_such_case.toml"],
+        &["case", "show", "no_such_case"],
+        &["verify", "--only", "no_such_study"],
+    ];
+    for arguments in wrong {
+        let (code, out, err) = run(arguments);
+        assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}: {err}");
+        assert!(!err.is_empty(), "{arguments:?}");
+    }
+    assert!(run(&["solve", "no_such_case.toml"]).2.contains("no_such_case.toml"));
+    assert_eq!(run(&["--threads", "0", "case", "list"]).0, 2);
+}
+
+#[test]
+fn the_schema_is_json_and_carried_cases_can_be_shown_and_checked() {
+    let schema: Value = serde_json::from_str(&run(&["case", "schema"]).1).unwrap();
+    assert_eq!(schema["type"], "object");
+    let (code, list, _) = run(&["case", "list"]);
+    assert!(code == 0 && list.lines().any(|name| name == "cube_compression"), "{list}");
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("shown.toml");
+    std::fs::write(&path, run(&["case", "show", "cube_compression"]).1).unwrap();
+    let (code, out, err) = run(&["case", "check", path.to_str().unwrap()]);
+    assert_eq!((code, err.as_str()), (0, ""));
+    assert!(out.ends_with("no mistakes\n"), "{out}");
+}
+
+#[test]
+fn a_run_writes_its_files_and_only_data_to_standard_output() {
+    let (dir, case) = case_with("", "");
+    let (code, out, err) = solve(&case, dir.path(), &["--format", "json"]);
+    assert_eq!((code, err.as_str()), (0, ""));
+    let printed: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(printed, result(dir.path()));
+    assert_eq!(printed["schema_version"], 1);
+    assert_eq!(printed["motion"]["complete"], true);
+    let history = std::fs::read_to_string(dir.path().join("history.csv")).unwrap();
+    assert!(history.starts_with("step,time_s,"), "{history}");
+    assert!(history.lines().count() >= 5, "{history}");
+    for name in ["nodes_0000.vtu", "nodes_0002.vtu", "case.pvd"] {
+        assert!(dir.path().join(name).exists(), "{name} is missing");
+    }
+    let (code, out, err) = solve(&case, dir.path(), &["--quiet"]);
+    assert_eq!((code, out.as_str(), err.as_str()), (0, "", ""));
+}
+
+#[test]
+fn the_result_does_not_depend_on_the_number_of_threads() {
+    // Enough points for several blocks.
+    let (dir, case) = case_with("spacing = 0.02", "spacing = 0.006");
+    let results = ["1", "2", "4"].map(|threads| {
+        let out = dir.path().join(threads);
+        assert_eq!(solve(&case, &out, &["--threads", threads, "-q"]).0, 0);
+        let mut result = result(&out);
+        assert!(result.as_object_mut().unwrap().remove("timings").is_some());
+        let history = std::fs::read_to_string(out.join("history.csv")).unwrap();
+        (serde_json::to_string(&result).unwrap(), history)
+    });
+    assert!(results[0] == results[1] && results[0] == results[2]);
+}
+
+#[test]
+fn a_wrong_key_is_located() {
+    let (dir, case) = case_with("density = 1000.0", "densty = 1000.0");
+    for arguments in [&["solve"][..], &["case", "check"]] {
+        let (code, out, err) = run(&[arguments, &[case.to_str().unwrap()]].concat());
+        assert_eq!((code, out.as_str()), (2, ""));
+        assert!(err.contains("case.toml:9") && err.contains("did you mean `density`?"), "{err}");
+    }
+    assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1, "something was written");
+}
+
+#[test]
+fn a_condition_that_selects_nothing_is_located() {
+    let (dir, case) =
+        case_with("plane = { point = [0.0, 0.0, 0.0]", "plane = { point = [0.0, 0.0, 0.5]");
+    let line = 1 + CASE.lines().position(|line| line.starts_with("where")).unwrap();
+    for arguments in [&["solve"][..], &["case", "check"]] {
+        let mut command = mtled(&[arguments, &[case.to_str().unwrap()]].concat());
+        let output = command.current_dir(dir.path()).output().unwrap();
+        let err = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{err}");
+        assert!(err.contains(&format!("case.toml:{line}")), "{err}");
+        assert!(err.contains("prescribe[0].where") || err.contains("prescribe.bottom"), "{err}");
+    }
+}
+
+#[test]
+fn too_few_points_are_warned_about_on_standard_error() {
+    let (dir, case) =
+        case_with("spacing = 0.02", "spacing = 0.02\ngrid = { cells_per_spacing = 0.8 }");
+    let (code, out, err) = solve(&case, dir.path(), &["--format", "json"]);
+    assert!(err.contains("warning:") && err.contains("hourglassing"), "{code} {err}");
+    let warnings = serde_json::from_str::<Value>(&out).unwrap()["warnings"].clone();
+    assert!(warnings[0].as_str().unwrap().contains("hourglassing"), "{warnings}");
+}
+
+#[test]
+fn a_reader_that_leaves_early_is_no_failure() {
+    let mut schema = std::process::Command::new(assert_cmd::cargo::cargo_bin("mtled"))
+        .args(["case", "schema"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(schema.stdout.take());
+    let output = schema.wait_with_output().unwrap();
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert!(!err.contains("panicked"), "{err}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_complete_files() {
+    let (dir, case) = case_with("end = 0.2", "end = 1e6");
+    let out = dir.path().join("out");
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("mtled"))
+        .args(["solve", case.to_str().unwrap(), "--out", out.to_str().unwrap()])
+        .stderr(std::process::Stdio::null())
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    // The folder is made when the case has been read, before the march.
+    let start = Instant::now();
+    while !out.exists() && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(Duration::from_millis(700));
+    let sent = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(sent.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let result = result(&out);
+    assert_eq!(result["motion"]["complete"], false);
+    assert!(result["motion"]["steps"].as_u64().unwrap() > 0);
+    let history = std::fs::read_to_string(out.join("history.csv")).unwrap();
+    assert!(history.ends_with('\n') && history.lines().count() >= 2, "{history}");
+    let columns = |line: &str| line.split(',').count();
+    assert!(history.lines().all(|line| columns(line) == columns(history.lines().next().unwrap())));
+    assert!(out.join("nodes_0000.vtu").exists() && out.join("case.pvd").exists());
+}
