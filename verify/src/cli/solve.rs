@@ -2,12 +2,15 @@
 
 use super::case::{diagnose, load};
 use super::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
-use crate::run::{Recorder, march, prepare, result_json, summary_text, write_outputs};
+use crate::run::{
+    Prepared, Record, Recorder, Solved, march_on, prepare, result_json, summary_text,
+    write_outputs, write_recorded,
+};
 use crate::scene::Case;
 use anyhow::Context;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct SolveArgs {
@@ -36,7 +39,7 @@ pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
 
 fn solve_to(
     case: &Case,
-    out: &std::path::Path,
+    out: &Path,
     common: &Common,
 ) -> Result<anyhow::Result<u8>, mtled::error::Error> {
     let prepared = prepare(&case.problem)?;
@@ -53,22 +56,39 @@ fn solve_to(
         }
     };
     let mut recorder = Recorder::new(case, &prepared, case.outputs.frames)?.with_progress(&show);
-    let solved = march(&case.problem, prepared, &mut recorder);
+    let march = march_on(&case.problem, &prepared, &mut recorder);
     bar.finish_and_clear();
     let record = recorder.finish();
-    let solved = solved.inspect_err(|_| {
-        if let Some(last) = record.samples.last() {
-            eprintln!("the last sound sample was step {}, t = {:.6} s", last.step, last.time);
+    match march {
+        Ok(march) => Ok(finish(case, &Solved::new(prepared, march), &record, out, common)),
+        Err(error) => {
+            if let Err(error) = keep(case, &prepared, &record, out) {
+                return Ok(Err(error));
+            }
+            Err(error)
         }
-    })?;
-    Ok(finish(case, &solved, &record, out, common))
+    }
+}
+
+/// Writes what a failed run had, and says so.
+fn keep(case: &Case, prepared: &Prepared, record: &Record, out: &Path) -> anyhow::Result<()> {
+    write_recorded(case, prepared, record, out)?;
+    if let Some(last) = record.samples.last() {
+        eprintln!(
+            "{} holds what was sound: up to step {}, t = {:.6} s; there is no result.json",
+            out.display(),
+            last.step,
+            last.time
+        );
+    }
+    Ok(())
 }
 
 fn finish(
     case: &Case,
-    solved: &crate::run::Solved,
-    record: &crate::run::Record,
-    out: &std::path::Path,
+    solved: &Solved,
+    record: &Record,
+    out: &Path,
     common: &Common,
 ) -> anyhow::Result<u8> {
     write_outputs(case, solved, record, out)?;

@@ -5,7 +5,7 @@ mod probes;
 mod record;
 mod result;
 
-pub use output::write_outputs;
+pub use output::{write_outputs, write_recorded};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Record, Recorder, Sample};
 pub use result::{neighbour_visits, result_json, summary_text};
@@ -31,6 +31,17 @@ pub struct Prepared {
     pub setup_seconds: f64,
 }
 
+/// What a march to the end gives.
+#[derive(Debug)]
+pub struct March {
+    pub state: State,
+    pub summary: Summary,
+    /// Wall seconds of the march.
+    pub solve_seconds: f64,
+    /// CPU seconds of the march, all threads of the process.
+    pub cpu_seconds: f64,
+}
+
 /// A problem that has been marched to its end.
 #[derive(Debug)]
 pub struct Solved {
@@ -39,8 +50,16 @@ pub struct Solved {
     pub summary: Summary,
     /// Wall seconds of the march.
     pub solve_seconds: f64,
-    /// CPU seconds of set-up and march, all threads of the process.
+    /// CPU seconds of the march, all threads of the process.
     pub cpu_seconds: f64,
+}
+
+impl Solved {
+    /// Joins a march to what it marched.
+    pub fn new(prepared: Prepared, march: March) -> Solved {
+        let March { state, summary, solve_seconds, cpu_seconds } = march;
+        Solved { prepared, state, summary, solve_seconds, cpu_seconds }
+    }
 }
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -63,22 +82,31 @@ pub fn prepare(problem: &Problem) -> Result<Prepared, Error> {
     Ok(Prepared { discretisation, model, setup_seconds: start.elapsed().as_secs_f64() })
 }
 
+/// Marches a prepared problem, which stays with the caller if the run fails.
+pub fn march_on(
+    problem: &Problem,
+    prepared: &Prepared,
+    observer: &mut dyn Observer,
+) -> Result<March, Error> {
+    let (start, cpu) = (Instant::now(), cpu_seconds());
+    let mut state = State::new(&prepared.model);
+    let summary = simulate(&prepared.model, &problem.motion, &mut state, observer)?;
+    Ok(March {
+        state,
+        summary,
+        solve_seconds: start.elapsed().as_secs_f64(),
+        cpu_seconds: cpu_seconds() - cpu,
+    })
+}
+
 /// Marches a prepared problem.
 pub fn march(
     problem: &Problem,
     prepared: Prepared,
     observer: &mut dyn Observer,
 ) -> Result<Solved, Error> {
-    let (start, cpu) = (Instant::now(), cpu_seconds());
-    let mut state = State::new(&prepared.model);
-    let summary = simulate(&prepared.model, &problem.motion, &mut state, observer)?;
-    Ok(Solved {
-        prepared,
-        state,
-        summary,
-        solve_seconds: start.elapsed().as_secs_f64(),
-        cpu_seconds: cpu_seconds() - cpu,
-    })
+    let march = march_on(problem, &prepared, observer)?;
+    Ok(Solved::new(prepared, march))
 }
 
 /// Solves a case and records what its probes see.

@@ -1,7 +1,7 @@
 //! Files of a run: VTU frames with a PVD, histories as CSV, `result.json`.
 #![allow(non_snake_case)]
 
-use super::{Record, Solved, result_json};
+use super::{Prepared, Record, Solved, result_json};
 use crate::report::vtu::{PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::report::write_atomically;
 use crate::scene::Case;
@@ -9,17 +9,28 @@ use anyhow::Result;
 use mtled::problem::{Motion, Problem};
 use std::path::Path;
 
-/// Writes everything that was recorded to `dir`.
+/// Writes everything of a run to `dir`.
 pub fn write_outputs(case: &Case, solved: &Solved, record: &Record, dir: &Path) -> Result<()> {
-    write_frames(case, solved, record, dir)?;
-    write_atomically(&dir.join("history.csv"), history_csv(case, record)?.as_bytes())?;
+    write_recorded(case, &solved.prepared, record, dir)?;
     let text = serde_json::to_string_pretty(&result_json(case, solved, record))? + "\n";
     write_atomically(&dir.join("result.json"), text.as_bytes())
 }
 
-fn write_frames(case: &Case, solved: &Solved, record: &Record, dir: &Path) -> Result<()> {
+/// Writes what was recorded, which a failed run has too. A `result.json` of an
+/// earlier run goes: it would not belong to these files.
+pub fn write_recorded(case: &Case, prepared: &Prepared, record: &Record, dir: &Path) -> Result<()> {
+    if let Err(error) = std::fs::remove_file(dir.join("result.json"))
+        && error.kind() != std::io::ErrorKind::NotFound
+    {
+        return Err(error.into());
+    }
+    write_frames(case, prepared, record, dir)?;
+    write_atomically(&dir.join("history.csv"), history_csv(case, record)?.as_bytes())
+}
+
+fn write_frames(case: &Case, prepared: &Prepared, record: &Record, dir: &Path) -> Result<()> {
     let dynamic = matches!(case.problem.motion, Motion::Dynamic { .. });
-    let positions = &solved.prepared.discretisation.cloud.positions;
+    let positions = &prepared.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
     let mut series = Vec::new();
     for (index, frame) in record.frames.iter().enumerate() {
@@ -28,7 +39,7 @@ fn write_frames(case: &Case, solved: &Solved, record: &Record, dir: &Path) -> Re
         let time = if dynamic { frame.time } else { frame.step as f64 };
         write_vtu(
             &dir.join(&name),
-            &node_frame(&case.problem, solved, &points, &frame.displacement, time)?,
+            &node_frame(&case.problem, prepared, &points, &frame.displacement, time)?,
         )?;
         series.push((time, name));
     }
@@ -39,18 +50,17 @@ fn write_frames(case: &Case, solved: &Solved, record: &Record, dir: &Path) -> Re
 /// J and Cauchy stress averaged from the quadrature points around.
 fn node_frame<'a>(
     problem: &Problem,
-    solved: &Solved,
+    prepared: &Prepared,
     points: &'a [[f64; 3]],
     u: &[f64],
     time: f64,
 ) -> Result<VtuFrame<'a>> {
-    let prepared = &solved.prepared;
     let d = prepared.model.components;
     let cloud = &prepared.discretisation.cloud;
     let rows = prepared.discretisation.rows_at(&cloud.positions)?;
     let displacement: Vec<f64> =
         (0..rows.len()).flat_map(|i| <[f64; 3]>::from(rows.interpolate(i, u, d))).collect();
-    let (jacobian, stress) = averaged(problem, solved, u);
+    let (jacobian, stress) = averaged(problem, prepared, u);
     Ok(VtuFrame {
         time,
         points,
@@ -64,14 +74,14 @@ fn node_frame<'a>(
 
 /// J \[–\] and Cauchy stress by rows \[Pa\], averaged over the quadrature points
 /// that a node supports, weighted by their volume times φ where positive.
-fn averaged(problem: &Problem, solved: &Solved, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let discretisation = &solved.prepared.discretisation;
+fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let discretisation = &prepared.discretisation;
     let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
     let nodes = discretisation.cloud.positions.len();
     let (mut total, mut jacobian, mut stress) =
         (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; 9 * nodes]);
     for point in 0..rows.len() {
-        let F = rows.deformation_gradient(point, u, solved.prepared.model.components);
+        let F = rows.deformation_gradient(point, u, prepared.model.components);
         let law = &problem.regions[quadrature.regions[point] as usize].material.law;
         let sigma = law.cauchy(&F);
         for entry in rows.row(point) {
