@@ -57,7 +57,7 @@ pub fn critical_time_step(
         let products = basis.len();
         let exhausted = products >= MOST_PRODUCTS.min(tangent.free_size());
         settled = if residual <= EIGENVALUE_TOLERANCE * ritz { settled + 1 } else { 0 };
-        if settled > CONFIRMATIONS || exhausted || !(beta > 0.0) {
+        if settled > CONFIRMATIONS || exhausted || beta.is_nan() || beta <= 0.0 {
             let mode = combine(&basis, &weights, &tangent.root_mass);
             let time_step = 2.0 / (ritz + residual).sqrt();
             return CriticalStep { time_step, products, mode };

@@ -27,8 +27,9 @@ pub fn load_patterns(
     for body_force in &problem.loads.body_forces {
         let mut force = vec![0.0; size];
         let supports = &discretisation.supports;
-        for point in 0..supports.len() {
-            let mass = density[point] * discretisation.quadrature.weights[point];
+        let weights = &discretisation.quadrature.weights;
+        for (point, (density, weight)) in density.iter().zip(weights).enumerate() {
+            let mass = density * weight;
             for entry in supports.row(point) {
                 let share = mass * supports.phi[entry];
                 add(&mut force, d, supports.nodes[entry], &(body_force.acceleration * share));

@@ -14,8 +14,10 @@ pub fn lumped_mass(
 ) -> Result<Vec<f64>, Error> {
     let supports = &discretisation.supports;
     let mut mass = vec![0.0; discretisation.cloud.positions.len()];
-    for point in 0..supports.len() {
-        let point_mass = density[point] * discretisation.quadrature.weights[point];
+    for (point, (density, weight)) in
+        density.iter().zip(&discretisation.quadrature.weights).enumerate()
+    {
+        let point_mass = density * weight;
         let row = supports.row(point);
         let share = point_mass / row.len() as f64;
         for entry in row {
@@ -26,7 +28,7 @@ pub fn lumped_mass(
         }
     }
     let mean = mass.iter().sum::<f64>() / mass.len() as f64;
-    match mass.iter().position(|&m| !(m > 1e-9 * mean)) {
+    match mass.iter().position(|&m| m.is_nan() || m <= 1e-9 * mean) {
         Some(node) => Err(Error::MasslessNode {
             node,
             position: discretisation.cloud.positions[node],

@@ -139,7 +139,7 @@ impl Approximation {
         let poor = |condition| PoorSupport { support_size: n, condition };
         let inverse = A.cholesky().map(|factor| factor.inverse()).ok_or(poor(f64::INFINITY))?;
         let condition = norm_1(&A) * norm_1(&inverse);
-        if !(condition <= self.largest_condition()) {
+        if condition.is_nan() || condition > self.largest_condition() {
             return Err(poor(condition));
         }
         let mut support = Support { condition, enlargement, ..Support::default() };

@@ -152,10 +152,8 @@ fn residual(model: &Model, state: &mut State, buffers: &mut Buffers) -> f64 {
     internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
     external_force(model, state.time, &mut buffers.f_ext);
     let mut acceleration = vec![0.0; model.size()];
-    for (node, mass) in model.lumped_mass.iter().enumerate() {
-        for i in d * node..d * (node + 1) {
-            acceleration[i] = (buffers.f_ext[i] - buffers.f_int[i]) / mass;
-        }
+    for (i, a) in acceleration.iter_mut().enumerate() {
+        *a = (buffers.f_ext[i] - buffers.f_int[i]) / model.lumped_mass[i / d];
     }
     let scratch = &mut state.residual_scratch;
     model.constraints.project(state.time, &model.lumped_mass, &mut acceleration, scratch);

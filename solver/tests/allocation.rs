@@ -52,7 +52,7 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 /// Allocations of all threads of a rayon pool, rayon's own bookkeeping
-/// included, over 50 steps that follow 10 steps of warming up.
+/// included, over 50 steps that follow 100 steps of warming up.
 fn allocations(problem: &Problem, threads: usize) -> usize {
     let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     let (_, model) = build(problem);
@@ -61,6 +61,8 @@ fn allocations(problem: &Problem, threads: usize) -> usize {
         .start_handler(|_| WATCHED.set(true))
         .build()
         .unwrap();
+    // A thread that is still starting would be counted.
+    pool.broadcast(|_| ());
     pool.install(|| {
         let (mut state, mut buffers) = (State::new(&model), Buffers::new(&model, true));
         let time_step = 0.5 * model.bound;
@@ -71,7 +73,7 @@ fn allocations(problem: &Problem, threads: usize) -> usize {
                 step(&model, &scheme, state.time, then, &mut state, &mut buffers);
             }
         };
-        march(10);
+        march(100);
         let before = COUNT.load(Ordering::SeqCst);
         march(50);
         COUNT.load(Ordering::SeqCst) - before

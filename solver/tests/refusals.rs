@@ -19,7 +19,7 @@ use mtled::tensor::Vector3;
 
 fn refusal(problem: &Problem) -> Error {
     let made = Discretisation::new(problem).and_then(|d| Model::new(problem, &d));
-    made.err().expect("the problem was not refused")
+    made.expect_err("the problem was not refused")
 }
 
 /// The error of a run that must fail, what it had seen and the state it left.

@@ -1,4 +1,5 @@
 //! Dynamic relaxation against closed forms and balances.
+#![allow(non_snake_case)]
 
 mod common;
 
