@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
+const PROGRAM: &str = env!("CARGO_BIN_EXE_mtled");
+
 /// A block that is pulled, a few hundred points, a fraction of a second.
 const CASE: &str = r#"
 title = "Pulled block"
@@ -47,7 +49,7 @@ history = 5
 "#;
 
 fn mtled(arguments: &[&str]) -> Command {
-    let mut command = Command::cargo_bin("mtled").unwrap();
+    let mut command = Command::new(PROGRAM);
     command.args(arguments).timeout(Duration::from_secs(120));
     command
 }
@@ -194,8 +196,28 @@ fn too_few_points_are_warned_about_on_standard_error() {
 }
 
 #[test]
+fn the_case_in_the_readme_is_sound_and_its_message_is_true() {
+    let readme = include_str!("../../README.md");
+    let block = |opening: &str| {
+        let (_, rest) = readme.split_once(opening).unwrap();
+        rest.split_once("```").unwrap().0
+    };
+    let dir = TempDir::new().unwrap();
+    let case = block("```toml\n");
+    let check = |text: &str| {
+        std::fs::write(dir.path().join("block.toml"), text).unwrap();
+        let mut command = mtled(&["case", "check", "block.toml"]);
+        let output = command.current_dir(dir.path()).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(check(case), (Some(0), String::new()));
+    let (code, message) = check(&case.replace("density", "densty"));
+    assert_eq!((code, message.trim_end()), (Some(2), block("```text\n").trim_end()));
+}
+
+#[test]
 fn a_reader_that_leaves_early_is_no_failure() {
-    let mut schema = std::process::Command::new(assert_cmd::cargo::cargo_bin("mtled"))
+    let mut schema = std::process::Command::new(PROGRAM)
         .args(["case", "schema"])
         .stdout(std::process::Stdio::piped())
         .stderr(std::process::Stdio::piped())
@@ -212,7 +234,7 @@ fn a_reader_that_leaves_early_is_no_failure() {
 fn an_interrupted_run_leaves_complete_files() {
     let (dir, case) = case_with("end = 0.2", "end = 1e6");
     let out = dir.path().join("out");
-    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("mtled"))
+    let mut child = std::process::Command::new(PROGRAM)
         .args(["solve", case.to_str().unwrap(), "--out", out.to_str().unwrap()])
         .stderr(std::process::Stdio::null())
         .stdout(std::process::Stdio::null())
