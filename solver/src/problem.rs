@@ -180,7 +180,7 @@ pub enum Amplitude {
     Linear { duration: f64 },
     /// 10s³ − 15s⁴ + 6s⁵, s = t/`duration` \[s\], then 1.
     Smooth { duration: f64 },
-    /// Straight lines through (time \[s\], factor), constant outside.
+    /// Straight lines through (time \[s\], factor), constant outside; 0 if empty.
     Table(Vec<(f64, f64)>),
 }
 
@@ -202,7 +202,7 @@ impl Amplitude {
 fn interpolate(rows: &[(f64, f64)], t: f64) -> f64 {
     let after = rows.partition_point(|row| row.0 <= t);
     match after {
-        0 => rows[0].1,
+        0 => rows.first().map_or(0.0, |row| row.1),
         n if n == rows.len() => rows[n - 1].1,
         n => {
             let ((t0, a0), (t1, a1)) = (rows[n - 1], rows[n]);

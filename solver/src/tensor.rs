@@ -19,7 +19,7 @@ pub fn cofactor(a: &Matrix3) -> Matrix3 {
     Matrix3::from_rows(&[c0.transpose(), c1.transpose(), c2.transpose()])
 }
 
-/// Skew-free rotation by `angle` \[rad\] about the unit vector `axis`
+/// Rotation by `angle` \[rad\] about the unit vector `axis`
 /// (Rodrigues' formula).
 pub fn rotation(axis: &Vector3, angle: f64) -> Matrix3 {
     let unit = nalgebra::Unit::new_normalize(*axis);

@@ -104,7 +104,7 @@ impl<'a> Recorder<'a> {
         self.record
     }
 
-    fn sample(&self, view: &mut View) -> Sample {
+    fn sample(&self, view: &View, energies: Energies) -> Sample {
         let u = &view.state.displacement;
         let displacements = self.probes.iter().map(|probe| match probe {
             Watched::Points(rows) => {
@@ -117,7 +117,7 @@ impl<'a> Recorder<'a> {
             time: view.state.time,
             displacements: displacements.collect(),
             reactions: view.reactions(&self.moment_about),
-            energies: view.energies(),
+            energies,
             smallest_jacobian: view.smallest_jacobian,
             touching: view.state.contact.touching.len(),
         }
@@ -131,17 +131,23 @@ impl Observer for Recorder<'_> {
         let due = |done: usize, wanted: usize| {
             wanted > 0 && (last || view.progress * wanted as f64 >= done as f64)
         };
-        if due(self.record.frames.len(), self.frames_wanted) {
-            let displacement = view.state.displacement.clone();
-            self.record.frames.push(Frame {
-                step: view.state.step,
-                time: view.state.time,
-                displacement,
-            });
-        }
-        if due(self.record.samples.len(), self.samples_wanted) {
-            let sample = self.sample(view);
-            self.record.samples.push(sample);
+        let frame = due(self.record.frames.len(), self.frames_wanted);
+        let sample = due(self.record.samples.len(), self.samples_wanted);
+        // A state that has just lost its energy is seen by the next step; it
+        // must not stand among the results.
+        let energies = (frame || sample).then(|| view.energies());
+        if let Some(energies) = energies.filter(|energies| energies.strain.is_finite()) {
+            if frame {
+                self.record.frames.push(Frame {
+                    step: view.state.step,
+                    time: view.state.time,
+                    displacement: view.state.displacement.clone(),
+                });
+            }
+            if sample {
+                let sample = self.sample(view, energies);
+                self.record.samples.push(sample);
+            }
         }
         if let Some(report) = self.progress {
             report(view.progress, view.state.step);

@@ -16,11 +16,23 @@ use mtled::problem::{
 pub mod defaults {
     use mtled::problem::{Basis, Enforcement, InsideRule, MassRule, WeightFunction};
 
-    /// Influence radius over nodal spacing \[–\].
-    pub const DILATION: f64 = 1.8;
+    /// Influence radius over nodal spacing \[–\], by basis: a quadratic one needs
+    /// more nodes in its supports.
+    pub fn dilation(basis: Basis) -> f64 {
+        match basis {
+            Basis::Linear => 1.8,
+            Basis::Quadratic => 2.6,
+        }
+    }
     pub const BASIS: Basis = Basis::Linear;
     pub const WEIGHT_FUNCTION: WeightFunction = WeightFunction::QuarticSpline;
-    pub const MASS: MassRule = MassRule::RowSum;
+    /// Row sums of quadratic functions are negative at some corners.
+    pub fn mass(basis: Basis) -> MassRule {
+        match basis {
+            Basis::Linear => MassRule::RowSum,
+            Basis::Quadratic => MassRule::EvenSplit,
+        }
+    }
     pub const ENFORCEMENT: Enforcement = Enforcement::Collocation;
     pub const INSIDE: InsideRule = InsideRule::VolumeFraction;
     /// Two cells per node in three dimensions: 1.26³ = 2.
@@ -46,7 +58,8 @@ pub fn tolerance(format: &DiscretisationFormat) -> f64 {
 impl Builder<'_> {
     /// The recipe, or `None` and a mistake.
     pub fn recipe(&mut self, format: &DiscretisationFormat) -> Option<Recipe> {
-        let dilation = format.dilation.unwrap_or(defaults::DILATION);
+        let basis = format.basis.map_or(defaults::BASIS, Basis::from);
+        let dilation = format.dilation.unwrap_or(defaults::dilation(basis));
         if dilation <= 1.0 {
             let message = format!(
                 "is {dilation}; it must be larger than 1, or nodes do not reach their neighbours"
@@ -62,12 +75,12 @@ impl Builder<'_> {
         Some(Recipe {
             cloud: cloud?,
             dilation,
-            basis: format.basis.map_or(defaults::BASIS, Basis::from),
+            basis,
             weight_function: format
                 .weight_function
                 .map_or(defaults::WEIGHT_FUNCTION, WeightFunction::from),
             grid: grid?,
-            mass: format.mass.map_or(defaults::MASS, MassRule::from),
+            mass: format.mass.map_or(defaults::mass(basis), MassRule::from),
             enforcement: format.enforcement.map_or(defaults::ENFORCEMENT, Enforcement::from),
         })
     }

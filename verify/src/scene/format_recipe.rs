@@ -23,10 +23,15 @@ pub struct DiscretisationFormat {
     pub refine: Option<Vec<RefineSpacingFormat>>,
     /// Largest growth of the spacing per length [–]; for "graded".
     pub growth: Option<f64>,
-    /// Influence radius over nodal spacing [–], larger than 1.
+    /// Influence radius over nodal spacing [–], larger than 1; 1.8 by default,
+    /// 2.6 with the quadratic basis.
     pub dilation: Option<f64>,
+    /// "linear" by default.
     pub basis: Option<BasisFormat>,
+    /// "quartic_spline" by default.
     pub weight_function: Option<WeightFunctionFormat>,
+    /// "row_sum" by default, "even_split" with the quadratic basis, whose row
+    /// sums are negative at some corners.
     pub mass: Option<MassFormat>,
     pub enforcement: Option<EnforcementFormat>,
     #[serde(default)]
