@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 /// A place in a file; lines and columns count from 1, columns in characters.
+/// Line 0 means the file as a whole.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Location {
     pub file: String,
@@ -26,7 +27,10 @@ impl Location {
 
 impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}", self.file, self.line, self.column)
+        match self.line {
+            0 => write!(f, "{}", self.file),
+            line => write!(f, "{}:{line}:{}", self.file, self.column),
+        }
     }
 }
 
@@ -60,7 +64,8 @@ impl Diagnostic {
 
     /// A mistake that concerns a whole file, such as one that does not exist.
     pub fn of_file(file: &str, message: String) -> Diagnostic {
-        Diagnostic::at(file, "", 0..0, String::new(), message)
+        let location = Location { file: file.to_string(), line: 0, column: 0 };
+        Diagnostic { location, key: String::new(), message, source_line: String::new(), width: 1 }
     }
 }
 
