@@ -6,8 +6,8 @@ use anyhow::{Context, Result};
 use std::io::Write;
 use std::path::Path;
 
-/// Writes results.json, junit.xml, index.html and summary.md into `dir`, which
-/// is created where it is missing.
+/// Writes results.json, junit.xml, index.html, summary.md and every figure into
+/// `dir`, which is created where it is missing.
 pub fn write_report(report: &Report, dir: &Path) -> Result<()> {
     let files = [
         ("results.json", json::to_json(report)),
@@ -66,7 +66,7 @@ mod tests {
 
     /// Set MTLED_SAMPLE_REPORT to a folder to look at the pages.
     #[test]
-    fn a_report_is_four_files_and_nothing_else() {
+    fn a_report_is_four_files_and_a_folder_of_figures() {
         let scratch = tempfile::tempdir().unwrap();
         let kept = std::env::var_os("MTLED_SAMPLE_REPORT").map(std::path::PathBuf::from);
         let folder = kept.unwrap_or(scratch.path().join("deep/report"));
@@ -78,7 +78,7 @@ mod tests {
             .filter(|name| !name.ends_with(".png"))
             .collect();
         names.sort();
-        assert_eq!(names, ["index.html", "junit.xml", "results.json", "summary.md"]);
+        assert_eq!(names, ["figures", "index.html", "junit.xml", "results.json", "summary.md"]);
     }
 
     #[test]
