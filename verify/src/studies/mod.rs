@@ -1,5 +1,8 @@
 //! The studies: each poses cases, runs the solver and returns plain data.
 
+mod consistency;
+mod problems;
+
 use crate::scene::{Case, read_case};
 use crate::study::Study;
 use anyhow::{Result, anyhow};
@@ -29,7 +32,13 @@ pub struct Workbench {
 }
 
 /// Every study, the longest first so that they share the processors well.
-pub const STUDIES: &[Definition] = &[];
+pub const STUDIES: &[Definition] = &[Definition {
+    id: "consistency",
+    title: "Consistency of the approximation",
+    claim: "The shape functions sum to one and reproduce their basis, values and gradients, to \
+            round-off, on any cloud and anywhere in space; Grad φ is the derivative of φ.",
+    body: consistency::consistency,
+}];
 
 impl Workbench {
     /// Unpacks the carried cases into the output folder.
