@@ -2,10 +2,9 @@
 #![allow(non_snake_case)]
 
 use super::Workbench;
+use super::plain::{axis, curve, larger, number, text};
 use super::problems::{PLANE, Random, SIZE, block_shape, recipe};
-use crate::study::{
-    Axis, Bound, Cell, Check, Column, Figure, Kind, Plot, Series, SeriesStyle, Study, Table,
-};
+use crate::study::{Bound, Cell, Check, Column, Figure, Kind, Plot, Study, Table};
 use mtled::mls::{Approximation, Support};
 use mtled::nodes::{NodeCloud, node_cloud};
 use mtled::problem::{Basis, Dimension, WeightFunction};
@@ -201,17 +200,15 @@ fn add_checks(study: &mut Study, case: &str, basis: Basis, worst: &Errors) {
 }
 
 fn columns() -> Vec<Column> {
-    let text = |name: &str| Column { name: name.into(), unit: String::new() };
-    let number = |name: &str| Column { name: name.into(), unit: "1".into() };
     vec![
         text("dimension"),
         text("basis"),
         text("weight function"),
-        number("partition of unity"),
-        number("value"),
-        number("gradient"),
-        number("derivative"),
-        number("largest condition"),
+        number("partition of unity", "1"),
+        number("value", "1"),
+        number("gradient", "1"),
+        number("derivative", "1"),
+        number("largest condition", "1"),
     ]
 }
 
@@ -246,27 +243,22 @@ fn condition_figure() -> anyhow::Result<Plot> {
                 global.push((distance, global_condition(&a, &(X + shift))));
             }
         }
-        series.push(curve(format!("{name} basis, local and scaled"), local));
+        series.push(curve(&format!("{name} basis, local and scaled"), local));
         if basis == Basis::Linear {
-            series.push(curve("linear basis, global monomials".into(), global));
+            series.push(curve("linear basis, global monomials", global));
         }
     }
-    let axis = |label: &str, unit: &str| Axis { label: label.into(), unit: unit.into(), log: true };
     Ok(Plot {
         title: "Condition of the moment matrix away from the origin".into(),
         caption: "One point of a jittered cloud, moved. In the local scaled basis the distance \
                   from the origin does not matter; with global monomials (for comparison only) \
                   it would cost digits."
             .into(),
-        x: axis("distance from the origin", "m"),
-        y: axis("condition number", "1"),
+        x: axis("distance from the origin", "m", true),
+        y: axis("condition number", "1", true),
         series,
         slopes: Vec::new(),
     })
-}
-
-fn curve(name: String, points: Vec<(f64, f64)>) -> Series {
-    Series { name, points, error_bars: Vec::new(), style: SeriesStyle::LineAndPoints }
 }
 
 /// ‖A‖₁‖A⁻¹‖₁ with the monomials 1, x, y, z.
@@ -316,9 +308,4 @@ fn shift(distance: f64, components: usize) -> Vector3 {
         direction.z = 0.0;
     }
     direction * (distance / direction.norm())
-}
-
-/// Like `f64::max`, but NaN wins.
-fn larger(a: f64, b: f64) -> f64 {
-    if b.is_nan() || b > a { b } else { a }
 }

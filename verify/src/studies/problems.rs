@@ -4,10 +4,11 @@
 use mtled::geometry::Shape;
 use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use mtled::problem::{
-    BackgroundGrid, Basis, Cloud, Dimension, Enforcement, InsideRule, Loads, MassRule, Motion,
-    Problem, Recipe, Region, Relaxation, StepControl, WeightFunction,
+    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, Enforcement, EssentialCondition,
+    InsideRule, Loads, MassRule, Motion, Prescribed, Problem, Recipe, Region, Relaxation,
+    StepControl, WeightFunction,
 };
-use mtled::selection::Selector;
+use mtled::selection::{Extent, Selector};
 use mtled::tensor::Vector3;
 
 /// Plane strain in a slab of 1 m.
@@ -18,8 +19,7 @@ pub const SIZE: f64 = 0.1;
 
 /// The cube [0, SIZE]³, or its cross-section in a plane.
 pub fn block_shape() -> Shape {
-    let lift = Vector3::new(0.0, 0.0, 0.0);
-    Shape::Box { min: lift, max: lift + Vector3::repeat(SIZE) }
+    Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(SIZE) }
 }
 
 /// The sphere inside that cube.
@@ -74,6 +74,23 @@ pub fn free_body(dimension: Dimension, body: Shape, material: Material, recipe: 
         loads: Loads::default(),
         obstacles: Vec::new(),
         motion: relaxation(200, 1e-6),
+    }
+}
+
+/// Moves all nodes of the block's face `axis` = `at` \[m\] by `by` \[m\] along
+/// that axis and holds the other components.
+pub fn bonded_face(axis: usize, at: f64, by: f64, amplitude: Amplitude) -> EssentialCondition {
+    let mut normal = Vector3::zeros();
+    normal[axis] = 1.0;
+    let mut displacement = [Some(0.0); 3];
+    displacement[axis] = Some(by);
+    EssentialCondition {
+        name: format!("face at {at} m"),
+        extent: Extent::Surface,
+        part: Selector::Plane { point: normal * at, normal, tolerance: 1e-9 },
+        prescribed: Prescribed::Displacement(displacement),
+        amplitude,
+        release: None,
     }
 }
 
