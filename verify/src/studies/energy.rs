@@ -271,7 +271,9 @@ fn determinism(study: &mut Study) -> anyhow::Result<()> {
         let differing = alone.iter().zip(&bits).filter(|(a, b)| a != b).count();
         study.checks.push(Check::new(
             &format!("energy/threads/{threads}"),
-            &format!("displacement components that differ between 1 and {threads} threads"),
+            &format!(
+                "displacement components that differ on {threads} threads from a first run on one"
+            ),
             Kind::Exact,
             differing as f64,
             Bound::AtMost(0.0),
