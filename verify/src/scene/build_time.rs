@@ -10,6 +10,9 @@ use mtled::tensor::Vector3;
 
 /// Wanted relative error of a static solution \[–\].
 const TOLERANCE: f64 = 1e-4;
+/// Step over the critical one where nothing damps: large vibrations near the
+/// limit resonate with the step and blow up (study "energy").
+const UNDAMPED_SAFETY_FACTOR: f64 = 0.8;
 /// Steps over which a static load is applied.
 const LOAD_STEPS: usize = 500;
 const MAX_STEPS: usize = 200_000;
@@ -70,8 +73,11 @@ impl Builder<'_> {
 
     fn step(&mut self, format: &TimeFormat) -> StepControl {
         let preset = StepControl::default();
+        let undamped =
+            format.method == MethodFormat::Dynamic && format.damping.unwrap_or(0.0) == 0.0;
+        let safety_factor = if undamped { UNDAMPED_SAFETY_FACTOR } else { preset.safety_factor };
         let step = StepControl {
-            safety_factor: format.safety_factor.unwrap_or(preset.safety_factor),
+            safety_factor: format.safety_factor.unwrap_or(safety_factor),
             reevaluate_every: format.reevaluate_every.unwrap_or(preset.reevaluate_every),
             fixed: format.fixed_step,
         };

@@ -1,0 +1,193 @@
+//! The critical time step against the largest stable one of real runs.
+
+use super::Workbench;
+use super::plain::{axis, number, styled, text};
+use super::problems::Random;
+use super::specimens::{Specimen, specimens};
+use crate::run::prepare;
+use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, SeriesStyle, Study, Table};
+use mtled::critical_time_step::critical_time_step;
+use mtled::internal_force::Workspace;
+use mtled::model::Model;
+use mtled::observe::Unobserved;
+use mtled::simulate::simulate;
+use mtled::state::State;
+use mtled::step::{Buffers, Scheme, step};
+
+/// Steps of a trial run. A step 0.1 % above the limit multiplies the highest
+/// mode by 1 + √(8·0.001) = 1.09 in each step, by 10¹⁹ in all.
+const TRIAL_STEPS: usize = 500;
+/// Growth of the kinetic energy that tells an unstable run: modes just below
+/// the limit swell by no more than the square of the number of steps.
+const GROWTH: f64 = 1e8;
+/// Width of the bracket at which bisection ends \[–\].
+const BISECTION: f64 = 1e-3;
+
+/// Steps \[s\] of one specimen.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    nodes: usize,
+    points: usize,
+    bound: f64,
+    lanczos: f64,
+    bisected: f64,
+    products: usize,
+    /// By Lanczos from the stiffest mode at rest, as runs do it \[s\].
+    followed: Option<f64>,
+}
+
+pub fn time_step(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+    let specimens = specimens(bench)?;
+    let mut rows = Vec::new();
+    let (mut lanczos, mut bound) = (Vec::new(), Vec::new());
+    for (index, specimen) in specimens.iter().enumerate() {
+        let limits = measure(specimen)
+            .map_err(|error| error.context(format!("specimen \"{}\"", specimen.id)))?;
+        add_checks(study, specimen, &limits);
+        rows.push(row(specimen, &limits));
+        lanczos.push((index as f64 + 1.0, limits.lanczos / limits.bisected));
+        bound.push((index as f64 + 1.0, limits.bound / limits.bisected));
+    }
+    study.tables.push(Table {
+        title: "Critical steps by bound, by Lanczos and by bisection".into(),
+        columns: vec![
+            text("specimen"),
+            number("nodes", "1"),
+            number("points", "1"),
+            number("largest stable step", "s"),
+            number("Lanczos", "s"),
+            number("Lanczos over stable", "1"),
+            number("bound over stable", "1"),
+            number("products", "1"),
+        ],
+        rows,
+    });
+    study.figures.push(Figure::Plot(Plot {
+        title: "Estimates over the largest stable step".into(),
+        caption: "Specimens in the order of the table. Above 1 a run diverges.".into(),
+        x: axis("specimen", "1", false),
+        y: axis("estimate over stable step", "1", false),
+        series: vec![
+            styled("Lanczos", lanczos, SeriesStyle::Points),
+            styled("per-point bound", bound, SeriesStyle::Points),
+        ],
+        slopes: Vec::new(),
+    }));
+    study.notes.push(format!(
+        "The largest stable step is found by bisection to a relative width of {BISECTION}, from the per-point bound upwards, on undamped runs of \
+         {TRIAL_STEPS} steps from a random velocity too small to deform the body; a run is unstable \
+         if its kinetic energy grows by {GROWTH:e}. The per-point bound belongs to the body at \
+         rest; for the compressed block it is listed only."
+    ));
+    Ok(())
+}
+
+fn measure(specimen: &Specimen) -> anyhow::Result<Limits> {
+    let prepared = prepare(&specimen.problem)?;
+    let model = &prepared.model;
+    let mut state = State::new(model);
+    let mut workspace = Workspace::new(model);
+    let rest = critical_time_step(model, &state.displacement, 0.0, None, &mut workspace);
+    if specimen.deformed {
+        simulate(model, &specimen.problem.motion, &mut state, &mut Unobserved)?;
+    }
+    let (u, t) = (&state.displacement, state.time);
+    let critical = critical_time_step(model, u, t, None, &mut workspace);
+    let followed = || critical_time_step(model, u, t, Some(&rest.mode), &mut workspace).time_step;
+    let followed = specimen.deformed.then(followed);
+    let velocity = disturbance(model, &prepared.discretisation.cloud.spacing, critical.time_step);
+    let stable = |time_step: f64| is_stable(model, u, t, &velocity, time_step);
+    // From the bound, so that the bracket owes nothing to Lanczos.
+    let (mut low, mut high) = (0.5 * model.bound, model.bound);
+    anyhow::ensure!(stable(low), "half of the per-point bound is not stable");
+    while stable(high) {
+        (low, high) = (high, 1.3 * high);
+    }
+    while high - low > BISECTION * low {
+        let middle = 0.5 * (low + high);
+        if stable(middle) { low = middle } else { high = middle }
+    }
+    Ok(Limits {
+        nodes: model.positions.len(),
+        points: model.point_positions.len(),
+        bound: model.bound,
+        lanczos: critical.time_step,
+        bisected: 0.5 * (low + high),
+        products: critical.products,
+        followed,
+    })
+}
+
+/// A random velocity that moves nodes by 1e-8 of the spacing in a step.
+fn disturbance(model: &Model, spacing: &[f64], time_step: f64) -> Vec<f64> {
+    let finest = spacing.iter().copied().fold(f64::INFINITY, f64::min);
+    let size = 1e-8 * finest / time_step;
+    let mut random = Random(11);
+    (0..model.size()).map(|_| size * random.symmetric()).collect()
+}
+
+/// Marches with conditions held as at time `t` and no damping.
+fn is_stable(model: &Model, u: &[f64], t: f64, velocity: &[f64], time_step: f64) -> bool {
+    let mut state = State::new(model);
+    state.displacement.copy_from_slice(u);
+    state.velocity.copy_from_slice(velocity);
+    let mut buffers = Buffers::new(model, false);
+    let scheme = Scheme::central_difference(time_step, time_step, 0.0);
+    let mut first = None;
+    for _ in 0..TRIAL_STEPS {
+        step(model, &scheme, t, t, &mut state, &mut buffers);
+        let energy = kinetic_energy(model, &state);
+        let first = *first.get_or_insert(energy);
+        if energy.is_nan() || energy >= GROWTH * first {
+            return false;
+        }
+    }
+    true
+}
+
+fn kinetic_energy(model: &Model, state: &State) -> f64 {
+    let d = model.components;
+    let squares = |node: usize| state.velocity[d * node..d * (node + 1)].iter().map(|v| v * v);
+    let energy = |(node, mass): (usize, &f64)| 0.5 * mass * squares(node).sum::<f64>();
+    model.lumped_mass.iter().enumerate().map(energy).sum()
+}
+
+fn add_checks(study: &mut Study, specimen: &Specimen, limits: &Limits) {
+    let id = format!("time_step/{}/lanczos", specimen.id);
+    let words = format!("step by Lanczos over the largest stable one: {}", specimen.words);
+    let source = "2/√λ_max is the stability limit of central differences, and the Ritz value plus \
+                  its residual is on the safe side; the upper end allows for the bracket of the \
+                  bisection, 0.1 %";
+    let ratio = limits.lanczos / limits.bisected;
+    let bound = Bound::Between(0.9, 1.0 + BISECTION);
+    study.checks.push(Check::new(&id, &words, Kind::Exact, ratio, bound, "1", source));
+    if let Some(followed) = limits.followed {
+        let id = format!("time_step/{}/followed", specimen.id);
+        let words = format!("step by Lanczos from the mode at rest: {}", specimen.words);
+        let ratio = followed / limits.bisected;
+        study.checks.push(Check::new(&id, &words, Kind::Exact, ratio, bound, "1", source));
+    } else {
+        let id = format!("time_step/{}/bound", specimen.id);
+        let words = format!("per-point bound over the largest stable step: {}", specimen.words);
+        let source = "No eigenvalue of the body is larger than the largest of a single point with \
+                      its share of the masses (Joldes, Wittek, Miller 2012)";
+        let ratio = limits.bound / limits.bisected;
+        let bound = Bound::AtMost(1.0);
+        study.checks.push(Check::new(&id, &words, Kind::Exact, ratio, bound, "1", source));
+    }
+}
+
+fn row(specimen: &Specimen, limits: &Limits) -> Vec<Cell> {
+    let numbers = [
+        limits.nodes as f64,
+        limits.points as f64,
+        limits.bisected,
+        limits.lanczos,
+        limits.lanczos / limits.bisected,
+        limits.bound / limits.bisected,
+        limits.products as f64,
+    ];
+    let mut row = vec![Cell::Text(specimen.words.clone())];
+    row.extend(numbers.map(Cell::Number));
+    row
+}
