@@ -11,6 +11,7 @@
 //! ∂/∂X, and `grad_phi` is Grad φ. Units are SI throughout.
 
 // The floors of the house: a module uses only what stands above it.
+pub mod dimension;
 pub mod tensor;
 
 pub mod material;

@@ -1,5 +1,6 @@
 //! What is to be solved: plain data, made by the scene reader or by hand.
 
+pub use crate::dimension::Dimension;
 use crate::geometry::Shape;
 use crate::material::Material;
 use crate::selection::{Extent, Selector};
@@ -19,28 +20,6 @@ pub struct Problem {
     pub loads: Loads,
     pub obstacles: Vec<Obstacle>,
     pub motion: Motion,
-}
-
-/// Three dimensions, or a plane-strain slice with two.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Dimension {
-    Three,
-    /// Displacements in x and y, F₃₃ = 1. The cross-section is taken at `z`
-    /// \[m\]; volumes, masses and forces are those of a slab of `thickness` \[m\].
-    PlaneStrain {
-        thickness: f64,
-        z: f64,
-    },
-}
-
-impl Dimension {
-    /// Number of displacement components per node: 3 or 2.
-    pub fn components(&self) -> usize {
-        match self {
-            Dimension::Three => 3,
-            Dimension::PlaneStrain { .. } => 2,
-        }
-    }
 }
 
 /// A part of the body made of one material.

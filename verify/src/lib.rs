@@ -10,9 +10,10 @@ pub mod scene;
 pub mod measure;
 pub mod study;
 
+pub mod report;
+
 pub mod cases;
 pub mod machine;
-pub mod report;
 pub mod run;
 pub mod studies;
 

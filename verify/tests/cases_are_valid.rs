@@ -104,7 +104,7 @@ fn the_brain_slice_is_what_the_seed_describes() {
     assert_eq!(problem.dimension, Dimension::PlaneStrain { thickness: 0.005, z: 0.018 });
     let names: Vec<&str> = problem.regions.iter().map(|region| region.name.as_str()).collect();
     assert_eq!(names, ["ventricles", "tumour", "brain"]);
-    assert!(matches!(problem.motion, Motion::Dynamic { end: 2.0, damping: 5.0, .. }));
+    assert!(matches!(problem.motion, Motion::Dynamic { end: 2.0, damping: 50.0, .. }));
     assert_eq!(problem.conditions[0].release, Some(1.0));
     let Prescribed::Displacement([Some(x), Some(y), None]) = problem.conditions[0].prescribed
     else {

@@ -3,7 +3,7 @@
 
 use super::features::{Features, of_section, of_solid};
 use super::{GeometryError, PointHash, Shape, positive};
-use crate::problem::Dimension;
+use crate::dimension::Dimension;
 use crate::tensor::Vector3;
 
 /// Wanted distance of neighbouring points \[m\] and its bounds.

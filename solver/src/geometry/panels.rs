@@ -4,7 +4,7 @@
 use super::primitives::anticlockwise;
 use super::triangles::{Triangle, area_vector, subdivide, triangulate};
 use super::{GeometryError, Shape, marching, positive};
-use crate::problem::Dimension;
+use crate::dimension::Dimension;
 use crate::tensor::Vector3;
 use std::f64::consts::TAU;
 

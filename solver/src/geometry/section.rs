@@ -1,7 +1,7 @@
 //! Cross-sections for plane problems: solids without ends in z.
 
 use super::{GeometryError, Shape};
-use crate::problem::Dimension;
+use crate::dimension::Dimension;
 use crate::tensor::Vector3;
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::problem::Dimension;
+use crate::dimension::Dimension;
 use crate::tensor::{Matrix3, rotation};
 use std::f64::consts::PI;
 

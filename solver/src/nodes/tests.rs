@@ -88,7 +88,6 @@ fn nodes_keep_their_distance_and_leave_no_holes() {
             let nodes = node_cloud(&body, &cloud, &dimension).unwrap();
             let closest = nearest(&nodes).into_iter().fold(f64::INFINITY, f64::min);
             let widest = largest_hole(&body, &nodes, &dimension);
-            println!("{kind} {name}: {} nodes, {closest:.3}, {widest:.3}", nodes.positions.len());
             assert!(closest > least, "{kind} {name}: nodes {closest} spacings apart");
             assert!(widest < hole, "{kind} {name}: a hole of {widest} spacings");
         }
