@@ -110,7 +110,7 @@ fn the_brain_slice_is_what_the_seed_describes() {
     else {
         panic!("the craniotomy moves in the plane")
     };
-    assert!((x.hypot(y) - 0.012).abs() < 1e-5);
+    assert!((x.hypot(y) - 0.006).abs() < 1e-5);
     assert!(matches!(problem.recipe.cloud, Cloud::Graded { .. }));
 }
 
