@@ -117,6 +117,21 @@ fn a_node_whose_row_sum_is_negative_is_refused_with_its_place_and_mass() {
 }
 
 #[test]
+fn a_cloud_with_an_isolated_node_is_refused_with_the_place_of_the_gap() {
+    let mut problem = square(8);
+    let (whole, _) = build(&problem);
+    let mut nodes = whole.cloud.positions;
+    let lone = nodes.iter().copied().max_by(|a, b| (a.x + a.y).total_cmp(&(b.x + b.y))).unwrap();
+    nodes.retain(|X| X.x < 0.4 * EDGE || *X == lone);
+    problem.recipe.cloud = Cloud::Given { nodes };
+    let Error::SmallSupport { position, support_size, smallest, .. } = refusal(&problem) else {
+        panic!()
+    };
+    assert!(support_size < smallest);
+    assert!(position.x > 0.4 * EDGE, "{position}");
+}
+
+#[test]
 fn a_plate_of_boundary_nodes_alone_is_refused() {
     let mut problem = cube(4);
     problem.body = Shape::Box { min: Vector3::zeros(), max: Vector3::new(EDGE, EDGE, 0.25 * EDGE) };
