@@ -24,7 +24,7 @@ struct Cli {
 
 const EXAMPLES: &str = "Examples:
   mtled verify                                  check the solver, write reports/verify/index.html
-  mtled verify --only brain --out /tmp/brain    one study
+  mtled verify --only brain --out brain_report  one study
   mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the cases that the program carries";
