@@ -122,7 +122,7 @@ fn a_cloud_with_an_isolated_node_is_refused_with_the_place_of_the_gap() {
     let (whole, _) = build(&problem);
     let mut nodes = whole.cloud.positions;
     let lone = nodes.iter().copied().max_by(|a, b| (a.x + a.y).total_cmp(&(b.x + b.y))).unwrap();
-    nodes.retain(|X| X.x < 0.4 * EDGE || *X == lone);
+    nodes.retain(|node| node.x < 0.4 * EDGE || *node == lone);
     problem.recipe.cloud = Cloud::Given { nodes };
     let Error::SmallSupport { position, support_size, smallest, .. } = refusal(&problem) else {
         panic!()
