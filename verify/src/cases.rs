@@ -12,6 +12,9 @@ macro_rules! carried {
 
 /// (name, text) of every case in `reference/cases`.
 pub const CASES: &[(&str, &str)] = carried![
+    "bonded_block",
+    "brain_cube_compression",
+    "brain_cube_shear",
     "brain_slice",
     "cook_membrane",
     "cube_compression",
@@ -21,6 +24,7 @@ pub const CASES: &[(&str, &str)] = carried![
     "soft_inclusion",
     "sphere_gravity",
     "turek_hron_csm1",
+    "turek_hron_csm2",
     "turek_hron_csm3",
     "twisted_cylinder",
     "uniaxial_bar",
