@@ -2,11 +2,14 @@
 //! on materials or conditions.
 #![allow(non_snake_case)]
 
+use crate::consistency::{Correction, Layout, connected_bodies, make_consistent};
 use crate::error::Error;
 use crate::mls::{Approximation, PoorSupport, Support};
 use crate::nodes::{NodeCloud, node_cloud};
-use crate::problem::{Dimension, Problem};
+use crate::problem::{Dimension, Gradients, Problem};
 use crate::quadrature::{Quadrature, quadrature};
+pub use crate::rows::Rows;
+use crate::surface_rule::{SurfaceRule, close};
 use crate::tensor::Vector3;
 use rayon::prelude::*;
 
@@ -19,23 +22,18 @@ pub struct Discretisation {
     pub quadrature: Quadrature,
     /// Supports of the quadrature points.
     pub supports: Rows,
+    /// The boundary, shared among the boundary nodes.
+    pub surface: SurfaceRule,
+    /// How the gradients were made consistent, if they were.
+    pub correction: Option<Correction>,
     /// Quadrature points whose influence radii had to be enlarged.
     pub enlarged: usize,
     /// Largest condition number of a moment matrix (local scaled basis).
     pub worst_condition: f64,
 }
 
-/// Rows of φ and Grad φ, one for each evaluation point, packed.
-#[derive(Debug, Clone, Default)]
-pub struct Rows {
-    /// Row i is `starts[i]..starts[i + 1]` \[row + 1\].
-    pub starts: Vec<usize>,
-    pub nodes: Vec<u32>,
-    /// \[–\]
-    pub phi: Vec<f64>,
-    /// \[1/m\]
-    pub grad_phi: Vec<Vector3>,
-}
+/// Edge of the boundary panels over the smallest nodal spacing \[–\].
+const PANEL: f64 = 0.25;
 
 /// Something that a user should know before trusting the result.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,63 +56,6 @@ impl std::fmt::Display for Warning {
                  a larger dilation avoids that"
             ),
         }
-    }
-}
-
-impl Rows {
-    pub fn len(&self) -> usize {
-        self.starts.len().saturating_sub(1)
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Entries of row `i` in the packed arrays.
-    pub fn row(&self, i: usize) -> std::ops::Range<usize> {
-        self.starts[i]..self.starts[i + 1]
-    }
-
-    fn from_supports(supports: Vec<Support>) -> Rows {
-        let mut rows = Rows { starts: vec![0], ..Rows::default() };
-        for support in supports {
-            rows.nodes.extend(support.nodes);
-            rows.phi.extend(support.phi);
-            rows.grad_phi.extend(support.grad_phi);
-            rows.starts.push(rows.nodes.len());
-        }
-        rows
-    }
-
-    /// The value at row `i` of a nodal field with `components` per node.
-    pub fn interpolate(&self, i: usize, field: &[f64], components: usize) -> Vector3 {
-        let mut value = Vector3::zeros();
-        for entry in self.row(i) {
-            let node = self.nodes[entry] as usize;
-            for k in 0..components {
-                value[k] += self.phi[entry] * field[components * node + k];
-            }
-        }
-        value
-    }
-
-    /// F = I + Σ_a u_a ⊗ Grad φ_a at row `i`.
-    pub fn deformation_gradient(
-        &self,
-        i: usize,
-        field: &[f64],
-        components: usize,
-    ) -> crate::tensor::Matrix3 {
-        let mut F = crate::tensor::Matrix3::identity();
-        for entry in self.row(i) {
-            let node = self.nodes[entry] as usize;
-            let mut u = Vector3::zeros();
-            for k in 0..components {
-                u[k] = field[components * node + k];
-            }
-            F += u * self.grad_phi[entry].transpose();
-        }
-        F
     }
 }
 
@@ -143,15 +84,67 @@ impl Discretisation {
         let worst_condition = supports.iter().map(|support| support.condition).fold(0.0, f64::max);
         let supports = Rows::from_supports(supports);
         check_coverage(&cloud, &supports)?;
-        Ok(Discretisation {
+        let finest = cloud.spacing.iter().copied().fold(f64::INFINITY, f64::min);
+        let panels = problem.body.boundary_panels(PANEL * finest, &dimension)?;
+        let surface = SurfaceRule::new(panels, &cloud, dimension.components());
+        let mut discretisation = Discretisation {
             dimension,
             cloud,
             approximation,
             quadrature,
             supports,
+            surface,
+            correction: None,
             enlarged,
             worst_condition,
-        })
+        };
+        if let Gradients::Consistent { tolerance } = recipe.gradients {
+            discretisation.make_consistent(tolerance)?;
+        }
+        Ok(discretisation)
+    }
+
+    /// Scales the quadrature weights of each connected body to the volume
+    /// that its boundary encloses and makes Grad φ consistent.
+    fn make_consistent(&mut self, tolerance: f64) -> Result<(), Error> {
+        let (nodes, d) = (self.cloud.positions.len(), self.dimension.components());
+        let bodies = connected_bodies(&self.supports, nodes);
+        let mut areas = self.surface.vector_areas(nodes);
+        for body in 0..bodies.iter().max().map_or(0, |&last| last + 1) {
+            let own: Vec<u32> =
+                (0..nodes as u32).filter(|&node| bodies[node as usize] == body).collect();
+            let volume = close(&mut areas, &self.cloud.positions, &own, d);
+            self.scale_weights(volume, |node| bodies[node as usize] == body);
+        }
+        let mut targets = vec![Vector3::zeros(); nodes];
+        let boundary: Vec<usize> = (0..nodes).filter(|&node| areas[node].norm() > 0.0).collect();
+        let positions: Vec<Vector3> = boundary.iter().map(|&c| self.cloud.positions[c]).collect();
+        let rows = self.rows_at(&positions)?;
+        for (i, &node) in boundary.iter().enumerate() {
+            for entry in rows.row(i) {
+                targets[rows.nodes[entry] as usize] += rows.phi[entry] * areas[node];
+            }
+        }
+        let layout = Layout {
+            nodes: &self.cloud.positions,
+            spacing: &self.cloud.spacing,
+            points: &self.quadrature.positions,
+            weights: &self.quadrature.weights,
+            components: d,
+        };
+        self.correction =
+            Some(make_consistent(&mut self.supports, &layout, &targets, &bodies, tolerance));
+        eprintln!("{:?} nodes {} points {}", self.correction, nodes, self.supports.len());
+        Ok(())
+    }
+
+    fn scale_weights(&mut self, volume: f64, owns: impl Fn(u32) -> bool) {
+        let supports = &self.supports;
+        let own: Vec<usize> =
+            (0..supports.len()).filter(|&q| owns(supports.nodes[supports.starts[q]])).collect();
+        let weights = &mut self.quadrature.weights;
+        let sum: f64 = own.iter().map(|&q| weights[q]).sum();
+        own.iter().for_each(|&q| weights[q] *= volume / sum);
     }
 
     /// Rows of φ and Grad φ at any points of the body \[m\].

@@ -30,6 +30,12 @@ pub mod weight_function;
 pub mod mls;
 pub mod quadrature;
 
+pub mod rows;
+
+pub mod surface_rule;
+
+pub mod consistency;
+
 pub mod discretisation;
 
 pub mod mass;

@@ -42,6 +42,7 @@ pub struct Recipe {
     pub mass: MassRule,
     /// How prescribed displacements are enforced.
     pub enforcement: Enforcement,
+    pub gradients: Gradients,
 }
 
 /// Where the nodes come from.
@@ -116,6 +117,16 @@ pub enum MassRule {
     EvenSplit,
     /// Σ_q ρ w_q φ_a.
     RowSum,
+}
+
+/// Which Grad φ the strains and forces use.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Gradients {
+    /// The derivatives of φ, as in the seed: affine fields are no equilibrium.
+    Plain,
+    /// Changed as little as possible until the divergence theorem holds for
+    /// every node, up to `tolerance` of the plain gradients' defect \[–\].
+    Consistent { tolerance: f64 },
 }
 
 /// How prescribed displacements are enforced on functions that do not

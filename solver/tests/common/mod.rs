@@ -64,6 +64,7 @@ fn body(dimension: Dimension, cells: usize) -> Problem {
             },
             mass: MassRule::RowSum,
             enforcement: Enforcement::Direct,
+            gradients: Gradients::Plain,
         },
         conditions: vec![],
         loads: Loads::default(),

@@ -2,13 +2,13 @@
 
 use super::build::Builder;
 use super::format_recipe::{
-    BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GridFormat, InsideFormat,
-    MassFormat, WeightFunctionFormat,
+    BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientsFormat, GridFormat,
+    InsideFormat, MassFormat, WeightFunctionFormat,
 };
 use crate::files;
 use mtled::geometry::Shape;
 use mtled::problem::{
-    BackgroundGrid, Basis, Cloud, Dimension, Enforcement, InsideRule, MassRule, Recipe, Refinement,
+    BackgroundGrid, Basis, Cloud, Dimension, Enforcement, Gradients, InsideRule, MassRule, Recipe, Refinement,
     WeightFunction,
 };
 
@@ -34,6 +34,8 @@ pub mod defaults {
         }
     }
     pub const ENFORCEMENT: Enforcement = Enforcement::Collocation;
+    /// Of consistent gradients, over the defect of plain ones \[–\].
+    pub const GRADIENT_TOLERANCE: f64 = 1e-3;
     pub const INSIDE: InsideRule = InsideRule::VolumeFraction;
     /// Two cells per node in three dimensions: 1.26³ = 2.
     pub const CELLS_PER_SPACING: f64 = 1.26;
@@ -82,7 +84,23 @@ impl Builder<'_> {
             grid: grid?,
             mass: format.mass.map_or(defaults::mass(basis), MassRule::from),
             enforcement: format.enforcement.map_or(defaults::ENFORCEMENT, Enforcement::from),
+            gradients: self.gradients(format),
         })
+    }
+
+    fn gradients(&mut self, format: &DiscretisationFormat) -> Gradients {
+        let key = "discretisation.gradient_tolerance";
+        let tolerance = format.gradient_tolerance.unwrap_or(defaults::GRADIENT_TOLERANCE);
+        self.positive(key, tolerance);
+        match format.gradients.unwrap_or(GradientsFormat::Consistent) {
+            GradientsFormat::Consistent => Gradients::Consistent { tolerance },
+            GradientsFormat::Plain => {
+                if format.gradient_tolerance.is_some() {
+                    self.mistake(key, "belongs to gradients = \"consistent\"");
+                }
+                Gradients::Plain
+            }
+        }
     }
 
     /// Refuses a spacing that the body cannot hold.

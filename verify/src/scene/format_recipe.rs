@@ -34,6 +34,11 @@ pub struct DiscretisationFormat {
     /// sums are negative at some corners.
     pub mass: Option<MassFormat>,
     pub enforcement: Option<EnforcementFormat>,
+    /// "consistent" by default.
+    pub gradients: Option<GradientsFormat>,
+    /// Of consistent gradients, over the defect of plain ones [–]; 1e-3 if
+    /// left out.
+    pub gradient_tolerance: Option<f64>,
     #[serde(default)]
     pub grid: GridFormat,
 }
@@ -97,6 +102,16 @@ pub enum EnforcementFormat {
     Direct,
     /// On the displacement field at the nodes.
     Collocation,
+}
+
+/// Which gradients of the shape functions are used.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GradientsFormat {
+    /// The derivatives of the shape functions.
+    Plain,
+    /// Changed as little as possible until the divergence theorem holds.
+    Consistent,
 }
 
 /// The background grid that quadrature points come from.

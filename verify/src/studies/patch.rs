@@ -155,7 +155,7 @@ fn problem(
     recipe.enforcement = enforcement;
     let material = tissue(poisson_ratio)?;
     let mut problem = free_body(body.dimension, body.shape.clone(), material, recipe);
-    problem.motion = relaxation(200, 1e-6);
+    problem.motion = relaxation(200, 1e-11);
     Ok(problem)
 }
 

@@ -4,7 +4,7 @@
 use mtled::geometry::Shape;
 use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use mtled::problem::{
-    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, Enforcement, EssentialCondition,
+    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, Enforcement, EssentialCondition, Gradients,
     InsideRule, Loads, MassRule, Motion, Prescribed, Problem, Recipe, Region, Relaxation,
     StepControl, WeightFunction,
 };
@@ -48,6 +48,7 @@ pub fn recipe(spacing: f64, jitter: f64, seed: u64) -> Recipe {
         grid: grid(spacing / 1.26),
         mass: MassRule::EvenSplit,
         enforcement: Enforcement::Collocation,
+        gradients: Gradients::Consistent { tolerance: 1e-12 },
     }
 }
 
