@@ -134,7 +134,6 @@ impl Discretisation {
         };
         self.correction =
             Some(make_consistent(&mut self.supports, &layout, &targets, &bodies, tolerance));
-        eprintln!("{:?} nodes {} points {}", self.correction, nodes, self.supports.len());
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 
 use crate::discretisation::Discretisation;
 use crate::error::Error;
+use crate::geometry::Panel;
 use crate::problem::{Amplitude, Problem};
 use crate::tensor::Vector3;
 
@@ -15,7 +16,8 @@ pub struct LoadPattern {
 }
 
 /// All load patterns of a problem: body forces Σ_q ρ w_q φ_a b and tractions
-/// ∮ φ_a t dA over the selected boundary panels.
+/// ∮ φ_a t dA over the selected boundary panels, by the quadrature whose points
+/// are the boundary nodes: consistent gradients balance it exactly.
 pub fn load_patterns(
     problem: &Problem,
     discretisation: &Discretisation,
@@ -51,21 +53,18 @@ fn traction_force(
 ) -> Result<Vec<f64>, Error> {
     let d = problem.dimension.components();
     let mut force = vec![0.0; d * discretisation.cloud.positions.len()];
-    let finest = discretisation.cloud.spacing.iter().copied().fold(f64::INFINITY, f64::min);
-    let panels: Vec<_> = problem
-        .body
-        .boundary_panels(0.25 * finest, &problem.dimension)?
-        .into_iter()
-        .filter(|panel| traction.part.contains(&panel.centre))
-        .collect();
-    if panels.is_empty() {
+    let chosen = |panel: &Panel| traction.part.contains(&panel.centre);
+    if !discretisation.surface.panels.iter().any(chosen) {
         return Err(Error::EmptyTraction { name: traction.name.clone() });
     }
-    let centres: Vec<Vector3> = panels.iter().map(|panel| panel.centre).collect();
-    let rows = discretisation.rows_at(&centres)?;
-    for (i, panel) in panels.iter().enumerate() {
+    let positions = &discretisation.cloud.positions;
+    let areas = discretisation.surface.areas(positions.len(), chosen);
+    let loaded: Vec<usize> = (0..areas.len()).filter(|&node| areas[node] != 0.0).collect();
+    let places: Vec<Vector3> = loaded.iter().map(|&node| positions[node]).collect();
+    let rows = discretisation.rows_at(&places)?;
+    for (i, &node) in loaded.iter().enumerate() {
         for entry in rows.row(i) {
-            let share = traction.traction * (panel.area * rows.phi[entry]);
+            let share = traction.traction * (areas[node] * rows.phi[entry]);
             add(&mut force, d, rows.nodes[entry], &share);
         }
     }

@@ -11,8 +11,6 @@ use crate::tensor::Vector3;
 
 /// Spacing of the finest lattice over that of the nodes \[–\].
 const FINEST: f64 = 1.5;
-/// The coarsest lattice has no more functions than this.
-const COARSEST: usize = 60;
 /// Points from which the size of a level's diagonal is estimated.
 const SAMPLES: usize = 1000;
 /// More functions than this make the finest lattice coarser.
@@ -31,25 +29,96 @@ struct Level {
     inverse_diagonal: Vec<f64>,
 }
 
-/// Tensor-product quadratic B-splines: function i of an axis lives on the
-/// cells i − 2 to i.
+/// Functions along one axis of a lattice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Axis {
+    /// No extent: one constant.
+    Flat,
+    /// 1 and s − ½ over the whole extent, s from 0 to 1.
+    Affine,
+    /// Quadratic B-splines on this many cells; function i lives on the cells
+    /// i − 2 to i.
+    Splines(usize),
+}
+
+/// Products of functions along the axes of the box around the nodes. An axis
+/// that has become short against the cells is left with affine functions, so
+/// that the long waves of slender bodies are seen.
 #[derive(Debug, Clone, Copy)]
 struct Lattice {
     origin: Vector3,
-    cell: f64,
-    /// Functions along each axis; 1 along an axis without extent.
+    extent: Vector3,
+    axes: [Axis; 3],
     counts: [usize; 3],
 }
 
+impl Axis {
+    /// Cells of about `edge`, as many as can be halved down to 1 or 3.
+    fn new(extent: f64, edge: f64) -> Axis {
+        let n = (extent / edge).ceil().max(1.0) as usize;
+        let power = n.next_power_of_two();
+        let fits = power >= 4 && n <= 3 * power / 4;
+        Axis::Splines(if fits { 3 * power / 4 } else { power })
+    }
+
+    fn count(self) -> usize {
+        match self {
+            Axis::Flat => 1,
+            Axis::Affine => 2,
+            Axis::Splines(cells) => cells + 2,
+        }
+    }
+
+    fn coarser(self) -> Axis {
+        match self {
+            Axis::Splines(cells) if cells.is_multiple_of(2) => Axis::Splines(cells / 2),
+            Axis::Splines(_) => Axis::Affine,
+            axis => axis,
+        }
+    }
+
+    /// First of up to three functions at s in \[0, 1\], and their values.
+    fn at(self, s: f64) -> (usize, [f64; 3]) {
+        match self {
+            Axis::Flat => (0, [1.0, 0.0, 0.0]),
+            Axis::Affine => (0, [1.0, s - 0.5, 0.0]),
+            Axis::Splines(cells) => {
+                let x = s * cells as f64;
+                let index = (x.max(0.0) as usize).min(cells - 1);
+                let t = (x - index as f64).clamp(0.0, 1.0);
+                (index, [0.5 * (1.0 - t) * (1.0 - t), 0.5 + t * (1.0 - t), 0.5 * t * t])
+            }
+        }
+    }
+
+    /// Function `index` of the coarser axis as a sum of functions of this one:
+    /// (1, 3, 3, 1)/4 for halved splines, values at the middles of the
+    /// splines for affine functions.
+    fn parts(self, index: usize) -> Vec<(usize, f64)> {
+        match (self, self.coarser()) {
+            (Axis::Splines(cells), Axis::Splines(_)) => {
+                let fine = |m: usize| (2 * index + m).checked_sub(2).filter(|&i| i < cells + 2);
+                (0..4).filter_map(|m| fine(m).map(|i| (i, [0.25, 0.75, 0.75, 0.25][m]))).collect()
+            }
+            (Axis::Splines(cells), _) => (0..cells + 2)
+                .map(|i| match index {
+                    0 => (i, 1.0),
+                    _ => (i, (i as f64 - 0.5) / cells as f64 - 0.5),
+                })
+                .collect(),
+            _ => vec![(index, 1.0)],
+        }
+    }
+}
+
 impl Lattice {
-    fn new(nodes: &[Vector3], cell: f64, components: usize) -> Lattice {
+    fn new(nodes: &[Vector3], edge: f64, components: usize) -> Lattice {
         let (mut min, mut max) = (nodes[0], nodes[0]);
         nodes.iter().for_each(|X| (min, max) = (min.inf(X), max.sup(X)));
-        let counts = [0, 1, 2].map(|k| match k < components {
-            true => ((max[k] - min[k]) / cell) as usize + 3,
-            false => 1,
-        });
-        Lattice { origin: min, cell, counts }
+        let extent = max - min;
+        let axes =
+            [0, 1, 2].map(|k| if k < components { Axis::new(extent[k], edge) } else { Axis::Flat });
+        Lattice { origin: min, extent, axes, counts: axes.map(Axis::count) }
     }
 
     fn len(&self) -> usize {
@@ -57,60 +126,58 @@ impl Lattice {
     }
 
     fn coarser(&self) -> Lattice {
-        let counts = self.counts.map(|n| if n > 1 { (n - 2).div_ceil(2) + 2 } else { 1 });
-        Lattice { cell: 2.0 * self.cell, counts, ..*self }
+        let axes = self.axes.map(Axis::coarser);
+        Lattice { axes, counts: axes.map(Axis::count), ..*self }
     }
 
-    /// Calls `visit(function, value)` for the functions that are not 0 at X.
+    /// Whether only affine functions are left, which the operator ignores.
+    fn is_affine(&self) -> bool {
+        !self.axes.iter().any(|axis| matches!(axis, Axis::Splines(_)))
+    }
+
+    /// Calls `visit(function, value)` for the functions that may not be 0 at X.
     fn for_each(&self, X: &Vector3, mut visit: impl FnMut(usize, f64)) {
-        let axes = [0, 1, 2].map(|k| spline(X[k] - self.origin[k], self.cell, self.counts[k]));
-        let [(i, x), (j, y), (k, z)] = axes;
+        let [(i, x), (j, y), (k, z)] = [0, 1, 2]
+            .map(|axis| self.axes[axis].at((X[axis] - self.origin[axis]) / self.extent[axis]));
         for (c, wz) in z.iter().enumerate().take(self.counts[2].min(3)) {
             for (b, wy) in y.iter().enumerate().take(self.counts[1].min(3)) {
                 let row = ((k + c) * self.counts[1] + j + b) * self.counts[0] + i;
-                for (a, wx) in x.iter().enumerate() {
+                for (a, wx) in x.iter().enumerate().take(self.counts[0].min(3)) {
                     visit(row + a, wx * wy * wz);
                 }
             }
         }
     }
-}
 
-/// First function and values of the three that are not 0 at `x`.
-fn spline(x: f64, cell: f64, count: usize) -> (usize, [f64; 3]) {
-    if count == 1 {
-        return (0, [1.0, 0.0, 0.0]);
+    /// Along which axes a function is s − ½, as bits: functions of one kind
+    /// bend alike.
+    fn kind(&self, function: usize) -> usize {
+        let [nx, ny, _] = self.counts;
+        let index = [function % nx, function / nx % ny, function / (nx * ny)];
+        (0..3).filter(|&k| self.axes[k] == Axis::Affine && index[k] == 1).map(|k| 1 << k).sum()
     }
-    let index = ((x / cell).max(0.0) as usize).min(count - 3);
-    let t = (x / cell - index as f64).clamp(0.0, 1.0);
-    (index, [0.5 * (1.0 - t) * (1.0 - t), 0.5 + t * (1.0 - t), 0.5 * t * t])
-}
 
-/// Coarse function I is Σ (1, 3, 3, 1)/4 of the fine ones from 2I − 2.
-const MASK: [f64; 4] = [0.25, 0.75, 0.75, 0.25];
-
-/// Calls `visit(coarse, fine, factor)` for all pairs of two nested lattices.
-fn for_each_transfer(coarse: &Lattice, fine: &Lattice, mut visit: impl FnMut(usize, usize, f64)) {
-    let pairs = |axis: usize, index: usize| -> Vec<(usize, f64)> {
-        if coarse.counts[axis] == 1 {
-            return vec![(0, 1.0)];
-        }
-        let at = |m: usize| (2 * index + m).checked_sub(2).filter(|&i| i < fine.counts[axis]);
-        (0..4).filter_map(|m| at(m).map(|i| (i, MASK[m]))).collect()
-    };
-    for K in 0..coarse.counts[2] {
-        let layers = pairs(2, K);
-        for J in 0..coarse.counts[1] {
-            let rows = pairs(1, J);
-            for I in 0..coarse.counts[0] {
-                let target = (K * coarse.counts[1] + J) * coarse.counts[0] + I;
-                for (i, wx) in pairs(0, I) {
-                    for &(j, wy) in &rows {
-                        for &(k, wz) in &layers {
-                            let source = (k * fine.counts[1] + j) * fine.counts[0] + i;
-                            visit(target, source, wx * wy * wz);
+    /// Calls `visit(coarse, fine, factor)` for all pairs with the next coarser
+    /// lattice.
+    fn for_each_transfer(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        let coarse = self.coarser();
+        let parts = |axis: usize| -> Vec<Vec<(usize, f64)>> {
+            (0..coarse.counts[axis]).map(|index| self.axes[axis].parts(index)).collect()
+        };
+        let [columns, rows, layers] = [parts(0), parts(1), parts(2)];
+        let mut target = 0;
+        for layer in &layers {
+            for row in &rows {
+                for column in &columns {
+                    for &(k, wz) in layer {
+                        for &(j, wy) in row {
+                            let start = (k * self.counts[1] + j) * self.counts[0];
+                            for &(i, wx) in column {
+                                visit(target, start + i, wx * wy * wz);
+                            }
                         }
                     }
+                    target += 1;
                 }
             }
         }
@@ -122,10 +189,12 @@ impl Multilevel<'_> {
         let diagonal = diagonal(operator, layout);
         let mean = layout.spacing.iter().sum::<f64>() / layout.spacing.len() as f64;
         let smallest = layout.spacing.iter().copied().fold(f64::INFINITY, f64::min);
-        let mut lattice = Lattice::new(layout.nodes, FINEST * smallest, layout.components);
+        let mut edge = FINEST * smallest;
+        let mut lattice = Lattice::new(layout.nodes, edge, layout.components);
         let room = MOST_FUNCTIONS.min(8 * layout.nodes.len() + 64);
         while lattice.len() > room {
-            lattice = Lattice::new(layout.nodes, 1.2 * lattice.cell, layout.components);
+            edge *= 1.2;
+            lattice = Lattice::new(layout.nodes, edge, layout.components);
         }
         // Bending of a smooth function between neighbours grows as h⁴.
         let bending: Vec<f64> = layout.spacing.iter().map(|h| (h / mean).powi(4)).collect();
@@ -133,10 +202,10 @@ impl Multilevel<'_> {
         let mut levels = Vec::new();
         loop {
             levels.push(level(operator, layout, lattice, &diagonal, &bending, &sample));
-            if lattice.len() <= COARSEST {
+            lattice = lattice.coarser();
+            if lattice.is_affine() {
                 break;
             }
-            lattice = lattice.coarser();
         }
         let inverse_diagonal = diagonal.iter().map(|d| inverse(*d)).collect();
         Multilevel { nodes: layout.nodes, inverse_diagonal, levels }
@@ -151,7 +220,7 @@ impl Multilevel<'_> {
         for pair in self.levels.windows(2) {
             let fine = &moments[moments.len() - 1];
             let mut coarse = vec![Vector3::zeros(); pair[1].lattice.len()];
-            for_each_transfer(&pair[1].lattice, &pair[0].lattice, |I, i, w| {
+            pair[0].lattice.for_each_transfer(|I, i, w| {
                 coarse[I] += w * fine[i];
             });
             moments.push(coarse);
@@ -162,7 +231,7 @@ impl Multilevel<'_> {
         for l in (1..self.levels.len()).rev() {
             let (fine, coarse) = moments.split_at_mut(l);
             let (fine, coarse) = (&mut fine[l - 1], &coarse[0]);
-            for_each_transfer(&self.levels[l].lattice, &self.levels[l - 1].lattice, |I, i, w| {
+            self.levels[l - 1].lattice.for_each_transfer(|I, i, w| {
                 fine[i] += w * coarse[I];
             });
         }
@@ -203,8 +272,10 @@ fn sample(points: usize) -> Vec<usize> {
     (0..SAMPLES.min(4 * points)).map(draw).collect()
 }
 
-/// The lattice with D_l = ρ_l Σ_a B² d_a bending_a: nodal diagonals lumped to
-/// the lattice, scaled so that the trace is that of P_lᵀ K P_l on the sample.
+/// The lattice with D_l = ρ_l Σ_a d_a bending_a over the nodes that a function
+/// reaches, scaled so that the trace is that of P_lᵀ K P_l on the sample. The
+/// values of the functions do not enter: at the rim of the body, where only
+/// their tails reach, they bend as much as elsewhere.
 fn level(
     operator: &Operator,
     layout: &Layout,
@@ -215,22 +286,28 @@ fn level(
 ) -> Level {
     let mut lumped = vec![0.0; lattice.len()];
     for ((X, d), bend) in layout.nodes.iter().zip(diagonal).zip(bending) {
-        lattice.for_each(X, |i, b| lumped[i] += b * b * d * bend);
+        lattice.for_each(X, |i, b| lumped[i] += if b != 0.0 { d * bend } else { 0.0 });
     }
-    let (mut energy, mut plain) = (0.0, 0.0);
+    let mut sums = [(0.0, 0.0); 8];
     for &q in sample {
         let weight = layout.weights[q];
         for (function, values) in functions_at(operator, layout, &lattice, q) {
-            debug_assert!(function < lattice.len());
-            energy += weight * operator.energy(q, &values);
+            let (energy, plain) = &mut sums[lattice.kind(function)];
+            *energy += weight * operator.energy(q, &values);
             for (entry, b) in operator.rows.row(q).zip(&values) {
                 let node = operator.rows.nodes[entry] as usize;
-                plain += weight * operator.diagonal_share(q, entry) * b * b * bending[node];
+                if *b != 0.0 {
+                    *plain += weight * operator.diagonal_share(q, entry) * bending[node];
+                }
             }
         }
     }
-    let factor = if energy > 0.0 { plain / energy } else { 0.0 };
-    let inverse_diagonal = lumped.iter().map(|d| factor * inverse(*d)).collect();
+    let factor = |i: usize| {
+        let (energy, plain) = sums[lattice.kind(i)];
+        if energy > 1e-14 * plain { plain / energy } else { 0.0 }
+    };
+    let inverse_diagonal =
+        lumped.iter().enumerate().map(|(i, d)| factor(i) * inverse(*d)).collect();
     Level { lattice, inverse_diagonal }
 }
 
