@@ -20,4 +20,12 @@ impl Dimension {
             Dimension::PlaneStrain { .. } => 2,
         }
     }
+
+    /// What an area in the plane is multiplied with: 1 in space \[–\] or \[m\].
+    pub fn thickness(&self) -> f64 {
+        match self {
+            Dimension::Three => 1.0,
+            Dimension::PlaneStrain { thickness, .. } => *thickness,
+        }
+    }
 }

@@ -6,6 +6,7 @@ use crate::consistency::{Correction, Layout, connected_bodies, make_consistent};
 use crate::error::Error;
 use crate::mls::{Approximation, PoorSupport, Support};
 use crate::nodes::{NodeCloud, node_cloud};
+use crate::patches::sort_into_patches;
 use crate::problem::{Dimension, Gradients, Problem};
 use crate::quadrature::{Quadrature, quadrature};
 pub use crate::rows::Rows;
@@ -24,6 +25,9 @@ pub struct Discretisation {
     pub supports: Rows,
     /// The boundary, shared among the boundary nodes.
     pub surface: SurfaceRule,
+    /// Quadrature points of patch p: `patches[p]..patches[p + 1]`; a patch
+    /// lies in one region.
+    pub patches: Vec<usize>,
     /// How the gradients were made consistent, if they were.
     pub correction: Option<Correction>,
     /// Quadrature points whose influence radii had to be enlarged.
@@ -70,7 +74,6 @@ impl Discretisation {
         let recipe = &problem.recipe;
         let cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
         let mut quadrature = quadrature(&body, &problem.regions, &recipe.grid, &dimension)?;
-        sort_along_curve(&mut quadrature);
         let influence_radius = cloud.spacing.iter().map(|h| recipe.dilation * h).collect();
         let approximation = Approximation::new(
             cloud.positions.clone(),
@@ -78,6 +81,18 @@ impl Discretisation {
             recipe.basis,
             recipe.weight_function,
             &dimension,
+        );
+        sort_along_curve(&mut quadrature);
+        let spacing: Vec<f64> = quadrature
+            .positions
+            .par_iter()
+            .map(|X| approximation.mean_radius(X) / recipe.dilation)
+            .collect();
+        let patches = sort_into_patches(
+            &mut quadrature,
+            &spacing,
+            dimension.thickness(),
+            dimension.components(),
         );
         let supports = evaluate_all(&approximation, &quadrature.positions)?;
         let enlarged = supports.iter().filter(|support| support.enlargement > 1.0).count();
@@ -94,6 +109,7 @@ impl Discretisation {
             quadrature,
             supports,
             surface,
+            patches,
             correction: None,
             enlarged,
             worst_condition,

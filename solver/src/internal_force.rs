@@ -3,7 +3,8 @@
 
 use crate::material::{ConstitutiveLaw, with_law};
 use crate::model::{Block, Model};
-use crate::tensor::Matrix3;
+use crate::projection::Projection;
+use crate::tensor::{Matrix3, cofactor};
 use rayon::prelude::*;
 
 /// Scratch memory of a run; nothing in it outlives a step.
@@ -17,6 +18,10 @@ struct BlockScratch {
     u: Vec<f64>,
     f: Vec<f64>,
     smallest: SmallestJacobian,
+    /// F, J and projected pressure of one patch.
+    deformation: Vec<Matrix3>,
+    jacobians: Vec<f64>,
+    pressures: Vec<f64>,
 }
 
 /// The smallest J of all quadrature points and where it is.
@@ -41,6 +46,9 @@ impl Workspace {
             u: vec![0.0; model.components * block.nodes.len()],
             f: vec![0.0; model.components * block.nodes.len()],
             smallest: SmallestJacobian::NONE,
+            deformation: Vec::with_capacity(block.largest_patch()),
+            jacobians: Vec::with_capacity(block.largest_patch()),
+            pressures: Vec::with_capacity(block.largest_patch()),
         };
         Workspace { blocks: model.blocks.iter().map(scratch).collect() }
     }
@@ -99,27 +107,79 @@ fn block_force<const D: usize, L: ConstitutiveLaw>(
     gather::<D>(block, u, &mut scratch.u);
     scratch.f.fill(0.0);
     scratch.smallest = SmallestJacobian::NONE;
+    match &block.projection {
+        None => pointwise_force::<D, L>(law, block, scratch),
+        Some(projection) => projected_force::<D, L>(law, block, projection, scratch),
+    }
+}
+
+fn pointwise_force<const D: usize, L: ConstitutiveLaw>(
+    law: &L,
+    block: &Block,
+    scratch: &mut BlockScratch,
+) {
     let u = scratch.u.as_chunks::<D>().0;
     let f = scratch.f.as_chunks_mut::<D>().0;
-    let gradients = block.grad_phi.as_chunks::<D>().0;
     for (point, &weight) in block.quadrature_weights.iter().enumerate() {
-        let entries = block.starts[point] as usize..block.starts[point + 1] as usize;
-        let (nodes, gradients) = (&block.supports[entries.clone()], &gradients[entries]);
+        let (nodes, gradients) = block.support::<D>(point);
         let F = deformation_gradient::<D>(nodes, gradients, u);
         let jacobian = F.determinant();
         if jacobian < scratch.smallest.jacobian {
             scratch.smallest = SmallestJacobian { jacobian, point: block.points.start + point };
         }
-        let P = law.first_piola_kirchhoff(&F) * weight;
-        for (&node, gradient) in nodes.iter().zip(gradients) {
-            let force = &mut f[node as usize];
-            for i in 0..D {
-                let mut sum = 0.0;
-                for j in 0..D {
-                    sum += P[(i, j)] * gradient[j];
-                }
-                force[i] += sum;
+        scatter::<D>(&(law.first_piola_kirchhoff(&F) * weight), nodes, gradients, f);
+    }
+}
+
+/// As [`pointwise_force`], patch by patch with the projected pressure.
+fn projected_force<const D: usize, L: ConstitutiveLaw>(
+    law: &L,
+    block: &Block,
+    projection: &Projection,
+    scratch: &mut BlockScratch,
+) {
+    let BlockScratch { u, f, smallest, deformation, jacobians, pressures } = scratch;
+    let u = u.as_chunks::<D>().0;
+    let f = f.as_chunks_mut::<D>().0;
+    for ends in projection.starts.windows(2) {
+        let patch = ends[0] as usize..ends[1] as usize;
+        deformation.clear();
+        jacobians.clear();
+        for point in patch.clone() {
+            let (nodes, gradients) = block.support::<D>(point);
+            let F = deformation_gradient::<D>(nodes, gradients, u);
+            let jacobian = F.determinant();
+            if jacobian < smallest.jacobian {
+                *smallest = SmallestJacobian { jacobian, point: block.points.start + point };
             }
+            deformation.push(F);
+            jacobians.push(jacobian);
+        }
+        let (weights, basis) =
+            (&block.quadrature_weights[patch.clone()], &projection.basis[patch.clone()]);
+        pressures.resize(patch.len(), 0.0);
+        projection.pressures(law, weights, basis, jacobians, pressures);
+        for ((point, weight), (F, pressure)) in
+            patch.zip(weights).zip(deformation.iter().zip(&*pressures))
+        {
+            let P = law.first_piola_kirchhoff(F) + cofactor(F) * *pressure;
+            let (nodes, gradients) = block.support::<D>(point);
+            scatter::<D>(&(P * *weight), nodes, gradients, f);
+        }
+    }
+}
+
+/// f_a += w P Grad φ_a.
+#[inline(always)]
+fn scatter<const D: usize>(P: &Matrix3, nodes: &[u32], gradients: &[[f64; D]], f: &mut [[f64; D]]) {
+    for (&node, gradient) in nodes.iter().zip(gradients) {
+        let force = &mut f[node as usize];
+        for i in 0..D {
+            let mut sum = 0.0;
+            for j in 0..D {
+                sum += P[(i, j)] * gradient[j];
+            }
+            force[i] += sum;
         }
     }
 }
@@ -172,12 +232,59 @@ pub fn strain_energy(model: &Model, u: &[f64], workspace: &mut Workspace) -> f64
 fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [f64]) -> f64 {
     gather::<D>(block, u, local);
     let u = local.as_chunks::<D>().0;
-    let gradients = block.grad_phi.as_chunks::<D>().0;
     let mut energy = 0.0;
+    let mut jacobians = Vec::with_capacity(block.quadrature_weights.len());
     for (point, &weight) in block.quadrature_weights.iter().enumerate() {
-        let entries = block.starts[point] as usize..block.starts[point + 1] as usize;
-        let F = deformation_gradient::<D>(&block.supports[entries.clone()], &gradients[entries], u);
+        let (nodes, gradients) = block.support::<D>(point);
+        let F = deformation_gradient::<D>(nodes, gradients, u);
         energy += weight * block.law.strain_energy(&F);
+        jacobians.push(F.determinant());
+    }
+    let Some(projection) = &block.projection else { return energy };
+    for ends in projection.starts.windows(2) {
+        let patch = ends[0] as usize..ends[1] as usize;
+        let (weights, basis) =
+            (&block.quadrature_weights[patch.clone()], &projection.basis[patch.clone()]);
+        let jacobians = &mut jacobians[patch];
+        energy += with_law!(&block.law, law => projection.energy(law, weights, basis, jacobians));
     }
     energy
+}
+
+/// What the projection adds to the mean Cauchy stress at each quadrature point
+/// \[Pa\], at displacements `u` \[m\]; 0 without one. The pressure is
+/// −tr σ/3 less this.
+pub fn projected_mean_stress(model: &Model, u: &[f64]) -> Vec<f64> {
+    let mut all = Vec::with_capacity(model.point_positions.len());
+    for block in &model.blocks {
+        match model.components {
+            2 => all.extend(block_mean_stress::<2>(block, u)),
+            _ => all.extend(block_mean_stress::<3>(block, u)),
+        }
+    }
+    all
+}
+
+fn block_mean_stress<const D: usize>(block: &Block, u: &[f64]) -> Vec<f64> {
+    let count = block.quadrature_weights.len();
+    let mut stresses = vec![0.0; count];
+    let Some(projection) = &block.projection else { return stresses };
+    let mut local = vec![0.0; D * block.nodes.len()];
+    gather::<D>(block, u, &mut local);
+    let u = local.as_chunks::<D>().0;
+    let jacobian = |point: usize| {
+        let (nodes, gradients) = block.support::<D>(point);
+        deformation_gradient::<D>(nodes, gradients, u).determinant()
+    };
+    let jacobians: Vec<f64> = (0..count).map(jacobian).collect();
+    for ends in projection.starts.windows(2) {
+        let patch = ends[0] as usize..ends[1] as usize;
+        let (weights, basis) =
+            (&block.quadrature_weights[patch.clone()], &projection.basis[patch.clone()]);
+        let (jacobians, stresses) = (&jacobians[patch.clone()], &mut stresses[patch]);
+        with_law!(&block.law, law => {
+            projection.pressures(law, weights, basis, jacobians, stresses);
+        });
+    }
+    stresses
 }

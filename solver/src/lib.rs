@@ -30,6 +30,8 @@ pub mod weight_function;
 pub mod mls;
 pub mod quadrature;
 
+pub mod patches;
+
 pub mod rows;
 
 pub mod surface_rule;
@@ -45,6 +47,8 @@ pub mod collocation;
 pub mod load;
 
 pub mod essential;
+
+pub mod projection;
 
 pub mod contact;
 

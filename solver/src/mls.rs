@@ -96,6 +96,23 @@ impl Approximation {
         }
     }
 
+    /// Mean influence radius of the nodes that cover X \[m\]; that of all nodes
+    /// where none does.
+    pub fn mean_radius(&self, X: &Vector3) -> f64 {
+        let (mut sum, mut count) = (0.0, 0.0);
+        self.neighbours.for_each_near(X, self.largest_radius, |node| {
+            let radius = self.influence_radius[node];
+            if (self.nodes[node] - X).norm_squared() < radius * radius {
+                sum += radius;
+                count += 1.0;
+            }
+        });
+        match count > 0.0 {
+            true => sum / count,
+            false => self.influence_radius.iter().sum::<f64>() / self.influence_radius.len() as f64,
+        }
+    }
+
     /// φ_a(X) = pᵀ(X) A⁻¹(X) b_a(X) and its full derivatives (Lancaster and
     /// Salkauskas 1981; Belytschko, Lu, Gu 1994, eqs. 9–18). Where the support
     /// is poor the radii are enlarged in steps of 10 %.

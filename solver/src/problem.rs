@@ -43,6 +43,7 @@ pub struct Recipe {
     /// How prescribed displacements are enforced.
     pub enforcement: Enforcement,
     pub gradients: Gradients,
+    pub dilatation: Dilatation,
 }
 
 /// Where the nodes come from.
@@ -127,6 +128,16 @@ pub enum Gradients {
     /// Changed as little as possible until the divergence theorem holds for
     /// every node, up to `tolerance` of the plain gradients' defect \[–\].
     Consistent { tolerance: f64 },
+}
+
+/// How the change of volume J enters the energy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dilatation {
+    /// Point by point: nearly incompressible materials lock.
+    Pointwise,
+    /// The bulk energy of nearly incompressible materials sees J projected on
+    /// patches of points; other materials are treated point by point.
+    Projected,
 }
 
 /// How prescribed displacements are enforced on functions that do not

@@ -54,12 +54,7 @@ impl Rows {
     }
 
     /// F = I + Σ_a u_a ⊗ Grad φ_a at row `i`.
-    pub fn deformation_gradient(
-        &self,
-        i: usize,
-        field: &[f64],
-        components: usize,
-    ) -> Matrix3 {
+    pub fn deformation_gradient(&self, i: usize, field: &[f64], components: usize) -> Matrix3 {
         let mut F = Matrix3::identity();
         for entry in self.row(i) {
             let node = self.nodes[entry] as usize;

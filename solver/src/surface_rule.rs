@@ -179,17 +179,20 @@ fn linear_shares(
 /// Changes vector areas as little as possible, in proportion to their sizes,
 /// until Σ a_c = 0 and Σ X_c ⊗ a_c = V I over the nodes of one body; returns
 /// V \[m³\]. Only so can consistent gradients exist.
-pub fn close(areas: &mut [Vector3], positions: &[Vector3], nodes: &[u32], components: usize) -> f64 {
+pub fn close(
+    areas: &mut [Vector3],
+    positions: &[Vector3],
+    nodes: &[u32],
+    components: usize,
+) -> f64 {
     let size = |areas: &[Vector3], node: u32| areas[node as usize].norm();
     let total: f64 = nodes.iter().map(|&node| size(areas, node)).sum();
     if total == 0.0 {
         return 0.0;
     }
-    let centre = nodes
-        .iter()
-        .map(|&node| positions[node as usize] * size(areas, node))
-        .sum::<Vector3>()
-        / total;
+    let centre =
+        nodes.iter().map(|&node| positions[node as usize] * size(areas, node)).sum::<Vector3>()
+            / total;
     let length = (nodes.iter())
         .map(|&node| (positions[node as usize] - centre).norm())
         .fold(f64::MIN_POSITIVE, f64::max);
@@ -203,8 +206,8 @@ pub fn close(areas: &mut [Vector3], positions: &[Vector3], nodes: &[u32], compon
         gram += size(areas, node) * p(node) * p(node).transpose();
         moments += p(node) * areas[node as usize].transpose();
     }
-    let volume = (0..components).map(|k| moments[(k + 1, k)]).sum::<f64>() * length
-        / components as f64;
+    let volume =
+        (0..components).map(|k| moments[(k + 1, k)]).sum::<f64>() * length / components as f64;
     for k in 0..components {
         moments[(k + 1, k)] -= volume / length;
     }

@@ -20,9 +20,8 @@ impl Affine<'_> {
             .map(|body| {
                 let own = || positions.iter().zip(bodies).filter(move |(_, b)| **b == body);
                 let centre = own().map(|(X, _)| X).sum::<Vector3>() / own().count() as f64;
-                let length = own()
-                    .map(|(X, _)| (X - centre).norm())
-                    .fold(f64::MIN_POSITIVE, f64::max);
+                let length =
+                    own().map(|(X, _)| (X - centre).norm()).fold(f64::MIN_POSITIVE, f64::max);
                 let mut gram = Matrix4::zeros();
                 for (X, _) in own() {
                     let p = homogeneous(&((X - centre) / length));

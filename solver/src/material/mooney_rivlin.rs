@@ -66,6 +66,19 @@ impl ConstitutiveLaw for MooneyRivlin {
         P
     }
 
+    /// U = C(J⁻⁴ − 1) + D(J² − 1)² + 4C ln J: the last term takes out the slope
+    /// at rest, which balances that of the invariants.
+    fn bulk_energy(&self, J: f64) -> f64 {
+        let J2 = J * J;
+        self.c * (1.0 / (J2 * J2) - 1.0 + 4.0 * J.ln()) + self.d * (J2 - 1.0).powi(2)
+    }
+
+    #[inline]
+    fn bulk_slope(&self, J: f64) -> f64 {
+        let J2 = J * J;
+        4.0 * self.c / J * (1.0 - 1.0 / (J2 * J2)) + 4.0 * self.d * J * (J2 - 1.0)
+    }
+
     fn constants(&self) -> ElasticConstants {
         let shear_modulus = 2.0 * (self.a + self.b);
         let nu = self.poisson_ratio;

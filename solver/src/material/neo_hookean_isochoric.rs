@@ -28,27 +28,37 @@ impl NeoHookeanIsochoric {
 
 impl ConstitutiveLaw for NeoHookeanIsochoric {
     fn strain_energy(&self, F: &Matrix3) -> f64 {
-        let (mu, K) = (self.constants.shear_modulus, self.constants.bulk_modulus);
+        let mu = self.constants.shear_modulus;
         let J = F.determinant();
-        let U = match self.volumetric {
-            VolumetricTerm::Quadratic => 0.5 * K * (J - 1.0).powi(2),
-            VolumetricTerm::SimoTaylor => 0.25 * K * (J * J - 1.0 - 2.0 * J.ln()),
-        };
-        0.5 * mu * (F.dot(F) / J.cbrt().powi(2) - 3.0) + U
+        0.5 * mu * (F.dot(F) / J.cbrt().powi(2) - 3.0) + self.bulk_energy(J)
     }
 
     /// P = μ J^(−2/3) (F − I₁/3 F⁻ᵀ) + U'(J) cof F.
     #[inline]
     fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
-        let (mu, K) = (self.constants.shear_modulus, self.constants.bulk_modulus);
+        let mu = self.constants.shear_modulus;
         let cof = cofactor(F);
         let J = F.row(0).dot(&cof.row(0));
-        let dU = match self.volumetric {
-            VolumetricTerm::Quadratic => K * (J - 1.0),
-            VolumetricTerm::SimoTaylor => 0.5 * K * (J - 1.0 / J),
-        };
+        let dU = self.bulk_slope(J);
         let factor = mu / J.cbrt().powi(2);
         F * factor + cof * (dU - factor * F.dot(F) / (3.0 * J))
+    }
+
+    fn bulk_energy(&self, J: f64) -> f64 {
+        let K = self.constants.bulk_modulus;
+        match self.volumetric {
+            VolumetricTerm::Quadratic => 0.5 * K * (J - 1.0).powi(2),
+            VolumetricTerm::SimoTaylor => 0.25 * K * (J * J - 1.0 - 2.0 * J.ln()),
+        }
+    }
+
+    #[inline]
+    fn bulk_slope(&self, J: f64) -> f64 {
+        let K = self.constants.bulk_modulus;
+        match self.volumetric {
+            VolumetricTerm::Quadratic => K * (J - 1.0),
+            VolumetricTerm::SimoTaylor => 0.5 * K * (J - 1.0 / J),
+        }
     }
 
     fn constants(&self) -> ElasticConstants {

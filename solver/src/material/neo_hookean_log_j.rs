@@ -32,6 +32,16 @@ impl ConstitutiveLaw for NeoHookeanLogJ {
         F * self.mu + cof * ((self.lambda * J.ln() - self.mu) / J)
     }
 
+    /// U = λ/2 (ln J)².
+    fn bulk_energy(&self, J: f64) -> f64 {
+        0.5 * self.lambda * J.ln().powi(2)
+    }
+
+    #[inline]
+    fn bulk_slope(&self, J: f64) -> f64 {
+        self.lambda * J.ln() / J
+    }
+
     fn constants(&self) -> ElasticConstants {
         ElasticConstants { shear_modulus: self.mu, bulk_modulus: self.lambda + 2.0 / 3.0 * self.mu }
     }

@@ -2,19 +2,19 @@
 
 use super::build::Builder;
 use super::format_recipe::{
-    BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientsFormat, GridFormat,
-    InsideFormat, MassFormat, WeightFunctionFormat,
+    BasisFormat, CloudFormat, DilatationFormat, DiscretisationFormat, EnforcementFormat,
+    GradientsFormat, GridFormat, InsideFormat, MassFormat, WeightFunctionFormat,
 };
 use crate::files;
 use mtled::geometry::Shape;
 use mtled::problem::{
-    BackgroundGrid, Basis, Cloud, Dimension, Enforcement, Gradients, InsideRule, MassRule, Recipe, Refinement,
-    WeightFunction,
+    BackgroundGrid, Basis, Cloud, Dilatation, Dimension, Enforcement, Gradients, InsideRule,
+    MassRule, Recipe, Refinement, WeightFunction,
 };
 
 /// What a case file need not say.
 pub mod defaults {
-    use mtled::problem::{Basis, Enforcement, InsideRule, MassRule, WeightFunction};
+    use mtled::problem::{Basis, Dilatation, Enforcement, InsideRule, MassRule, WeightFunction};
 
     /// Influence radius over nodal spacing \[–\], by basis: a quadratic one needs
     /// more nodes in its supports.
@@ -36,6 +36,7 @@ pub mod defaults {
     pub const ENFORCEMENT: Enforcement = Enforcement::Collocation;
     /// Of consistent gradients, over the defect of plain ones \[–\].
     pub const GRADIENT_TOLERANCE: f64 = 1e-3;
+    pub const DILATATION: Dilatation = Dilatation::Projected;
     pub const INSIDE: InsideRule = InsideRule::VolumeFraction;
     /// Two cells per node in three dimensions: 1.26³ = 2.
     pub const CELLS_PER_SPACING: f64 = 1.26;
@@ -85,6 +86,7 @@ impl Builder<'_> {
             mass: format.mass.map_or(defaults::mass(basis), MassRule::from),
             enforcement: format.enforcement.map_or(defaults::ENFORCEMENT, Enforcement::from),
             gradients: self.gradients(format),
+            dilatation: format.dilatation.map_or(defaults::DILATATION, Dilatation::from),
         })
     }
 
@@ -297,6 +299,15 @@ impl From<EnforcementFormat> for Enforcement {
         match format {
             EnforcementFormat::Direct => Enforcement::Direct,
             EnforcementFormat::Collocation => Enforcement::Collocation,
+        }
+    }
+}
+
+impl From<DilatationFormat> for Dilatation {
+    fn from(format: DilatationFormat) -> Dilatation {
+        match format {
+            DilatationFormat::Pointwise => Dilatation::Pointwise,
+            DilatationFormat::Projected => Dilatation::Projected,
         }
     }
 }

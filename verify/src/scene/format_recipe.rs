@@ -39,6 +39,8 @@ pub struct DiscretisationFormat {
     /// Of consistent gradients, over the defect of plain ones [–]; 1e-3 if
     /// left out.
     pub gradient_tolerance: Option<f64>,
+    /// "projected" by default.
+    pub dilatation: Option<DilatationFormat>,
     #[serde(default)]
     pub grid: GridFormat,
 }
@@ -102,6 +104,16 @@ pub enum EnforcementFormat {
     Direct,
     /// On the displacement field at the nodes.
     Collocation,
+}
+
+/// How the change of volume enters the energy.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DilatationFormat {
+    /// Point by point, which locks where ν is close to 0.5.
+    Pointwise,
+    /// Projected on patches of points where ν is larger than 0.3.
+    Projected,
 }
 
 /// Which gradients of the shape functions are used.
