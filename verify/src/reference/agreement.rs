@@ -33,6 +33,13 @@ impl Agreement {
         self.difference / self.bars.iter().sum::<f64>()
     }
 
+    /// rms of the lengths of a code's values over points and instants, in the
+    /// unit.
+    pub fn magnitude(&self, solution: usize) -> f64 {
+        let values = &self.estimates[solution].values;
+        rms_of_points(values, self.quantity.family.components())
+    }
+
     pub fn agrees(&self) -> bool {
         self.ratio() <= 1.0
     }
@@ -93,9 +100,8 @@ pub fn agree(case: &Case, file: &ReferenceFile) -> Vec<Agreement> {
             .map(|solution| extrapolated(solution, &quantity, highest, scale))
             .collect();
         let components = quantity.family.components();
-        let differences: Vec<f64> = (estimates[0].values.iter().zip(&estimates[1].values))
-            .map(|(a, b)| a - b)
-            .collect();
+        let differences: Vec<f64> =
+            (estimates[0].values.iter().zip(&estimates[1].values)).map(|(a, b)| a - b).collect();
         Agreement {
             difference: rms_of_points(&differences, components),
             bars: estimates.iter().map(|e| rms_of_points(&e.errors, components)).collect(),
@@ -131,7 +137,7 @@ fn extrapolated(solution: &Solution, quantity: &Quantity, highest: f64, scale: f
 /// The largest number of each family on the finest meshes. What vanishes by
 /// symmetry is measured against others: centres against the body's size,
 /// moments against the largest force times that size.
-fn scales(case: &Case, file: &ReferenceFile) -> BTreeMap<Family, f64> {
+pub fn scales(case: &Case, file: &ReferenceFile) -> BTreeMap<Family, f64> {
     let mut largest: BTreeMap<Family, f64> = BTreeMap::new();
     for quantity in quantities(case) {
         let entry = largest.entry(quantity.family).or_default();

@@ -3,6 +3,7 @@
 //! the other code ([`agreement`]).
 
 pub mod agreement;
+pub mod compare;
 mod format;
 mod quantity;
 mod read;

@@ -199,7 +199,12 @@ fn check_mesh(
     for quantity in wanted {
         let name = quantity.name.clone();
         let Some(values) = mesh.values.get(&quantity.name) else {
-            return Err(ReferenceError::MissingQuantity { case, code, mesh: index, quantity: name });
+            return Err(ReferenceError::MissingQuantity {
+                case,
+                code,
+                mesh: index,
+                quantity: name,
+            });
         };
         if let Some(reason) = fault(quantity, values, instants) {
             return Err(ReferenceError::Values { case, code, mesh: index, quantity: name, reason });
