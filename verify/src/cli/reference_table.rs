@@ -22,7 +22,7 @@ pub fn check_table(outcomes: &[Outcome]) -> Table {
         "quantities",
         "largest difference / error bars",
         "in",
-        "orders",
+        "without an order",
         "CPU s",
         "memory MB",
         "verdict",
@@ -40,7 +40,7 @@ fn check_row(outcome: &Outcome) -> Vec<String> {
     let agreements = &referred.agreements;
     let worst = agreements.iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()));
     let estimates = || agreements.iter().flat_map(|a| &a.estimates);
-    let reached = estimates().filter(|e| matches!(e.basis, Basis::Order(_))).count();
+    let lacking = estimates().filter(|e| matches!(e.basis, Basis::NoOrder(_))).count();
     let meshes = || referred.file.solutions.iter().flat_map(|solution| &solution.meshes);
     let memory = meshes().map(|mesh| mesh.peak_memory_bytes).max().unwrap_or(0);
     vec![
@@ -48,7 +48,7 @@ fn check_row(outcome: &Outcome) -> Vec<String> {
         agreements.len().to_string(),
         worst.map_or(String::new(), |a| four_digits(a.ratio())),
         worst.map_or(String::new(), |a| a.quantity.name.clone()),
-        format!("{reached} of {}", estimates().count()),
+        format!("{lacking} of {}", estimates().count()),
         four_digits(meshes().map(|mesh| mesh.cpu_s).sum()),
         format!("{:.0}", memory as f64 / 1e6),
         if outcome.complaint().is_none() { "agree" } else { "DIFFER" }.into(),
