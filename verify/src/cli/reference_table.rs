@@ -1,7 +1,7 @@
 //! References as tables and as JSON.
 
 use super::reference::{Outcome, Referred};
-use crate::reference::{Agreement, Basis, Estimate};
+use crate::reference::{Agreement, Basis};
 use crate::report::four_digits;
 use comfy_table::{ContentArrangement, LineStyle, Table, presets};
 use serde_json::{Value, json};
@@ -87,21 +87,11 @@ fn quantity_row(agreement: &Agreement) -> Vec<String> {
     for (index, estimate) in agreement.estimates.iter().enumerate() {
         let bar = four_digits(agreement.bars[index]);
         row.push(format!("{} ± {bar}", four_digits(agreement.magnitude(index))));
-        row.push(order_text(estimate));
+        row.push(estimate.basis.to_string());
     }
     row.push(four_digits(agreement.difference));
     row.push(format!("{:.3}", agreement.ratio()));
     row
-}
-
-/// The order, in brackets where it was not reached.
-pub fn order_text(estimate: &Estimate) -> String {
-    match estimate.basis {
-        Basis::Order(order) => format!("{order:.2}"),
-        Basis::NoOrder(Some(order)) => format!("({order:.2})"),
-        Basis::NoOrder(None) => "none".into(),
-        Basis::Noise => "round-off".into(),
-    }
 }
 
 fn meshes_table(referred: &Referred) -> Table {

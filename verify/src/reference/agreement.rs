@@ -25,6 +25,8 @@ pub struct Agreement {
     pub difference: f64,
     /// rms of the error bars per code, in the unit.
     pub bars: Vec<f64>,
+    /// Size of quantities of this family in the case, in the unit.
+    pub scale: f64,
 }
 
 impl Agreement {
@@ -61,6 +63,7 @@ impl Agreement {
             values: better.values.clone(),
             errors: bars.collect(),
             error: self.bars[self.better()].max(self.difference),
+            scale: self.scale,
         }
     }
 }
@@ -74,6 +77,8 @@ pub struct Agreed {
     pub errors: Vec<f64>,
     /// rms of the error over points and instants, in the unit.
     pub error: f64,
+    /// Size of quantities of this family in the case, in the unit.
+    pub scale: f64,
 }
 
 impl Agreed {
@@ -107,6 +112,7 @@ pub fn agree(case: &Case, file: &ReferenceFile) -> Vec<Agreement> {
             bars: estimates.iter().map(|e| rms_of_points(&e.errors, components)).collect(),
             estimates,
             quantity,
+            scale,
         }
     };
     quantities(case).into_iter().map(compare).collect()

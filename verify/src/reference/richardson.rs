@@ -6,10 +6,16 @@
 //! Value, per component: f* = f₁ + (f₁ − f₂)/(rᵖ − 1) with r = h₂/h₁.
 //! Error bar, per component: GCI |f₁| = F_s |f₂ − f₁|/(rᵖ − 1), F_s = 1.25.
 //!
-//! p counts where it lies in [0.5, p_max + 1] and f₃ − f₂ points the same way
-//! as f₂ − f₁ (cosine at least 0.5); above p_max it is used as p_max, which
-//! makes the bar longer. Elsewhere the value is f₁ and the bar
-//!   F_s max(|f₂ − f₁|, |f₃ − f₂|)/(r − 1), F_s = 3.
+//! p counts where it lies in [0.5, p_max + 1]; above p_max it is used as p_max,
+//! which makes the bar longer. What else can happen, with d₁ = f₂ − f₁ and
+//! d₂ = f₃ − f₂:
+//! - d₁ and d₂ point in different directions (cosine in (−0.5, 0.5)), as on
+//!   lattices that cross elements anywhere: the norms still bound the error by
+//!   the triangle inequality, but there is nothing to extrapolate. The value
+//!   is f₁ and F_s = 3.
+//! - p > p_max + 1, the coarse mesh was hopeless: f₁ ± 3 |d₁|/(r − 1).
+//! - p < 0.5, divergence or oscillation: f₁ ± 3 max(|d₁|, |d₂|)/(r − 1).
+//!
 //! Differences of rms below 10⁻⁸ of the size of such quantities are round-off
 //! (nine digits are stored) and the tolerance of solvers: no order is claimed
 //! for them. No bar is shorter than this floor.
@@ -19,6 +25,7 @@
 //! Validation in Scientific Computing, 2010, section 8.6.
 
 use crate::measure::{observed_order, richardson};
+use std::fmt;
 
 /// Relative size of differences that say nothing \[–\].
 pub const NOISE: f64 = 1e-8;
@@ -28,7 +35,7 @@ pub const SAFETY: f64 = 1.25;
 pub const SAFETY_WITHOUT_ORDER: f64 = 3.0;
 /// Lowest order that is believed.
 pub const LOWEST_ORDER: f64 = 0.5;
-/// Smallest cosine between successive differences in the asymptotic range.
+/// Smallest cosine between successive differences that point the same way.
 const SAME_WAY: f64 = 0.5;
 
 /// Where an error bar comes from.
@@ -36,10 +43,25 @@ const SAME_WAY: f64 = 0.5;
 pub enum Basis {
     /// Extrapolated with this order, observed and not above the highest.
     Order(f64),
+    /// Differences fall with this order in the norm, in changing directions.
+    InNorm(f64),
     /// No order was reached; the observed one, if there is one.
     NoOrder(Option<f64>),
     /// Differences are round-off.
     Noise,
+}
+
+/// The order, in brackets where it was not believed.
+impl fmt::Display for Basis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Basis::Order(order) => write!(f, "{order:.2}"),
+            Basis::InNorm(order) => write!(f, "{order:.2} in the norm"),
+            Basis::NoOrder(Some(order)) => write!(f, "({order:.2})"),
+            Basis::NoOrder(None) => write!(f, "none"),
+            Basis::Noise => write!(f, "round-off"),
+        }
+    }
 }
 
 /// Values with error bars.
@@ -55,7 +77,7 @@ impl Estimate {
     /// The order that was observed, used or not.
     pub fn observed(&self) -> Option<f64> {
         match self.basis {
-            Basis::Order(order) => Some(order),
+            Basis::Order(order) | Basis::InNorm(order) => Some(order),
             Basis::NoOrder(order) => order,
             Basis::Noise => None,
         }
@@ -75,20 +97,39 @@ pub fn estimate(fields: [&[f64]; 3], sizes: [f64; 3], highest: f64, scale: f64) 
         return without_order(fine, &near, &far, ratio, floor, Basis::Noise);
     }
     let observed = order(&near, &far, sizes, floor);
-    let same_way = cosine(&near, &far) >= SAME_WAY;
+    let same_way = cosine(&near, &far);
     match observed {
-        Some(p) if (LOWEST_ORDER..=highest + 1.0).contains(&p) && same_way => {
-            let used = p.min(highest);
-            let share = SAFETY / (ratio.powf(used) - 1.0);
-            Estimate {
-                values: (fine.iter().zip(medium))
-                    .map(|(&f, &m)| richardson(f, m, ratio, used))
-                    .collect(),
-                errors: near.iter().map(|d| (share * d.abs()).max(floor)).collect(),
-                basis: Basis::Order(p),
-            }
+        Some(p) if (LOWEST_ORDER..=highest + 1.0).contains(&p) && same_way > -SAME_WAY => {
+            with_order(fine, medium, ratio, p, highest, same_way >= SAME_WAY, floor)
+        }
+        Some(p) if p > highest + 1.0 => {
+            without_order(fine, &near, &near, ratio, floor, Basis::NoOrder(observed))
         }
         observed => without_order(fine, &near, &far, ratio, floor, Basis::NoOrder(observed)),
+    }
+}
+
+fn with_order(
+    fine: &[f64],
+    medium: &[f64],
+    ratio: f64,
+    observed: f64,
+    highest: f64,
+    same_way: bool,
+    floor: f64,
+) -> Estimate {
+    let order = observed.min(highest);
+    let (safety, basis) = match same_way {
+        true => (SAFETY, Basis::Order(observed)),
+        false => (SAFETY_WITHOUT_ORDER, Basis::InNorm(observed)),
+    };
+    let share = safety / (ratio.powf(order) - 1.0);
+    let value = |(&f, &m): (&f64, &f64)| if same_way { richardson(f, m, ratio, order) } else { f };
+    let bar = |(f, m): (&f64, &f64)| (share * (m - f).abs()).max(floor);
+    Estimate {
+        values: fine.iter().zip(medium).map(value).collect(),
+        errors: fine.iter().zip(medium).map(bar).collect(),
+        basis,
     }
 }
 
@@ -193,17 +234,27 @@ mod tests {
     #[test]
     fn without_an_order_the_bar_is_long_and_the_value_the_finest() {
         let sizes = [1.0, 2.0, 4.0];
-        for (what, values) in [
-            ("oscillation", [1.0, 1.1, 1.05]),
-            ("divergence", [1.0, 1.2, 1.3]),
-            ("too fast for the element", [1.0, 1.0001, 1.2]),
+        for (what, values, counted) in [
+            ("oscillation", [1.0, 1.1, 1.05], 0.1),
+            ("divergence", [1.0, 1.2, 1.3], 0.2),
+            ("slow", [1.0, 1.2, 1.41], 0.21),
+            ("too fast for the element", [1.0, 1.001, 1.2], 0.001),
         ] {
             let found = estimate([&values[..1], &values[1..2], &values[2..]], sizes, 3.0, 1.0);
             assert!(matches!(found.basis, Basis::NoOrder(_)), "{what}: {found:?}");
             assert_eq!(found.values, [1.0], "{what}");
-            let largest = (values[1] - values[0]).abs().max((values[2] - values[1]).abs());
-            assert_relative_eq!(found.errors[0], 3.0 * largest, epsilon = 1e-12);
+            assert_relative_eq!(found.errors[0], 3.0 * counted, epsilon = 1e-12);
         }
+    }
+
+    #[test]
+    fn differences_in_changing_directions_are_bounded_and_not_extrapolated() {
+        let fields = [[1.0, 1.0], [1.01, 1.0], [1.01, 1.04]];
+        let found = estimate([&fields[0], &fields[1], &fields[2]], [1.0, 2.0, 4.0], 3.0, 1.0);
+        let Basis::InNorm(order) = found.basis else { panic!("{found:?}") };
+        assert_relative_eq!(order, 2.0, epsilon = 1e-12);
+        assert_eq!(found.values, fields[0]);
+        assert_relative_eq!(found.errors[0], 3.0 * 0.01 / 3.0, epsilon = 1e-12);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::Workbench;
 use super::plain::{number, text};
 use crate::cases::CASES;
 use crate::reference::richardson::{SAFETY, estimate};
-use crate::reference::{Agreement, Basis, Estimate, ReferenceFile, agree};
+use crate::reference::{Agreement, ReferenceFile, agree};
 use crate::study::{Bound, Cell, Check, Kind, Study, Table};
 use anyhow::{Result, bail};
 
@@ -29,9 +29,10 @@ pub fn references(bench: &Workbench, study: &mut Study) -> Result<()> {
     study.tables.push(meshes_table(meshes));
     study.notes.push(
         "Values are lengths of vectors and root mean squares over points and instants; the \
-         error bars are grid convergence indices from three meshes. An order in brackets was \
-         observed and not believed: the bar is then three times the largest change \
-         between meshes over the refinement less one. The codes use different meshes or elements; a \
+         error bars are grid convergence indices from three meshes. An order *in the norm* \
+         bounds the error with a safety factor of three but allows no extrapolation. One in brackets \
+         was observed and not believed: the bar is then three times a change between \
+         meshes over the refinement less one. The codes use different meshes or elements; a \
          comparison uses the code with the shorter bar, and a bar not shorter than the \
          difference of the codes. CPU seconds and memory were measured where the \
          references were made."
@@ -93,21 +94,12 @@ fn value_row(case: &str, agreement: &Agreement) -> Vec<Cell> {
     for (index, estimate) in agreement.estimates.iter().enumerate() {
         row.push(Cell::Number(agreement.magnitude(index)));
         row.push(Cell::Number(agreement.bars[index]));
-        row.push(Cell::Text(order_text(estimate)));
+        row.push(Cell::Text(estimate.basis.to_string()));
     }
     row.push(Cell::Number(agreement.difference));
     row.push(Cell::Number(agreement.ratio()));
     row.push(Cell::Text(if agreement.agrees() { "yes" } else { "no" }.into()));
     row
-}
-
-fn order_text(estimate: &Estimate) -> String {
-    match estimate.basis {
-        Basis::Order(order) => format!("{order:.2}"),
-        Basis::NoOrder(Some(order)) => format!("({order:.2})"),
-        Basis::NoOrder(None) => "none".into(),
-        Basis::Noise => "round-off".into(),
-    }
 }
 
 fn values_table(rows: Vec<Vec<Cell>>) -> Table {
