@@ -6,13 +6,15 @@
 //! Value, per component: f* = f₁ + (f₁ − f₂)/(rᵖ − 1) with r = h₂/h₁.
 //! Error bar, per component: GCI |f₁| = F_s |f₂ − f₁|/(rᵖ − 1), F_s = 1.25.
 //!
-//! p counts where it lies in [0.5, p_max + 1]; above p_max it is used as p_max,
+//! p counts where it lies in [0.5, 1.1 p_max]; above p_max it is used as p_max,
 //! which makes the bar longer. What else can happen, with d₁ = f₂ − f₁ and
 //! d₂ = f₃ − f₂:
 //! - d₁ and d₂ point in different directions (cosine in (−0.5, 0.5)), as on
 //!   lattices that cross elements anywhere: the norms still bound the error by
 //!   the triangle inequality, but there is nothing to extrapolate. The value
 //!   is f₁ and F_s = 3.
+//! - p in (1.1 p_max, p_max + 1], errors of different orders cancel: nothing is
+//!   extrapolated, F_s = 3 with p_max.
 //! - p > p_max + 1, the coarse mesh was hopeless: f₁ ± 3 |d₁|/(r − 1).
 //! - p < 0.5, divergence or oscillation: f₁ ± 3 max(|d₁|, |d₂|)/(r − 1).
 //!
@@ -35,6 +37,8 @@ pub const SAFETY: f64 = 1.25;
 pub const SAFETY_WITHOUT_ORDER: f64 = 3.0;
 /// Lowest order that is believed.
 pub const LOWEST_ORDER: f64 = 0.5;
+/// Orders above this multiple of the highest are no sign of convergence \[–\].
+const TOO_GOOD: f64 = 1.1;
 /// Smallest cosine between successive differences that point the same way.
 const SAME_WAY: f64 = 0.5;
 
@@ -100,7 +104,12 @@ pub fn estimate(fields: [&[f64]; 3], sizes: [f64; 3], highest: f64, scale: f64) 
     let same_way = cosine(&near, &far);
     match observed {
         Some(p) if (LOWEST_ORDER..=highest + 1.0).contains(&p) && same_way > -SAME_WAY => {
-            with_order(fine, medium, ratio, p, highest, same_way >= SAME_WAY, floor)
+            let used = p.min(highest);
+            match (same_way >= SAME_WAY, p <= TOO_GOOD * highest) {
+                (true, true) => extrapolated(fine, medium, ratio, used, floor, Basis::Order(p)),
+                (false, true) => bounded(fine, medium, ratio, used, floor, Basis::InNorm(p)),
+                (_, false) => bounded(fine, medium, ratio, used, floor, Basis::NoOrder(observed)),
+            }
         }
         Some(p) if p > highest + 1.0 => {
             without_order(fine, &near, &near, ratio, floor, Basis::NoOrder(observed))
@@ -109,28 +118,36 @@ pub fn estimate(fields: [&[f64]; 3], sizes: [f64; 3], highest: f64, scale: f64) 
     }
 }
 
-fn with_order(
+/// f* with F_s = 1.25.
+fn extrapolated(
     fine: &[f64],
     medium: &[f64],
     ratio: f64,
-    observed: f64,
-    highest: f64,
-    same_way: bool,
+    order: f64,
     floor: f64,
+    basis: Basis,
 ) -> Estimate {
-    let order = observed.min(highest);
-    let (safety, basis) = match same_way {
-        true => (SAFETY, Basis::Order(observed)),
-        false => (SAFETY_WITHOUT_ORDER, Basis::InNorm(observed)),
-    };
-    let share = safety / (ratio.powf(order) - 1.0);
-    let value = |(&f, &m): (&f64, &f64)| if same_way { richardson(f, m, ratio, order) } else { f };
-    let bar = |(f, m): (&f64, &f64)| (share * (m - f).abs()).max(floor);
+    let pairs = || fine.iter().zip(medium);
+    let share = SAFETY / (ratio.powf(order) - 1.0);
     Estimate {
-        values: fine.iter().zip(medium).map(value).collect(),
-        errors: fine.iter().zip(medium).map(bar).collect(),
+        values: pairs().map(|(&f, &m)| richardson(f, m, ratio, order)).collect(),
+        errors: pairs().map(|(f, m)| (share * (m - f).abs()).max(floor)).collect(),
         basis,
     }
+}
+
+/// f₁ with F_s = 3.
+fn bounded(
+    fine: &[f64],
+    medium: &[f64],
+    ratio: f64,
+    order: f64,
+    floor: f64,
+    basis: Basis,
+) -> Estimate {
+    let share = SAFETY_WITHOUT_ORDER / (ratio.powf(order) - 1.0);
+    let bar = |(f, m): (&f64, &f64)| (share * (m - f).abs()).max(floor);
+    Estimate { values: fine.to_vec(), errors: fine.iter().zip(medium).map(bar).collect(), basis }
 }
 
 /// The order of the norms of differences.
@@ -260,10 +277,13 @@ mod tests {
     #[test]
     fn an_order_above_that_of_the_element_does_not_shorten_the_bar() {
         let sizes = [1.0, 2.0, 4.0];
-        let values = sizes.map(|h: f64| 1.0 + 0.001 * h.powf(3.5));
-        let found = estimate([&values[..1], &values[1..2], &values[2..]], sizes, 3.0, 1.0);
-        let bar = SAFETY * (values[1] - values[0]) / 7.0;
-        assert_relative_eq!(found.errors[0], bar, epsilon = 1e-12);
+        for (order, safety) in [(3.2, SAFETY), (3.5, SAFETY_WITHOUT_ORDER)] {
+            let values = sizes.map(|h: f64| 1.0 + 0.001 * h.powf(order));
+            let found = estimate([&values[..1], &values[1..2], &values[2..]], sizes, 3.0, 1.0);
+            let bar = safety * (values[1] - values[0]) / 7.0;
+            assert_relative_eq!(found.errors[0], bar, epsilon = 1e-12);
+            assert_eq!(matches!(found.basis, Basis::Order(_)), safety == SAFETY, "{found:?}");
+        }
     }
 
     #[test]
