@@ -1,17 +1,18 @@
-//! The case files that the binary carries, so that it needs no checkout.
+//! The case files and references that the binary carries, so that it needs no checkout.
 
 use crate::report::write_atomically;
 use anyhow::Context;
 use std::path::{Path, PathBuf};
 
 macro_rules! carried {
-    ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../../reference/cases/", $name, ".toml")))),*]
+    ($folder:literal, $ending:literal: $($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("../../reference/", $folder, $name, $ending)))),*]
     };
 }
 
 /// (name, text) of every case in `reference/cases`.
 pub const CASES: &[(&str, &str)] = carried![
+    "cases/", ".toml":
     "bonded_block",
     "brain_cube_compression",
     "brain_cube_shear",
@@ -30,6 +31,11 @@ pub const CASES: &[(&str, &str)] = carried![
     "uniaxial_bar",
 ];
 
+/// (case, text) of every reference in `reference/data`.
+pub const REFERENCES: &[(&str, &str)] = carried![
+    "data/", ".json":
+];
+
 const SLICE: &[u8] = include_bytes!("../../reference/brain/slice.nrrd");
 
 /// Writes the carried cases to `dir/cases` and the label map to `dir/brain`,
@@ -42,4 +48,9 @@ pub fn unpack(dir: &Path) -> anyhow::Result<PathBuf> {
     write_atomically(&dir.join("brain").join("slice.nrrd"), SLICE)
         .context("cannot write the label map of the brain slice")?;
     Ok(cases)
+}
+
+/// The carried reference of a case.
+pub fn carried_reference(case: &str) -> Option<&'static str> {
+    REFERENCES.iter().find(|(name, _)| *name == case).map(|(_, text)| *text)
 }

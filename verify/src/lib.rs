@@ -8,6 +8,7 @@ pub mod files;
 pub mod scene;
 
 pub mod measure;
+pub mod reference;
 pub mod study;
 
 pub mod report;

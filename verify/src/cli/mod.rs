@@ -1,6 +1,10 @@
 //! The command line: parse, dispatch, exit code.
 
 mod case;
+mod python;
+mod reference;
+mod reference_solve;
+mod reference_table;
 mod solve;
 mod verify;
 
@@ -27,7 +31,8 @@ const EXAMPLES: &str = "Examples:
   mtled verify --only brain --out brain_report  one study
   mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON
   mtled case check my_case.toml                 find the mistakes in a case file
-  mtled case list                               the cases that the program carries";
+  mtled case list                               the cases that the program carries
+  mtled reference check                         are the finite-element references sound?";
 
 #[derive(Debug, Args)]
 struct Common {
@@ -59,6 +64,9 @@ enum Command {
     /// Check, list or describe case files.
     #[command(subcommand)]
     Case(case::CaseCommand),
+    /// Check, show or solve again the finite-element references.
+    #[command(subcommand)]
+    Reference(reference::ReferenceCommand),
     /// Print a completion script for a shell.
     Completions { shell: clap_complete::Shell },
 }
@@ -100,6 +108,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Solve(arguments) => solve::solve(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
         Command::Case(command) => case::case(command),
+        Command::Reference(command) => reference::reference(command, &cli.common),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Cli::command(), "mtled", &mut script);

@@ -110,7 +110,8 @@ fn finish(
     Ok(0)
 }
 
-fn progress_bar(common: &Common) -> ProgressBar {
+/// A bar of a thousand parts, hidden where nobody looks.
+pub fn progress_bar(common: &Common) -> ProgressBar {
     if !common.draws() {
         return ProgressBar::hidden();
     }

@@ -6,7 +6,7 @@ use super::document::Document;
 use super::format::{CaseFormat, DimensionFormat};
 use super::format_geometry::UnitFormat;
 use super::reading::nearest;
-use super::{Case, build_recipe};
+use super::{Case, build_recipe, problem_hash};
 use mtled::geometry::{LabelField, LabelMap, Shape};
 use mtled::problem::{Dimension, Problem};
 use mtled::tensor::Vector3;
@@ -149,6 +149,9 @@ pub fn build(
     let problem = builder.problem(format);
     let probes = builder.probes(format);
     let outputs = builder.outputs(&format.output);
+    let problem_hash = problem_hash(document.text(), base_dir)
+        .inspect_err(|reason| builder.mistake("", reason))
+        .unwrap_or_default();
     let Builder { mistakes, hash, .. } = builder;
     match problem {
         Some(problem) if mistakes.is_empty() => Ok(Case {
@@ -160,6 +163,7 @@ pub fn build(
             probes,
             outputs,
             hash: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
+            problem_hash,
             document,
         }),
         _ => Err(mistakes),

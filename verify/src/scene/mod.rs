@@ -12,10 +12,12 @@ mod document;
 mod format;
 mod format_geometry;
 mod format_recipe;
+mod problem_hash;
 mod reading;
 
 pub use build_recipe::defaults;
 pub use diagnostic::{Diagnostic, Location};
+pub use problem_hash::problem_hash;
 
 use document::Document;
 use mtled::problem::Problem;
@@ -35,6 +37,8 @@ pub struct Case {
     pub outputs: Outputs,
     /// SHA-256 of the file and of every file it refers to, in hexadecimal.
     pub hash: String,
+    /// Fingerprint of what is solved, whatever the recipe ([`problem_hash`]).
+    pub problem_hash: String,
     document: Document,
 }
 

@@ -3,16 +3,21 @@
 mod benchmarks;
 mod brain;
 mod closed_forms;
+mod comparison;
+mod comparison_limits;
+mod comparison_tables;
 mod consistency;
 mod convergence;
 mod energy;
 mod patch;
 mod plain;
 mod problems;
+mod references;
 mod specimens;
 mod time_step;
 mod vibration;
 
+use crate::reference::{ReferenceError, ReferenceFile, read_reference};
 use crate::run::{Record, Solved, solve_case};
 use crate::scene::{Case, read_case};
 use crate::study::Study;
@@ -61,6 +66,13 @@ pub const STUDIES: &[Definition] = &[
         body: brain::brain,
     },
     Definition {
+        id: "comparison",
+        title: "Comparison with finite elements",
+        claim: "At the recipes of the cases the solver is within the stated limits of references from \
+                two finite-element codes, each limit widened by the reference's own error bar.",
+        body: comparison::comparison,
+    },
+    Definition {
         id: "benchmarks",
         title: "Published benchmarks",
         claim: "Cook's membrane and the flag of Turek and Hron bend and swing as published.",
@@ -102,6 +114,13 @@ pub const STUDIES: &[Definition] = &[
                 round-off, on any cloud and anywhere in space; Grad φ is the derivative of φ.",
         body: consistency::consistency,
     },
+    Definition {
+        id: "references",
+        title: "Finite-element references",
+        claim: "FEniCSx and scikit-fem, on different meshes or elements, agree in every quantity of \
+                every case within the sum of their error bars.",
+        body: references::references,
+    },
 ];
 
 impl Workbench {
@@ -116,6 +135,13 @@ impl Workbench {
             let lines: Vec<String> = mistakes.iter().map(|mistake| mistake.to_string()).collect();
             anyhow!("{}", lines.join("\n"))
         })
+    }
+
+    /// The carried reference of a case.
+    pub fn reference(&self, case: &Case) -> Result<ReferenceFile, ReferenceError> {
+        let absent = || ReferenceError::Absent { case: case.name.clone() };
+        let text = crate::cases::carried_reference(&case.name).ok_or_else(absent)?;
+        read_reference(case, text)
     }
 
     /// One of two values, by suite.

@@ -1,0 +1,164 @@
+//! Do two codes agree within their error bars, and which value is the
+//! reference?
+
+use super::format::{ReferenceFile, Solution};
+use super::quantity::{Family, Quantity, is_dynamic, quantities, size_of};
+use super::read::MESHES;
+use super::richardson::{Estimate, estimate, rms};
+use crate::scene::Case;
+use std::collections::BTreeMap;
+
+/// Order of quadratic elements in the displacement \[–\].
+const ORDER_OF_DISPLACEMENTS: f64 = 3.0;
+/// Order of quadratic elements in energies, reactions and volumes \[–\].
+const ORDER_OF_FUNCTIONALS: f64 = 4.0;
+/// Order of the schemes in time, refined together with the mesh \[–\].
+const ORDER_IN_TIME: f64 = 2.0;
+
+/// What two codes say of one quantity.
+#[derive(Debug, Clone)]
+pub struct Agreement {
+    pub quantity: Quantity,
+    /// By the order of the solutions of the file.
+    pub estimates: Vec<Estimate>,
+    /// rms of the difference over points and instants, in the unit.
+    pub difference: f64,
+    /// rms of the error bars per code, in the unit.
+    pub bars: Vec<f64>,
+    /// Size of quantities of this family in the case, in the unit.
+    pub scale: f64,
+}
+
+impl Agreement {
+    /// |a − b| over the sum of the error bars \[–\]; at most 1 in agreement.
+    pub fn ratio(&self) -> f64 {
+        self.difference / self.bars.iter().sum::<f64>()
+    }
+
+    /// rms of the lengths of a code's values over points and instants, in the
+    /// unit.
+    pub fn magnitude(&self, solution: usize) -> f64 {
+        let values = &self.estimates[solution].values;
+        rms_of_points(values, self.quantity.family.components())
+    }
+
+    pub fn agrees(&self) -> bool {
+        self.ratio() <= 1.0
+    }
+
+    /// The solution with the shorter error bar.
+    pub fn better(&self) -> usize {
+        (0..self.bars.len()).min_by(|&a, &b| self.bars[a].total_cmp(&self.bars[b])).unwrap_or(0)
+    }
+
+    /// The better value; its bar is not shorter than the difference of the
+    /// codes.
+    pub fn reference(&self) -> Agreed {
+        let better = &self.estimates[self.better()];
+        let other = &self.estimates[self.estimates.len() - 1 - self.better()];
+        let bars = (better.errors.iter().zip(&better.values).zip(&other.values))
+            .map(|((bar, a), b)| bar.max((a - b).abs()));
+        Agreed {
+            quantity: self.quantity.clone(),
+            values: better.values.clone(),
+            errors: bars.collect(),
+            error: self.bars[self.better()].max(self.difference),
+            scale: self.scale,
+        }
+    }
+}
+
+/// The reference value of a quantity.
+#[derive(Debug, Clone)]
+pub struct Agreed {
+    pub quantity: Quantity,
+    /// Instant by instant.
+    pub values: Vec<f64>,
+    pub errors: Vec<f64>,
+    /// rms of the error over points and instants, in the unit.
+    pub error: f64,
+    /// Size of quantities of this family in the case, in the unit.
+    pub scale: f64,
+}
+
+impl Agreed {
+    /// The numbers of one instant.
+    pub fn instant(&self, index: usize) -> &[f64] {
+        let index = if self.quantity.changes { index } else { 0 };
+        &self.values[index * self.quantity.width..][..self.quantity.width]
+    }
+
+    /// The error bars of one instant.
+    pub fn bars(&self, index: usize) -> &[f64] {
+        let index = if self.quantity.changes { index } else { 0 };
+        &self.errors[index * self.quantity.width..][..self.quantity.width]
+    }
+}
+
+/// Compares the two codes of a reference, quantity by quantity.
+pub fn agree(case: &Case, file: &ReferenceFile) -> Vec<Agreement> {
+    let scales = scales(case, file);
+    let compare = |quantity: Quantity| {
+        let scale = scales[&quantity.family];
+        let highest = highest_order(case, quantity.family);
+        let estimates: Vec<Estimate> = (file.solutions.iter())
+            .map(|solution| extrapolated(solution, &quantity, highest, scale))
+            .collect();
+        let components = quantity.family.components();
+        let differences: Vec<f64> =
+            (estimates[0].values.iter().zip(&estimates[1].values)).map(|(a, b)| a - b).collect();
+        Agreement {
+            difference: rms_of_points(&differences, components),
+            bars: estimates.iter().map(|e| rms_of_points(&e.errors, components)).collect(),
+            estimates,
+            quantity,
+            scale,
+        }
+    };
+    quantities(case).into_iter().map(compare).collect()
+}
+
+/// Root of the mean square length of vectors of `components` numbers.
+pub fn rms_of_points(numbers: &[f64], components: usize) -> f64 {
+    rms(numbers) * (components as f64).sqrt()
+}
+
+fn highest_order(case: &Case, family: Family) -> f64 {
+    match family {
+        Family::Centre => ORDER_OF_FUNCTIONALS,
+        _ if is_dynamic(case) => ORDER_IN_TIME,
+        Family::Displacement => ORDER_OF_DISPLACEMENTS,
+        _ => ORDER_OF_FUNCTIONALS,
+    }
+}
+
+/// Extrapolates the three finest meshes.
+fn extrapolated(solution: &Solution, quantity: &Quantity, highest: f64, scale: f64) -> Estimate {
+    let meshes = &solution.meshes[solution.meshes.len() - MESHES..];
+    let [coarse, medium, fine] = [0, 1, 2].map(|n| meshes[n].values[&quantity.name].flat());
+    let sizes = [2, 1, 0].map(|n| meshes[n].size_m);
+    estimate([&fine, &medium, &coarse], sizes, highest, scale)
+}
+
+/// The largest number of each family on the finest meshes. What vanishes by
+/// symmetry is measured against others: centres against the body's size,
+/// moments against the largest force times that size.
+pub fn scales(case: &Case, file: &ReferenceFile) -> BTreeMap<Family, f64> {
+    let mut largest: BTreeMap<Family, f64> = BTreeMap::new();
+    for quantity in quantities(case) {
+        let entry = largest.entry(quantity.family).or_default();
+        for mesh in file.solutions.iter().filter_map(|solution| solution.meshes.last()) {
+            let values = mesh.values[&quantity.name].flat();
+            *entry = values.iter().fold(*entry, |a, b| a.max(b.abs()));
+        }
+    }
+    let size = size_of(case);
+    if let Some(centre) = largest.get_mut(&Family::Centre) {
+        *centre = centre.max(size);
+    }
+    let force = largest.get(&Family::Force).copied().unwrap_or(0.0);
+    if let Some(moment) = largest.get_mut(&Family::Moment) {
+        *moment = moment.max(force * size);
+    }
+    largest
+}

@@ -1,0 +1,16 @@
+//! Finite-element references: stored values of two codes on three meshes each,
+//! with an error bar from the meshes ([`richardson`]) and a second opinion from
+//! the other code ([`agreement`]).
+
+pub mod agreement;
+pub mod compare;
+mod format;
+mod quantity;
+mod read;
+pub mod richardson;
+
+pub use agreement::{Agreed, Agreement, agree};
+pub use format::{Mesh, ReferenceFile, SCHEMA_VERSION, Solution, Values};
+pub use quantity::{Family, Quantity, is_dynamic, quantities, size_of};
+pub use read::{CODES, MESHES, ReferenceError, read_reference};
+pub use richardson::{Basis, Estimate};

@@ -1,0 +1,90 @@
+//! What a reference of a case must hold.
+
+use crate::scene::{Case, ProbeKind};
+use mtled::problem::Motion;
+
+/// Kinds of quantities; those of one kind share their unit and their size.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Family {
+    /// Displacements of the positions of a probe.
+    Displacement,
+    /// Reference centre of mass of a probe.
+    Centre,
+    /// Force that a support exerts on the body.
+    Force,
+    /// Moment that a support exerts on the body.
+    Moment,
+    StrainEnergy,
+    KineticEnergy,
+}
+
+impl Family {
+    pub fn unit(self) -> &'static str {
+        match self {
+            Family::Displacement | Family::Centre => "m",
+            Family::Force => "N",
+            Family::Moment => "N m",
+            Family::StrainEnergy | Family::KineticEnergy => "J",
+        }
+    }
+
+    /// Numbers that belong together: the components of a vector, or one.
+    pub fn components(self) -> usize {
+        match self {
+            Family::StrainEnergy | Family::KineticEnergy => 1,
+            _ => 3,
+        }
+    }
+}
+
+/// One quantity of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantity {
+    /// Its key in a reference file, such as `force/top`.
+    pub name: String,
+    pub family: Family,
+    /// Numbers per instant.
+    pub width: usize,
+    /// Whether it has a list per instant.
+    pub changes: bool,
+}
+
+/// The quantities of a case, every one of them wanted.
+pub fn quantities(case: &Case) -> Vec<Quantity> {
+    let quantity = |name: String, family: Family, positions: usize| Quantity {
+        name,
+        family,
+        width: positions * family.components(),
+        changes: family != Family::Centre,
+    };
+    let mut wanted = Vec::new();
+    for probe in &case.probes {
+        let positions = probe.kind.positions().len().max(1);
+        wanted.push(quantity(
+            format!("displacement/{}", probe.name),
+            Family::Displacement,
+            positions,
+        ));
+        if matches!(probe.kind, ProbeKind::CentreOfMass { .. }) {
+            wanted.push(quantity(format!("centre/{}", probe.name), Family::Centre, 1));
+        }
+    }
+    for condition in &case.problem.conditions {
+        wanted.push(quantity(format!("force/{}", condition.name), Family::Force, 1));
+        wanted.push(quantity(format!("moment/{}", condition.name), Family::Moment, 1));
+    }
+    wanted.push(quantity("strain_energy".into(), Family::StrainEnergy, 1));
+    if is_dynamic(case) {
+        wanted.push(quantity("kinetic_energy".into(), Family::KineticEnergy, 1));
+    }
+    wanted
+}
+
+pub fn is_dynamic(case: &Case) -> bool {
+    matches!(case.problem.motion, Motion::Dynamic { .. })
+}
+
+/// Diagonal of the box around the body \[m\].
+pub fn size_of(case: &Case) -> f64 {
+    case.problem.body.bounding_box().map_or(0.0, |(low, high)| (high - low).norm())
+}
