@@ -58,11 +58,13 @@ impl ConstraintSet {
 }
 
 /// One constrained component of one node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConstraintRow {
     pub node: u32,
     /// Index into [`Constraints::conditions`].
     pub condition: u32,
+    /// Displacement at amplitude 1 \[m\]; a rotation has its own pose instead.
+    pub displacement: f64,
 }
 
 /// Multipliers of the last step, and scratch that is kept between steps.
@@ -91,6 +93,7 @@ impl Constraints {
         mass: &[f64],
     ) -> Result<Constraints, Error> {
         let conditions = problem.conditions.clone();
+        let positions = &discretisation.cloud.positions;
         let selected: Vec<Vec<u32>> =
             conditions.iter().map(|condition| select(condition, discretisation)).collect();
         if let Some(index) = selected.iter().position(Vec::is_empty) {
@@ -104,7 +107,7 @@ impl Constraints {
             let active = |c: usize| conditions[c].release.is_none_or(|release| release >= until);
             let mut sets = Vec::new();
             for component in 0..problem.dimension.components() {
-                let rows = claim(&conditions, &selected, component, active, mass.len());
+                let rows = claim(&conditions, &selected, component, active, positions);
                 if !rows.is_empty() {
                     sets.push(ConstraintSet::new(component, rows, problem, discretisation, mass)?);
                 }
@@ -149,7 +152,7 @@ impl Constraints {
         let target = |row: &ConstraintRow, component: usize| {
             let condition = row.condition as usize;
             let X = &positions[row.node as usize];
-            poses[condition].target(&self.conditions[condition].prescribed, X, component)
+            poses[condition].target(&self.conditions[condition].prescribed, row, X, component)
         };
         self.enforce_targets(t, mass, u, forces, target, also);
         forces.poses = poses;
@@ -244,7 +247,7 @@ impl Pose {
     fn at(condition: &EssentialCondition, t: f64) -> Pose {
         let amplitude = condition.amplitude.at(t);
         let turn = match condition.prescribed {
-            Prescribed::Displacement(_) => Matrix3::zeros(),
+            Prescribed::Displacement(_) | Prescribed::Field(_) => Matrix3::zeros(),
             Prescribed::Rotation { axis, angle, .. } => {
                 rotation(&axis, amplitude * angle) - Matrix3::identity()
             }
@@ -253,9 +256,15 @@ impl Pose {
     }
 
     /// The displacement component \[m\] wanted at reference position `X`.
-    fn target(&self, prescribed: &Prescribed, X: &Vector3, component: usize) -> f64 {
+    fn target(
+        &self,
+        prescribed: &Prescribed,
+        row: &ConstraintRow,
+        X: &Vector3,
+        component: usize,
+    ) -> f64 {
         match prescribed {
-            Prescribed::Displacement(values) => self.amplitude * values[component].unwrap_or(0.0),
+            Prescribed::Displacement(_) | Prescribed::Field(_) => self.amplitude * row.displacement,
             Prescribed::Rotation { point, .. } => (self.turn * (X - point))[component],
         }
     }
@@ -278,13 +287,13 @@ fn claim(
     selected: &[Vec<u32>],
     component: usize,
     active: impl Fn(usize) -> bool,
-    nodes: usize,
+    positions: &[Vector3],
 ) -> Vec<ConstraintRow> {
-    let mut owner = vec![None; nodes];
+    let mut owner = vec![None; positions.len()];
     for (index, condition) in conditions.iter().enumerate() {
         let prescribes = match condition.prescribed {
             Prescribed::Displacement(values) => values[component].is_some(),
-            Prescribed::Rotation { .. } => true,
+            Prescribed::Rotation { .. } | Prescribed::Field(_) => true,
         };
         if !prescribes || !active(index) {
             continue;
@@ -294,7 +303,13 @@ fn claim(
         }
     }
     let row = |(node, condition): (usize, Option<u32>)| {
-        condition.map(|condition| ConstraintRow { node: node as u32, condition })
+        let condition = condition?;
+        let displacement = match &conditions[condition as usize].prescribed {
+            Prescribed::Displacement(values) => values[component].unwrap_or(0.0),
+            Prescribed::Field(field) => field.at(&positions[node])[component],
+            Prescribed::Rotation { .. } => 0.0,
+        };
+        Some(ConstraintRow { node: node as u32, condition, displacement })
     };
     owner.into_iter().enumerate().filter_map(row).collect()
 }

@@ -16,6 +16,7 @@ pub mod tensor;
 
 pub mod material;
 
+pub mod field;
 pub mod geometry;
 pub mod selection;
 

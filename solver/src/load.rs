@@ -31,10 +31,12 @@ pub fn load_patterns(
         let supports = &discretisation.supports;
         let weights = &discretisation.quadrature.weights;
         for (point, (density, weight)) in density.iter().zip(weights).enumerate() {
+            let acceleration =
+                body_force.acceleration.at(&discretisation.quadrature.positions[point]);
             let mass = density * weight;
             for entry in supports.row(point) {
                 let share = mass * supports.phi[entry];
-                add(&mut force, d, supports.nodes[entry], &(body_force.acceleration * share));
+                add(&mut force, d, supports.nodes[entry], &(acceleration * share));
             }
         }
         patterns.push(LoadPattern { force, amplitude: body_force.amplitude.clone() });

@@ -1,6 +1,7 @@
 //! What is to be solved: plain data, made by the scene reader or by hand.
 
 pub use crate::dimension::Dimension;
+pub use crate::field::Field;
 use crate::geometry::Shape;
 use crate::material::Material;
 use crate::selection::{Extent, Selector};
@@ -170,6 +171,8 @@ pub enum Prescribed {
     Displacement([Option<f64>; 3]),
     /// u = (R(amplitude · angle) − I)(X − point), about a unit axis; angle \[rad\].
     Rotation { point: Vector3, axis: Vector3, angle: f64 },
+    /// All components of a displacement field \[m\], at the nodes' own positions.
+    Field(Field),
 }
 
 /// A factor over time \[–\].
@@ -224,7 +227,7 @@ pub struct Loads {
 /// A force per mass \[N/kg\] on the whole body.
 #[derive(Debug, Clone)]
 pub struct BodyForce {
-    pub acceleration: Vector3,
+    pub acceleration: Field,
     pub amplitude: Amplitude,
 }
 

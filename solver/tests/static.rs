@@ -7,6 +7,7 @@ use common::*;
 use mtled::discretisation::Discretisation;
 use mtled::model::Model;
 use mtled::problem::*;
+use mtled::selection::Selector;
 use mtled::simulate::{Summary, simulate};
 use mtled::state::State;
 use mtled::tensor::Vector3;
@@ -186,4 +187,33 @@ fn with_direct_enforcement_the_nodal_parameters_take_the_prescribed_values() {
         assert!(x.z != 0.0 || u == Vector3::zeros());
         assert!(x.z != EDGE || (u.x == 0.15 * EDGE && u.y == 0.05 * EDGE));
     }
+}
+
+#[test]
+fn a_prescribed_field_moves_every_node_by_its_own_value() {
+    let u = |X: &Vector3| Vector3::new(0.1 * X.y, 0.3 * X.x * X.z, -0.05 * X.z);
+    let mut problem = cube(4);
+    let mut boundary = condition("boundary", Selector::All, [None; 3]);
+    boundary.prescribed = Prescribed::Field(Field::of(u));
+    boundary.amplitude = Amplitude::Smooth { duration: 1.0 };
+    problem.conditions = vec![boundary];
+    let solved = solve(&problem);
+    let cloud = &solved.discretisation.cloud;
+    for (node, X) in cloud.positions.iter().enumerate().filter(|(n, _)| cloud.on_boundary[*n]) {
+        assert!((solved.state.displacement_of(node, 3) - u(X)).norm() < 1e-15);
+    }
+}
+
+#[test]
+fn a_body_force_field_is_weighed_with_the_mass_where_it_acts() {
+    let mut problem = cube(4);
+    let acceleration = Field::of(|X| Vector3::new(X.x, 0.0, 2.0 * X.y));
+    let amplitude = Amplitude::Constant;
+    problem.loads.body_forces = vec![BodyForce { acceleration, amplitude }];
+    let (_, model) = build(&problem);
+    let total: Vector3 =
+        (0..model.positions.len()).map(|n| vector(&model.loads[0].force, n, 3)).sum();
+    // ρ ∫ b dV over the cube, whose points are symmetric about its middle.
+    let expected = Vector3::new(0.5, 0.0, 1.0) * (1000.0 * EDGE.powi(4));
+    assert!((total - expected).norm() < 1e-12, "{total}");
 }

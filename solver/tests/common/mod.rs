@@ -144,7 +144,7 @@ pub fn condition(name: &str, part: Selector, values: [Option<f64>; 3]) -> Essent
 
 pub fn gravity(problem: &mut Problem, acceleration: Vector3) {
     let amplitude = Amplitude::Constant;
-    problem.loads.body_forces.push(BodyForce { acceleration, amplitude });
+    problem.loads.body_forces.push(BodyForce { acceleration: acceleration.into(), amplitude });
 }
 
 pub fn build(problem: &Problem) -> (Discretisation, Model) {

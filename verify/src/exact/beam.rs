@@ -31,6 +31,16 @@ impl Beam {
         self.bending_frequency(CANTILEVER_ROOT)
     }
 
+    /// Shape of the first mode, one end clamped, at the distance x \[m\] from the
+    /// clamp, up to a factor: cosh ξ − cos ξ − σ(sinh ξ − sin ξ), ξ = βx/L,
+    /// σ = (cosh β + cos β)/(sinh β + sin β) (Blevins 1979, table 8-1).
+    pub fn cantilever_mode(&self, x: f64) -> f64 {
+        let beta = CANTILEVER_ROOT;
+        let sigma = (beta.cosh() + beta.cos()) / (beta.sinh() + beta.sin());
+        let xi = beta * x / self.length;
+        xi.cosh() - xi.cos() - sigma * (xi.sinh() - xi.sin())
+    }
+
     /// First bending frequency, both ends free \[Hz\].
     pub fn free_free_frequency(&self) -> f64 {
         self.bending_frequency(FREE_FREE_ROOT)
@@ -82,6 +92,17 @@ mod tests {
         assert_relative_eq!(flag.cantilever_frequency(), 1.0995, max_relative = 0.03);
         let ratio = flag.free_free_frequency() / flag.cantilever_frequency();
         assert_relative_eq!(ratio, 6.3632, max_relative = 1e-4);
+    }
+
+    #[test]
+    fn the_first_mode_is_clamped_at_one_end_and_free_at_the_other() {
+        let beam =
+            Beam { length: 2.0, area: 1.0, second_moment: 1.0, young_modulus: 1.0, density: 1.0 };
+        let mode = |x: f64| beam.cantilever_mode(x);
+        let bend = |x: f64| (mode(x + 1e-3) - 2.0 * mode(x) + mode(x - 1e-3)) / 1e-6;
+        assert!(mode(0.0).abs() < 1e-15 && mode(1e-4).abs() < 1e-7);
+        assert!(bend(2.0).abs() < 1e-5 && (bend(2.0) - bend(1.99)).abs() < 1e-3);
+        assert!(mode(2.0) > mode(1.0));
     }
 
     #[test]

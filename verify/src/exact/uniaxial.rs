@@ -1,7 +1,7 @@
 //! Uniaxial stress: one stretch is given, the lateral faces are free.
 #![allow(non_snake_case)]
 
-use super::bisect;
+use super::{bisect, free_stretch};
 use mtled::material::Law;
 use mtled::tensor::{Matrix3, Vector3};
 
@@ -22,22 +22,8 @@ pub fn uniaxial_stress(law: &Law, stretch: f64) -> Option<UniaxialState> {
         let F = Matrix3::from_diagonal(&Vector3::new(stretch, lateral, lateral));
         law.first_piola_kirchhoff(&F)
     };
-    let free = |lateral: f64| P(lateral)[(1, 1)];
-    if free(1.0) == 0.0 {
-        return Some(UniaxialState { lateral_stretch: 1.0, nominal_stress: P(1.0)[(0, 0)] });
-    }
-    let factor = if free(1.0) > 0.0 { 1.0 / 1.05 } else { 1.05 };
-    let mut inside = 1.0;
-    for _ in 0..28 {
-        let outside = inside * factor;
-        if free(outside) * free(1.0) <= 0.0 {
-            let lateral_stretch = bisect(inside.min(outside), inside.max(outside), free);
-            let nominal_stress = P(lateral_stretch)[(0, 0)];
-            return Some(UniaxialState { lateral_stretch, nominal_stress });
-        }
-        inside = outside;
-    }
-    None
+    let lateral_stretch = free_stretch(|lateral| P(lateral)[(1, 1)])?;
+    Some(UniaxialState { lateral_stretch, nominal_stress: P(lateral_stretch)[(0, 0)] })
 }
 
 /// Cauchy stress of an incompressible neo-Hookean bar σ = μ(λ² − 1/λ) \[Pa\]

@@ -108,7 +108,7 @@ impl Builder<'_> {
             let key = format!("body_force[{n}]");
             self.no_z(&format!("{key}.acceleration"), &row.acceleration);
             let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
-            let acceleration = Vector3::from(row.acceleration);
+            let acceleration = Vector3::from(row.acceleration).into();
             loads.body_forces.push(BodyForce { acceleration, amplitude });
         }
         for (n, row) in format.traction.iter().enumerate() {

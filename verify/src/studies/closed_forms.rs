@@ -197,7 +197,7 @@ fn column_problem(
         ],
         loads: Loads {
             body_forces: vec![BodyForce {
-                acceleration: Vector3::new(-gravity, 0.0, 0.0),
+                acceleration: Vector3::new(-gravity, 0.0, 0.0).into(),
                 amplitude: Amplitude::Smooth { duration: 1.0 },
             }],
             ..Loads::default()

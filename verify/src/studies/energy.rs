@@ -194,7 +194,7 @@ fn loaded(seed: u64, end: f64) -> anyhow::Result<Problem> {
         bonded_face(2, SIZE, -0.1 * SIZE, smooth),
     ];
     problem.loads.body_forces = vec![BodyForce {
-        acceleration: Vector3::new(9.81, 0.0, 0.0),
+        acceleration: Vector3::new(9.81, 0.0, 0.0).into(),
         amplitude: Amplitude::Linear { duration: 0.5 * end },
     }];
     problem.obstacles = vec![Obstacle {
