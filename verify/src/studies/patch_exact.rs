@@ -1,7 +1,7 @@
 //! What an affine field obeys on any cloud, without solving anything.
 #![allow(non_snake_case)]
 
-use super::patch::{Body, EXACT, affine, problem};
+use super::patch::{Body, EXACT, problem};
 use super::plain::larger;
 use super::problems::Random;
 use crate::run::{Prepared, prepare};
@@ -18,7 +18,7 @@ pub(super) fn exact_checks(
 ) -> anyhow::Result<()> {
     let problem = problem(body, poisson_ratio, &EXACT)?;
     let prepared = prepare(&problem)?;
-    let (H, centre) = (affine(body.dimension), body.centre);
+    let (H, centre) = (body.H, body.centre);
     let stretched = field(&prepared, |X| H * (X - centre));
     let scale = forces(&prepared, &stretched).iter().map(|f| f.norm()).fold(0.0, larger);
     let turn = rotation(&Vector3::z(), 1.0) - Matrix3::identity();
