@@ -1,6 +1,7 @@
 """Motion by the trapezoidal rule with the consistent mass (Newmark, β = 1/4, γ = 1/2)."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sparse
@@ -14,8 +15,8 @@ RESIDUAL = 1e-8
 """A step has converged at this residual over the forces at work [–]."""
 
 MAX_ITERATIONS = 25
-SLOW = 0.15
-"""The matrix is renewed where an iteration reduces the residual by less [–]."""
+SLOW = 0.5
+"""A matrix is renewed where an iteration with it reduces the residual by less [–]."""
 
 
 def solve_dynamic(
@@ -56,7 +57,7 @@ class _Motion:
         self.scale = 4.0 / dt**2 + 2.0 * self.damping / dt
         """Of the mass in the matrix of a step [1/s²]."""
         self.upper_mass = self._upper_mass()
-        self.renewed = False
+        self.has_matrix = False
 
     def _initial_acceleration(self) -> np.ndarray:
         """a from M a = f − F(u) at t = 0, nothing where displacements are prescribed."""
@@ -69,37 +70,74 @@ class _Motion:
             a[free, component] = sparse.linalg.spsolve(matrix, force[free, component])
         return a
 
-    def _upper_mass(self) -> sparse.csr_matrix:
+    def _upper_mass(self) -> np.ndarray:
+        """The mass in the places of the matrix of free unknowns."""
         full = sparse.kron(self.mass, sparse.identity(self.model.d), format="csr")
-        return sparse.triu(full[self.model.free][:, self.model.free], format="csr")
+        full = full[self.model.free][:, self.model.free]
+        pattern = self.model.pattern
+        rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
+        return np.asarray(full[rows, pattern.indices]).ravel()
 
     def advance(self, t: float) -> None:
-        """One step to time t [s]; Newton with a matrix that is kept while it serves."""
-        model, dt = self.model, self.dt
-        loads = model.loads(lambda amplitude: amplitude(t))
-        prescribed = model.prescribed(lambda amplitude: amplitude(t))
-        u = np.where(model.fixed, prescribed, self.u + dt * self.v + 0.25 * dt**2 * self.a)
-        previous = np.inf
+        """One step to time t [s]: with the matrix of an earlier step if that serves,
+        otherwise with a new one in every iteration."""
+        loads = self.model.loads(lambda amplitude: amplitude(t))
+        prescribed = self.model.prescribed(lambda amplitude: amplitude(t))
+        foreseen = self.u + self.dt * self.v + 0.5 * self.dt**2 * self.a
+        start = np.where(self.model.fixed, prescribed, foreseen)
+        end = self._iterate(start, loads, False) if self.has_matrix else None
+        end = end or self._iterate(start, loads, True)
+        if end is None:
+            raise NotConverged(f"no convergence at t = {t:.6g} s")
+        self.u, self.v, self.a = end.u, end.v, end.a
+        self.reactions, self.strain_energy = end.forces, end.energy
+
+    def _iterate(self, start, loads, renew: bool) -> "_Balance | None":
+        """Newton from `start`, or None where it does not converge."""
+        u, previous = start, np.inf
         for _ in range(MAX_ITERATIONS):
-            a = 4.0 / dt**2 * (u - self.u - dt * self.v) - self.a
-            v = self.v + 0.5 * dt * (self.a + a)
-            energy, internal = model.internal(u)
-            inertia = self.mass @ (a + self.damping * v)
-            balance = internal + inertia - loads
-            residual = balance.ravel()[model.free]
-            norm = float(np.linalg.norm(residual))
-            size = max(np.linalg.norm(internal), np.linalg.norm(loads), np.linalg.norm(inertia))
-            if norm <= RESIDUAL * size:
-                self.u, self.v, self.a = u, v, a
-                self.reactions, self.strain_energy = balance, energy
-                return
-            if not self.renewed or norm > SLOW * previous:
-                tangent = model.internal(u, True)[2]
-                self.factors.factorise((tangent + self.scale * self.upper_mass).tocsr())
-                self.renewed = True
-            previous = norm
+            try:
+                found = self._balance(u, loads)
+            except FloatingPointError:
+                return None
+            if found.norm <= RESIDUAL * found.size:
+                return found
+            if renew:
+                tangent = self.model.internal(u, True)[2]
+                tangent.data += self.scale * self.upper_mass
+                self.factors.factorise(tangent)
+                self.has_matrix = True
+            elif found.norm > SLOW * previous:
+                return None
+            previous = found.norm
             change = np.zeros(u.size)
-            change[model.free] = -self.factors.solve(residual)
+            change[self.model.free] = -self.factors.solve(found.forces.ravel()[self.model.free])
             u = u + change.reshape(u.shape)
             self.iterations += 1
-        raise NotConverged(f"no convergence at t = {t:.6g} s")
+        return None
+
+    def _balance(self, u: np.ndarray, loads: np.ndarray) -> "_Balance":
+        """The forces that are missing if the step ends at displacements u."""
+        dt = self.dt
+        a = 4.0 / dt**2 * (u - self.u - dt * self.v) - self.a
+        v = self.v + 0.5 * dt * (self.a + a)
+        energy, internal = self.model.internal(u)
+        inertia = self.mass @ (a + self.damping * v)
+        forces = internal + inertia - loads
+        norm = float(np.linalg.norm(forces.ravel()[self.model.free]))
+        size = max(np.linalg.norm(part) for part in (internal, loads, inertia))
+        return _Balance(u, v, a, forces, energy, norm, float(size))
+
+
+@dataclass(frozen=True)
+class _Balance:
+    """Motion at the end of a step, the forces (n, d) [N] that the supports would
+    have to exert on every node, their norm over free unknowns and its measure."""
+
+    u: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    forces: np.ndarray
+    energy: float
+    norm: float
+    size: float
