@@ -34,6 +34,21 @@ def evenly(s):
     return s
 
 
+def equal_angles(s):
+    """A division of [0, 1] that is even in the angle, seen from a unit away."""
+    return np.tan(0.25 * np.pi * s)
+
+
+def both_ways(division):
+    """A division of [0, 1] that follows `division` from the middle to both ends."""
+
+    def place(s):
+        t = 2.0 * s - 1.0
+        return 0.5 * (1.0 + np.sign(t) * division(np.abs(t)))
+
+    return place
+
+
 def box_block(low, high, counts, divisions=None) -> Block:
     """An axis-parallel box (or rectangle) divided along each axis."""
     low, high = np.asarray(low, float), np.asarray(high, float)
@@ -113,13 +128,12 @@ def extruded(patches: list, scale: float, z, count: int, division=evenly) -> lis
     return [block(patch, counts) for patch, counts in patches]
 
 
-def between(inner: Block, outer, count: int) -> Block:
-    """A layer between the surface that a block of two parameters maps to and its
-    image under `outer`, straight across."""
+def between(inner: Block, outer, count: int, division=evenly) -> Block:
+    """A layer between two surfaces over the same parameters, straight across."""
 
     def place(r: np.ndarray) -> np.ndarray:
-        foot = inner.map(r[:, :2])
-        return foot + r[:, 2:] * (outer(foot) - foot)
+        start, end = inner.map(r[:, :2]), outer(r[:, :2])
+        return start + division(r[:, 2:]) * (end - start)
 
     return Block(place, (*inner.counts, count))
 
@@ -129,24 +143,20 @@ def on_sphere(radius: float):
     return lambda X: radius * X / np.linalg.norm(X, axis=1, keepdims=True)
 
 
-def cube_faces(half: float, n: int, signs: list[tuple[int, int]]) -> list[Block]:
-    """The faces (axis, sign) of the part x, y ≥ 0 of the cube [−half, half]³, as
-    surfaces; angles are divided evenly, n elements over 45°."""
+def cube_face(half: float, n: int, axis: int, sign: int, division) -> Block:
+    """A face, across `axis`, of the part x, y ≥ 0 of the cube [−half, half]³ as a
+    surface; n elements, placed by `division`, over a half-width."""
+    others = [i for i in range(3) if i != axis]
 
-    def face(axis: int, sign: int) -> Block:
-        others = [i for i in range(3) if i != axis]
+    def place(r: np.ndarray) -> np.ndarray:
+        X = np.empty((len(r), 3))
+        X[:, axis] = sign
+        for column, other in enumerate(others):
+            s = r[:, column]
+            X[:, other] = 2.0 * both_ways(division)(s) - 1.0 if other == 2 else division(s)
+        return half * X
 
-        def place(r: np.ndarray) -> np.ndarray:
-            X = np.empty((len(r), 3))
-            X[:, axis] = sign
-            for column, other in enumerate(others):
-                low = -1.0 if other == 2 else 0.0
-                X[:, other] = np.tan(0.25 * np.pi * (low + r[:, column] * (1.0 - low)))
-            return half * X
-
-        return Block(place, tuple(2 * n if other == 2 else n for other in others))
-
-    return [face(axis, sign) for axis, sign in signs]
+    return Block(place, tuple(2 * n if other == 2 else n for other in others))
 
 
 def quadrilateral(corners, counts, divisions=(evenly, evenly)) -> Block:

@@ -10,7 +10,9 @@ from .hexahedra import (
     beyond_patch,
     between,
     box_block,
-    cube_faces,
+    both_ways,
+    cube_face,
+    equal_angles,
     evenly,
     extruded,
     mirrored,
@@ -37,7 +39,7 @@ class CaseMesh:
     """Nominal edge of an element [m]."""
     family: str
     symmetry: list[Plane]
-    load_steps: int = 4
+    load_steps: int = 2
     time_steps: int = 0
     """Of a dynamic case, over the whole time."""
 
@@ -56,7 +58,7 @@ def _uniaxial_bar(case: Case, level: int) -> CaseMesh:
     return CaseMesh([block], (high[1] - low[1]) / n, "hexahedra, even", [])
 
 
-def _bonded_cube(planes: str, ratio_counts, strength: float) -> Callable:
+def _bonded_cube(planes: str, ratio_counts, strength: float, load_steps: int = 2) -> Callable:
     """A cube between two bonded plates, halved along the axes named in `planes`."""
 
     def mesh(case: Case, level: int) -> CaseMesh:
@@ -76,7 +78,7 @@ def _bonded_cube(planes: str, ratio_counts, strength: float) -> Callable:
         size = (high[2] - low[2]) / (2 * half)
         family = "hexahedra, mildly graded towards the edges"
         symmetry = [(axis, middle[axis]) for axis, name in enumerate("xyz") if name in planes]
-        return CaseMesh([block], size, family, symmetry)
+        return CaseMesh([block], size, family, symmetry, load_steps)
 
     return mesh
 
@@ -121,38 +123,25 @@ def _indented_block(case: Case, level: int) -> CaseMesh:
 
 
 def _soft_inclusion(case: Case, level: int) -> CaseMesh:
+    """A cube inside the ball, a layer up to its surface and one up to the plates."""
     low, high = bounding_box(case.shape)
     sphere = case.regions[0].selector["sphere"]
     half, radius = 0.5 * (high[2] - low[2]), sphere["radius"]
     n = (1, 2, 4)[level]
-    core, faces = 0.5 * radius, [(0, 1), (1, 1), (2, 1), (2, -1)]
-
-    def angular(s):
-        return np.tan(0.25 * np.pi * s)
-
-    blocks = [
-        box_block(
-            (0.0, 0.0, -core),
-            (core, core, core),
-            (n, n, 2 * n),
-            [angular, angular, lambda s: 0.5 * (1.0 + angular(2.0 * s - 1.0))],
-        )
-    ]
-    shells = cube_faces(core, n, faces)
-    blocks += [between(face, on_sphere(radius), n) for face in shells]
-    for face in cube_faces(half, n, faces):
-        onto = on_sphere(radius)
-        sphere_face = Block(lambda r, face=face: onto(face.map(r)), face.counts)
-        blocks.append(between(sphere_face, _to_cube(half), n))
+    faces = [(0, 1), (1, 1), (2, 1), (2, -1)]
+    core = 0.5 * radius * np.ones(3)
+    divisions = [equal_angles, equal_angles, both_ways(equal_angles)]
+    blocks = [box_block(core * (0.0, 0.0, -1.0), core, (n, n, 2 * n), divisions)]
+    outward, finer = on_sphere(radius), towards_end(0.4)
+    for axis, sign in faces:
+        inner = cube_face(core[0], n, axis, sign, equal_angles)
+        outer = cube_face(half, n, axis, sign, finer)
+        middle = Block(lambda r, face=inner: outward(face.map(r)), inner.counts)
+        blocks += [between(inner, middle.map, n), between(middle, outer.map, 2 * n, finer)]
     blocks = [moved(block, sphere["centre"]) for block in blocks]
-    family = "hexahedra in blocks around the ball"
+    family = "hexahedra in blocks around the ball, mildly graded towards the sides"
     symmetry = [(0, sphere["centre"][0]), (1, sphere["centre"][1])]
-    return CaseMesh(blocks, half / (2 * n), family, symmetry)
-
-
-def _to_cube(half: float) -> Callable:
-    """The point of the cube's surface [m] that lies above a position."""
-    return lambda X: half * X / np.abs(X).max(axis=1, keepdims=True)
+    return CaseMesh(blocks, half / (3 * n), family, symmetry)
 
 
 def _sphere_gravity(case: Case, level: int) -> CaseMesh:
@@ -165,13 +154,16 @@ def _sphere_gravity(case: Case, level: int) -> CaseMesh:
     patches = quarter_disc(n, n)
     blocks = extruded(patches, core * rim, (-core * height, core * height), 2 * n)
     outward = on_sphere(radius)
-    for sign in (-1.0, 1.0):
-        for patch, counts in patches:
-            blocks.append(between(_end(patch, counts, core * rim, sign * core * height), outward, n))
-    for swap in (False, True):
-        blocks.append(between(_wall(core * rim, core * height, n, swap), outward, n))
-    family = "hexahedra, O-grid in a cylinder and a layer around it; the cap's circle is a line of the mesh"
-    return CaseMesh(blocks, radius / (3 * n), family, [(0, 0.0), (1, 0.0)], 6)
+    surfaces = [
+        _end(patch, counts, core * rim, sign * core * height)
+        for sign in (-1.0, 1.0)
+        for patch, counts in patches
+    ]
+    surfaces += [_wall(core * rim, core * height, n, swap) for swap in (False, True)]
+    for surface in surfaces:
+        blocks.append(between(surface, lambda r, inner=surface: outward(inner.map(r)), n))
+    family = "hexahedra, O-grid in a cylinder, a layer around it, the cap's circle a line of the mesh"
+    return CaseMesh(blocks, radius / (3 * n), family, [(0, 0.0), (1, 0.0)], 3)
 
 
 def _end(patch, counts, scale: float, z: float) -> Block:
@@ -225,9 +217,9 @@ MESHES: dict[str, Callable[[Case, int], CaseMesh]] = {
     "uniaxial_bar": _uniaxial_bar,
     "cube_compression": _bonded_cube("xy", (4, 6, 9), 0.4),
     "cube_shear": _bonded_cube("y", (4, 6, 9), 0.4),
-    "bonded_block": _bonded_cube("xy", (4, 6, 9), 0.4),
-    "brain_cube_compression": _bonded_cube("xy", (4, 6, 9), 0.4),
-    "brain_cube_shear": _bonded_cube("y", (4, 6, 9), 0.4),
+    "bonded_block": _bonded_cube("xy", (4, 6, 9), 0.4, 4),
+    "brain_cube_compression": _bonded_cube("xy", (4, 6, 9), 0.4, 4),
+    "brain_cube_shear": _bonded_cube("y", (4, 6, 9), 0.4, 3),
     "falling_beam": _falling_beam,
     "twisted_cylinder": _twisted_cylinder,
     "indented_block": _indented_block,

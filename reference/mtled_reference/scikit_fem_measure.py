@@ -7,7 +7,7 @@ from .measure import Measurements, in_space, resultant
 from .scikit_fem_model import Model
 from .scikit_fem_symmetry import folded, folded_mean, images
 
-CANDIDATES = 24
+CANDIDATES = 12
 """Elements, nearest by their centres, in which a point is sought."""
 
 OVERSHOOT = 0.02
@@ -101,6 +101,8 @@ def _inverse_map(model: Model, elements, wanted) -> tuple[np.ndarray, np.ndarray
         jacobian = np.einsum("pai,pad->pdi", slopes, corners)
         step = np.linalg.solve(jacobian, gap[..., None])[..., 0]
         reference = np.clip(reference + step, -1.0, 2.0)
+        if np.abs(step).max() < 1e-12:
+            break
     return reference, _shapes(model, reference)[0]
 
 

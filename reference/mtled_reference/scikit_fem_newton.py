@@ -14,10 +14,14 @@ try:
 except ImportError:
     pypardiso = None
 
-RESIDUAL = 1e-9
+RESIDUAL = 1e-10
 """Newton has converged at this residual over the forces at work [–]."""
 
-MAX_ITERATIONS = 14
+MAX_ITERATIONS = 20
+
+KEEP = 0.02
+"""A matrix is kept after an iteration that reduced the residual to this part [–]."""
+
 SMALLEST_STEP = 1.0 / 512.0
 """Of the load; a smaller step means failure."""
 
@@ -98,25 +102,33 @@ def solve_static(
 
 
 def _equilibrium(model, start, prescribed, loads, factors) -> tuple[np.ndarray, int]:
-    """Newton from `start`; the first step carries the change of the supports."""
-    u = start.copy()
+    """Newton from `start`; the first iteration carries the change of the supports.
+
+    A matrix is kept where the last iteration reduced the residual well.
+    """
     free = model.free
-    along = np.where(model.fixed, prescribed - u, 0.0)
-    for iteration in range(MAX_ITERATIONS):
-        _, internal, tangent, product = model.internal(u, True, along if iteration == 0 else None)
+    along = np.where(model.fixed, prescribed - start, 0.0)
+    _, internal, tangent, product = model.internal(start, True, along)
+    factors.factorise(tangent)
+    u = start + along - _solved(model, factors, internal - loads + product)
+    previous = np.inf
+    for iteration in range(1, MAX_ITERATIONS):
+        _, internal = model.internal(u)
         residual = internal - loads
-        if iteration > 0 and is_converged(residual, free, internal):
+        norm = float(np.linalg.norm(residual.ravel()[free]))
+        if not np.isfinite(norm):
+            raise NotConverged("the residual is not finite")
+        if norm <= RESIDUAL * np.linalg.norm(internal):
             return u, iteration
-        factors.factorise(tangent)
-        change = np.zeros(u.size)
-        change[free] = -factors.solve((residual + product).ravel()[free])
-        u = u + change.reshape(u.shape) + (along if iteration == 0 else 0.0)
-        if not np.all(np.isfinite(u)):
-            raise NotConverged("displacements are not finite")
+        if norm > KEEP * previous or iteration == 1:
+            factors.factorise(model.internal(u, True)[2])
+        previous = norm
+        u = u - _solved(model, factors, residual)
     raise NotConverged(f"residual too large after {MAX_ITERATIONS} iterations")
 
 
-def is_converged(residual: np.ndarray, free: np.ndarray, internal: np.ndarray) -> bool:
-    """Whether the residual of the free unknowns is small beside the forces inside."""
-    size = np.linalg.norm(internal)
-    return float(np.linalg.norm(residual.ravel()[free])) <= RESIDUAL * size
+def _solved(model: Model, factors: Factorisation, forces: np.ndarray) -> np.ndarray:
+    """Displacements (n, d) by which the matrix balances forces on free unknowns."""
+    change = np.zeros(forces.size)
+    change[model.free] = factors.solve(forces.ravel()[model.free])
+    return change.reshape(forces.shape)
