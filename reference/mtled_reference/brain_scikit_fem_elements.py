@@ -27,9 +27,9 @@ class Block:
         self.dofs = basis.element_dofs.T
         self.weight = basis.dx * thickness
         shapes = [shape[0] for shape in basis.basis]
-        self.shape = np.stack([np.broadcast_to(s.value, self.weight.shape) for s in shapes], axis=-1)
+        self.shape = np.stack([np.broadcast_to(np.asarray(s), self.weight.shape) for s in shapes], axis=-1)
         self.node_weight = np.sum(self.shape * self.weight[..., None], axis=1)
-        self.point = basis.global_coordinates().value.transpose(1, 2, 0)
+        self.point = np.asarray(basis.global_coordinates()).transpose(1, 2, 0)
         self.slope = np.stack([s.grad for s in shapes], axis=-1).transpose(1, 2, 3, 0).copy()
         weighted = self.slope * self.weight[:, :, None, None]
         e, q, a, _ = weighted.shape
@@ -56,8 +56,6 @@ class Block:
         cof = F[..., ::-1, ::-1] * SIGN
         J = np.sum(F[..., 0, :] * cof[..., 0, :], axis=-1)
         if J.min() <= 0.0:
-            e, q = np.unravel_index(J.argmin(), J.shape)
-            print(self.material.name, self.point[e,q], J.min(), (J<=0).sum())
             raise FloatingPointError(f"{self.material.name}: an element is turned inside out")
         return F, cof, J, np.sum(F * F, axis=(2, 3)) + 1.0
 
