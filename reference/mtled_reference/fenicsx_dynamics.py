@@ -9,8 +9,11 @@ v_m = 2(u_m − u_n)/Δt.
 import numpy as np
 
 from . import fenicsx_versions as versions
-from .fenicsx_newton import ITERATIONS, RESIDUAL, NotConverged
+from .fenicsx_newton import ITERATIONS, NotConverged
 
+RESIDUAL = 1e-9
+"""Largest norm of the free residual, relative to the forces that act; rounding of
+the stiff internal forces is not far below."""
 SLOW = 0.15
 """Residuals that shrink less than this in an iteration ask for a new factorisation."""
 

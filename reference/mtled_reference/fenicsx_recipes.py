@@ -108,9 +108,9 @@ def _indented_block(case: Case, level: int) -> Recipe:
     _, _, high = _corners(case)
     disc = case.prescriptions[1].selector["intersection"][1]["sphere"]
     n = (1, 2, 4)[level]
-    around = towards_one(EDGE), towards_zero(EDGE)
+    around = towards_one(1.3), towards_zero(1.3)
     plane = core_and_shells(2, 0.4, disc["radius"], high[0], (n, n, 2 * n), around)
-    blocks = extruded(plane, 0.0, high[2], 2 * n, towards_one(EDGE))
+    blocks = extruded(plane, 0.0, high[2], 2 * n, towards_one(1.3))
     points, cells = mesh_of_blocks(blocks, "hexahedron")
     family = "hexahedra graded towards the disc's edge; a quarter of the block"
     mirrors = (Mirror(0, 0.0), Mirror(1, 0.0))
@@ -146,8 +146,8 @@ def _sphere_gravity(case: Case, level: int) -> Recipe:
     """A meridian section; the edge of the fixed cap is a point of the mesh."""
     radius = case.shape["sphere"]["radius"]
     height = case.prescriptions[0].selector["half_space"]["point"][2]
-    n = (8, 16, 32)[level]
-    blocks = half_disc(radius, np.arcsin(height / radius), (n, n), EDGE)
+    n = (4, 8, 16)[level]
+    blocks = half_disc(radius, np.arcsin(height / radius), (n, n), 1.0)
     points, cells = mesh_of_blocks(blocks, "quadrilateral")
     family = "curved quadrilaterals of a meridian section, graded towards the edge of the cap"
     return Recipe(
@@ -191,7 +191,7 @@ def _turek_hron(case: Case, level: int) -> Recipe:
     refinements = level + 1 if case.is_static else level
     points, cells = bar_triangles(corners, refinements)
     size = 0.5 * (corners[1, 1] - corners[0, 1]) / 2**refinements
-    step = 0.0 if case.is_static else recorded_times(case)[0] / (4 * 2**level)
+    step = 0.0 if case.is_static else recorded_times(case)[0] / (6 * 2**level)
     family = "triangles, each cut into four, finer at the arc"
     kinematics = _plane_strain(case)
     return Recipe("triangle", 1, points, cells, size, family, kinematics, time_step=step)

@@ -1,11 +1,12 @@
 """A case solved with FEniCSx (DOLFINx) on one of its meshes."""
 
+from . import fenicsx_dynamics, fenicsx_newton
 from . import fenicsx_versions as versions
 from .case import Case
 from .fenicsx_conditions import Conditions
 from .fenicsx_dynamics import Midpoint, solve_dynamic
 from .fenicsx_model import Model, Recipe
-from .fenicsx_newton import RESIDUAL, Newton, solve_static
+from .fenicsx_newton import Newton, solve_static
 from .fenicsx_recipes import recipe
 from .fenicsx_record import Recorder
 from .measure import recorded_times
@@ -42,6 +43,7 @@ def solve_mesh(case: Case, level: int, progress) -> dict:
 def _description(case: Case, model: Model, chosen: Recipe) -> dict:
     """Version, formulation, element and solver."""
     three = "three fields u, p, θ: ψ((θ/J)^(1/3) F) + p(J − θ)"
+    residual = (fenicsx_newton if case.is_static else fenicsx_dynamics).RESIDUAL
     simplex = chosen.cell in ("triangle", "tetrahedron")
     letter = "P2" if simplex else "Q2"
     about = {
@@ -49,7 +51,7 @@ def _description(case: Case, model: Model, chosen: Recipe) -> dict:
         "formulation": three if model.three_fields else "displacement",
         "element": f"{letter} / P1 discontinuous" if model.three_fields else letter,
         "mesh_family": chosen.family,
-        "solver": f"Newton, residual {RESIDUAL:.0e} of the forces, MUMPS",
+        "solver": f"Newton, residual {residual:.0e} of the forces, MUMPS",
         "packages": versions.packages(),
     }
     if not case.is_static:

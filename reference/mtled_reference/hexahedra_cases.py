@@ -186,12 +186,12 @@ def _wall(radius: float, half: float, n: int, swap: bool) -> Block:
 
 def _cook_membrane(case: Case, level: int) -> CaseMesh:
     a, b, c, d = case.shape["polygon"]["points"]
-    n = (8, 16, 32)[level]
+    n = (16, 32, 64)[level]
     block = quadrilateral((a, b, c, d), (n, n), (towards_both_ends(0.4), towards_both_ends(0.4)))
     return CaseMesh([block], 0.048 / n, "quadrilaterals, mildly graded towards the sides", [])
 
 
-def _turek_hron(time_steps=(0, 0, 0), n_of=(1, 2, 4)) -> Callable:
+def _turek_hron(n_of, time_steps=(0, 0, 0)) -> Callable:
     """The bar: a strip of quadrilaterals from each side of the clamped polyline."""
 
     def mesh(case: Case, level: int) -> CaseMesh:
@@ -226,8 +226,8 @@ MESHES: dict[str, Callable[[Case, int], CaseMesh]] = {
     "soft_inclusion": _soft_inclusion,
     "sphere_gravity": _sphere_gravity,
     "cook_membrane": _cook_membrane,
-    "turek_hron_csm1": _turek_hron(),
-    "turek_hron_csm2": _turek_hron(),
-    "turek_hron_csm3": _turek_hron((200, 400, 800)),
+    "turek_hron_csm1": _turek_hron((2, 4, 8)),
+    "turek_hron_csm2": _turek_hron((2, 4, 8)),
+    "turek_hron_csm3": _turek_hron((1, 2, 4), (200, 400, 800)),
 }
 """The mesh of each case, by its name."""

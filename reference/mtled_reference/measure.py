@@ -63,9 +63,13 @@ class Measurements:
         self.values.setdefault(key, []).append(rounded(numbers))
 
 
+NOTHING = 1e-30
+"""Numbers below this are written as 0: no quantity of a case is that small."""
+
+
 def rounded(numbers) -> list[float]:
     """A flat list of numbers with 9 significant digits; refuses what is not finite."""
     flat = np.ravel(np.asarray(numbers, dtype=float))
     if not np.all(np.isfinite(flat)):
         raise ValueError("a value is not finite")
-    return [float(f"{number:.9g}") + 0.0 for number in flat]
+    return [float(f"{number:.9g}") if abs(number) > NOTHING else 0.0 for number in flat]

@@ -28,14 +28,14 @@ def test_forces_and_stiffness_are_derivatives_of_the_energy(elements):
     x, y = elements.positions.T
     bent = np.column_stack([2.0 * x * y + 0.05 * y, 0.2 * x**2 - 0.05 * y])
     u = bent.ravel() + 1e-6 * random.normal(size=2 * len(x))
-    direction, step = 1e-4 * random.normal(size=len(u)), 1e-3
+    direction, step = 1e-4 * random.normal(size=len(u)), 1e-5
     for block in elements.blocks:
         local = direction.reshape(-1, 2)[block.dofs]
         rate = (block.energy(u + step * direction) - block.energy(u - step * direction)) / 2 / step
         assert np.sum(block.force(u) * local) == pytest.approx(rate, rel=1e-5)
         change = block.force(u + step * direction) - block.force(u - step * direction)
         tangent = np.einsum("eaibk,ebk->eai", block.stiffness(u), local)
-        assert np.abs(change / 2 / step - tangent).max() < 1e-3 * np.abs(tangent).max()
+        assert np.abs(change / 2 / step - tangent).max() < 1e-4 * np.abs(tangent).max()
 
 
 def test_mass_and_volume_are_those_of_the_body(elements):

@@ -100,6 +100,15 @@ def values_of(name: str, division: CaseMesh) -> dict:
     return values.values
 
 
+def test_the_slow_solver_gives_the_same(monkeypatch):
+    case = read_case(CASES / "uniaxial_bar.toml")
+    fast = solve_mesh(case, 0, silent)["mesh"]["values"]
+    monkeypatch.setattr("mtled_reference.scikit_fem_newton.pypardiso", None)
+    slow = solve_mesh(case, 0, silent)["mesh"]["values"]
+    for key, value in fast.items():
+        assert np.array(slow[key]) == pytest.approx(np.array(value), abs=1e-10), key
+
+
 @pytest.mark.parametrize("name", ["cube_compression", "bonded_block"])
 def test_a_quarter_stands_for_the_whole(name):
     from mtled_reference.hexahedra import box_block
