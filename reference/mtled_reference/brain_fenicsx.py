@@ -18,7 +18,7 @@ from .brain_triangles import Sizes, Triangles, triangulate
 from .case import Case
 from .materials import strain_energy
 
-COARSEST = Sizes(far=0.018, outline=0.0065, border=0.006, end=0.0035)
+COARSEST = Sizes(far=0.02, outline=0.005, border=0.006, end=0.0035, growth=0.4)
 """Sizes of the triangles [m]."""
 RATIO = 1.5
 DEGREE = 3

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-ARC_SMOOTHING = 0.0015
-"""Standard deviation of the smoothing along the arc [m]."""
 KNOT_SPACING = 0.001
 """Distance of the points a spline passes through [m]."""
 
@@ -39,10 +37,15 @@ def area(points: np.ndarray) -> float:
     return 0.5 * float(np.sum(points[:, 0] * following[:, 1] - following[:, 0] * points[:, 1]))
 
 
-def curves_around(distance: np.ndarray, axes, smallest: float = 1e-5) -> list[Curve]:
-    """Curves around the parts below zero that are larger than `smallest` [m²]."""
-    polygons = [p for p in level_polygons(distance, axes) if abs(area(p)) > smallest]
-    return [smooth_curve(polygon) for polygon in polygons]
+SMALLEST = 1e-5
+"""Parts of less area [m²] are left out."""
+
+
+def curves_around(distance: np.ndarray, axes, smoothing: float) -> list[Curve]:
+    """Curves around the parts below zero, smoothed along the arc with a standard
+    deviation of `smoothing` [m]."""
+    polygons = [p for p in level_polygons(distance, axes) if abs(area(p)) > SMALLEST]
+    return [smooth_curve(polygon, smoothing) for polygon in polygons]
 
 
 def level_polygons(values: np.ndarray, axes) -> list[np.ndarray]:
@@ -85,11 +88,11 @@ def _chains(following: dict, crossing: dict) -> list[np.ndarray]:
     return polygons
 
 
-def smooth_curve(polygon: np.ndarray) -> Curve:
+def smooth_curve(polygon: np.ndarray, smoothing: float) -> Curve:
     """A spline near the polygon with its area."""
     points, spacing = _evenly(polygon, KNOT_SPACING)
     frequency = 2.0 * np.pi * np.fft.fftfreq(len(points), spacing)
-    damping = np.exp(-0.5 * (frequency * ARC_SMOOTHING) ** 2)[:, None]
+    damping = np.exp(-0.5 * (frequency * smoothing) ** 2)[:, None]
     smooth = np.fft.ifft(np.fft.fft(points, axis=0) * damping, axis=0).real
     for _ in range(3):
         tangent = np.roll(smooth, -1, axis=0) - np.roll(smooth, 1, axis=0)

@@ -15,7 +15,7 @@ from .brain_triangles import Sizes, triangulate
 from .case import Case
 from .scikit_fem_newton import Factorisation
 
-COARSEST = Sizes(far=0.022, outline=0.0085, border=0.0085, end=0.005)
+COARSEST = Sizes(far=0.022, outline=0.0065, border=0.0085, end=0.005, growth=0.4)
 """Sizes of the triangles [m]; the quadrilaterals are about half as wide."""
 RATIO = 1.5
 

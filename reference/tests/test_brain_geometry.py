@@ -28,7 +28,7 @@ def test_a_circle_is_followed_by_its_curve():
     axis = np.arange(-20, 21) * 1e-3
     x, y = np.meshgrid(axis, axis, indexing="ij")
     (polygon,) = level_polygons(np.hypot(x, y) - 0.015, (axis, axis))
-    curve = smooth_curve(polygon)
+    curve = smooth_curve(polygon, 0.0015)
     points = curve.polygon(2e-4)
     assert area(points) == pytest.approx(np.pi * 0.015**2, rel=2e-3)
     assert np.abs(np.hypot(*points.T) - 0.015).max() < 1e-4
