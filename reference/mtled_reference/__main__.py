@@ -80,13 +80,12 @@ def _all(options) -> None:
     from .regenerate import regenerate
 
     interpreters = {code: getattr(options, f"{code.replace('-', '_')}_python") for code in CODES}
-    regenerate(
-        sorted(path for path in options.cases.glob("*.toml") if not options.only or path.stem in options.only),
-        options.codes or list(CODES),
-        interpreters,
-        options.data,
-        options.jobs,
-    )
+    paths = sorted(options.cases.glob("*.toml"))
+    unknown = set(options.only or []) - {path.stem for path in paths}
+    if unknown:
+        raise ValueError(f"no case {', '.join(sorted(unknown))} in {options.cases}")
+    chosen = [path for path in paths if not options.only or path.stem in options.only]
+    regenerate(chosen, options.codes or list(CODES), interpreters, options.data, options.jobs)
 
 
 if __name__ == "__main__":

@@ -42,6 +42,9 @@ class CaseMesh:
     load_steps: int = 2
     time_steps: int = 0
     """Of a dynamic case, over the whole time."""
+    from_coarser: bool = True
+    """Whether Newton starts from the solution of the level below. That of bonded
+    edges under pressure turns the finer elements there inside out."""
 
 
 def case_mesh(case: Case, level: int) -> CaseMesh:
@@ -58,27 +61,27 @@ def _uniaxial_bar(case: Case, level: int) -> CaseMesh:
     return CaseMesh([block], (high[1] - low[1]) / n, "hexahedra, even", [])
 
 
-def _bonded_cube(planes: str, ratio_counts, strength: float, load_steps: int = 2) -> Callable:
+def _bonded_cube(planes: str, load_steps: int = 2, from_coarser: bool = True) -> Callable:
     """A cube between two bonded plates, halved along the axes named in `planes`."""
 
     def mesh(case: Case, level: int) -> CaseMesh:
         low, high = bounding_box(case.shape)
-        half = ratio_counts[level]
+        half = (4, 6, 9)[level]
         middle = 0.5 * (low + high)
         counts, divisions = [], []
         for axis, name in enumerate("xyz"):
             if name in planes:
                 low[axis] = middle[axis]
                 counts.append(half)
-                divisions.append(towards_end(strength))
+                divisions.append(towards_end(0.4))
             else:
                 counts.append(2 * half)
-                divisions.append(towards_both_ends(strength))
+                divisions.append(towards_both_ends(0.4))
         block = box_block(low, high, counts, divisions)
         size = (high[2] - low[2]) / (2 * half)
         family = "hexahedra, mildly graded towards the edges"
         symmetry = [(axis, middle[axis]) for axis, name in enumerate("xyz") if name in planes]
-        return CaseMesh([block], size, family, symmetry, load_steps)
+        return CaseMesh([block], size, family, symmetry, load_steps, 0, from_coarser)
 
     return mesh
 
@@ -119,7 +122,8 @@ def _indented_block(case: Case, level: int) -> CaseMesh:
     patches = quarter_disc(n, n) + [(beyond, (2 * n, n)), (mirrored(beyond), (2 * n, n))]
     blocks = extruded(patches, radius, (low[2], high[2]), 3 * n, towards_end(0.4))
     family = "hexahedra, O-grid in the disc and around it, mildly graded towards the top"
-    return CaseMesh(blocks, 0.5 * radius / n, family, [(0, 0.0), (1, 0.0)])
+    symmetry = [(0, 0.0), (1, 0.0)]
+    return CaseMesh(blocks, 0.5 * radius / n, family, symmetry, from_coarser=False)
 
 
 def _soft_inclusion(case: Case, level: int) -> CaseMesh:
@@ -161,8 +165,9 @@ def _sphere_gravity(case: Case, level: int) -> CaseMesh:
     ]
     surfaces += [_wall(core * rim, core * height, n, swap) for swap in (False, True)]
     for surface in surfaces:
-        blocks.append(between(surface, lambda r, inner=surface: outward(inner.map(r)), n))
-    family = "hexahedra, O-grid in a cylinder, a layer around it, the cap's circle a line of the mesh"
+        sphere = Block(lambda r, inner=surface: outward(inner.map(r)), surface.counts)
+        blocks.append(between(surface, sphere.map, 2 * n, towards_end(0.4)))
+    family = "hexahedra, O-grid in a cylinder and a layer around it, cap's edge a mesh line"
     return CaseMesh(blocks, radius / (3 * n), family, [(0, 0.0), (1, 0.0)], 3)
 
 
@@ -215,11 +220,11 @@ def _turek_hron(n_of, time_steps=(0, 0, 0)) -> Callable:
 
 MESHES: dict[str, Callable[[Case, int], CaseMesh]] = {
     "uniaxial_bar": _uniaxial_bar,
-    "cube_compression": _bonded_cube("xy", (4, 6, 9), 0.4),
-    "cube_shear": _bonded_cube("y", (4, 6, 9), 0.4),
-    "bonded_block": _bonded_cube("xy", (4, 6, 9), 0.4, 4),
-    "brain_cube_compression": _bonded_cube("xy", (4, 6, 9), 0.4, 4),
-    "brain_cube_shear": _bonded_cube("y", (4, 6, 9), 0.4, 3),
+    "cube_compression": _bonded_cube("xy"),
+    "cube_shear": _bonded_cube("y"),
+    "bonded_block": _bonded_cube("xy", 5, False),
+    "brain_cube_compression": _bonded_cube("xy", 5, False),
+    "brain_cube_shear": _bonded_cube("y", 3, False),
     "falling_beam": _falling_beam,
     "twisted_cylinder": _twisted_cylinder,
     "indented_block": _indented_block,

@@ -30,7 +30,7 @@ def merged(case: Case, contents: list[dict]) -> dict:
     wanted = problem_hash(case.document, case.folder)
     for content in contents:
         if content["problem_hash"] != wanted:
-            raise ValueError(f"a solution of {content['case']} belongs to another state of the case")
+            raise ValueError(f"a solution of {content['case']} belongs to another problem")
         if content["times_s"] != times:
             raise ValueError(f"the solutions of {case.name} are not given at the same instants")
         for solution in content["solutions"]:

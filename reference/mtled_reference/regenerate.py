@@ -28,7 +28,8 @@ def regenerate(
             for code in codes
         ]
         runs = [
-            pool.submit(_solve, path, code, out, interpreters.get(code)) for path, code, out in tasks
+            pool.submit(_solve, path, code, out, interpreters.get(code))
+            for path, code, out in tasks
         ]
         for (path, code, out), run in zip(tasks, runs):
             if run.result() != 0:
@@ -64,7 +65,8 @@ def _rows(case: str, solutions: list[dict]) -> list[dict]:
 
 
 def _print_table(rows: list[dict]) -> None:
-    print(f"{'case':24}{'code':12}{'mesh':>5}{'elements':>10}{'unknowns':>10}{'CPU s':>9}{'MB':>7}")
+    heading = f"{'case':24}{'code':12}{'mesh':>5}{'elements':>10}{'unknowns':>10}"
+    print(heading + f"{'CPU s':>9}{'MB':>7}")
     for row in rows:
         print(
             f"{row['case']:24}{row['code']:12}{row['level']:5}{row['elements']:10}"

@@ -130,7 +130,8 @@ class _Kinematics:
         return A
 
     def _second_of_second(self, d: int, same: np.ndarray) -> np.ndarray:
-        """∂²II/∂F∂F = 2 (2 F_ki F_lj + I δ_kl δ_ij − δ_kl C_ji − F_kj F_li − b_kl δ_ij)."""
+        """∂²II/∂F∂F = 2 (2 F_ki F_lj + I δ_kl δ_ij − δ_kl C_ji − F_kj F_li − b_kl δ_ij),
+        b = F Fᵀ."""
         F, C, identity = self.F[..., :d, :d], self.C[..., :d, :d], np.eye(d)
         b = np.matmul(self.F, self.F.swapaxes(-1, -2))[..., :d, :d]
         result = 2.0 * np.einsum("eqki,eqlj->eqkilj", F, F)

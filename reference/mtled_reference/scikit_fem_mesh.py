@@ -43,24 +43,57 @@ def mesh_of_blocks(blocks: list[Block]) -> skfem.Mesh:
     return quadratic(doflocs, curved.t)
 
 
+def carried_over(
+    coarse: list[Block], fine: list[Block], bases: tuple, values: np.ndarray
+) -> np.ndarray:
+    """Nodal values (n, k) on the mesh of coarse blocks, interpolated at the nodes of
+    the same blocks divided more finely; `bases` are of the two meshes."""
+    below, above = bases
+    element = below.elem
+    carried = np.zeros((above.element_dofs.max() + 1, values.shape[1]))
+    first_coarse = first_fine = 0
+    for old, new in zip(coarse, fine):
+        counts = np.array(old.counts)
+        reference = _references(new, element.doflocs)
+        cells = np.minimum((reference * counts).astype(int), counts - 1)
+        local = (reference * counts - cells).reshape(-1, len(counts))
+        if _is_left_handed(old, element.doflocs):
+            local[:, 0] = 1.0 - local[:, 0]
+        elements = first_coarse + np.ravel_multi_index(tuple(np.moveaxis(cells, -1, 0)), old.counts)
+        nodes = below.element_dofs[:, elements.ravel()]
+        shapes = np.stack([element.lbasis(local.T, i)[0] for i in range(below.Nbfun)])
+        targets = above.element_dofs.T[first_fine : first_fine + len(reference)]
+        carried[targets.ravel()] = np.einsum("ap,apk->pk", shapes, values[nodes])
+        first_coarse += int(np.prod(old.counts))
+        first_fine += len(reference)
+    return carried
+
+
 def _element_nodes(block: Block, local: np.ndarray) -> np.ndarray:
     """Positions (e, a, d) of the nodes of the elements of a block."""
-    counts = np.array(block.counts)
-    cells = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1)
-    cells = cells.reshape(-1, len(counts))
-    reference = (cells[:, None] + local[None]) / counts
-    positions = block.map(reference.reshape(-1, len(counts))).reshape(reference.shape)
-    corners = positions[:, : 2 ** len(counts)]
-    if _handedness(corners, local[: 2 ** len(counts)]) < 0.0:
-        flipped = local.copy()
-        flipped[:, 0] = 1.0 - flipped[:, 0]
-        reference = (cells[:, None] + flipped[None]) / counts
-        positions = block.map(reference.reshape(-1, len(counts))).reshape(reference.shape)
-    return positions
+    reference = _references(block, local)
+    return block.map(reference.reshape(-1, reference.shape[2])).reshape(reference.shape)
 
 
-def _handedness(corners: np.ndarray, local: np.ndarray) -> float:
-    """Sign of the determinant of the mean gradient of the first element."""
-    centred = local - local.mean(axis=0)
-    gradient = np.linalg.lstsq(centred, corners[0] - corners[0].mean(axis=0), rcond=None)[0]
-    return float(np.sign(np.linalg.det(gradient)))
+def _references(block: Block, local: np.ndarray) -> np.ndarray:
+    """Reference coordinates (e, a, d) in the block of the nodes of its elements,
+    which are numbered so that their volumes are positive."""
+    if _is_left_handed(block, local):
+        local = local.copy()
+        local[:, 0] = 1.0 - local[:, 0]
+    return (_cells(block)[:, None] + local[None]) / np.array(block.counts)
+
+
+def _cells(block: Block) -> np.ndarray:
+    """Indices (e, d) of the elements of a block."""
+    cells = np.stack(np.meshgrid(*map(np.arange, block.counts), indexing="ij"), axis=-1)
+    return cells.reshape(-1, len(block.counts))
+
+
+def _is_left_handed(block: Block, local: np.ndarray) -> bool:
+    """Whether the map turns the reference block inside out."""
+    corners = local[: 2 ** len(block.counts)]
+    centred = corners - corners.mean(axis=0)
+    positions = block.map(corners / np.array(block.counts))
+    gradient = np.linalg.lstsq(centred, positions - positions.mean(axis=0), rcond=None)[0]
+    return bool(np.linalg.det(gradient) < 0.0)

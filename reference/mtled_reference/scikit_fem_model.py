@@ -80,11 +80,12 @@ class Model:
 
     def _mass(self, region: int) -> sparse.csr_matrix:
         """Consistent mass ∫ ρ N_a N_b dV of a region [kg], one component."""
-        shapes = np.stack([np.broadcast_to(b[0], self.basis.dx.shape) for b in self.basis.basis])
         mine = self.owners == region
+        whole = [np.broadcast_to(b[0], self.basis.dx.shape) for b in self.basis.basis]
+        shapes = np.stack(whole)[:, mine]
         density = self.case.regions[region].material.density
         weights = density * self.case.thickness * self.basis.dx[mine]
-        blocks = np.einsum("aeq,eq,beq->eab", shapes[:, mine], weights, shapes[:, mine], optimize=True)
+        blocks = np.einsum("aeq,eq,beq->eab", shapes, weights, shapes, optimize=True)
         nodes = self.basis.element_dofs.T[mine]
         rows = np.repeat(nodes[:, :, None], nodes.shape[1], axis=2)
         columns = rows.swapaxes(1, 2)
@@ -100,7 +101,8 @@ class Model:
         """Boundary facets off the symmetry planes, and the nodes on each (n, k)."""
         mesh, basis = self.mesh, self.basis
         facets = mesh.boundary_facets()
-        nodes = [basis.nodal_dofs[0, mesh.facets[:, facets]].T, basis.facet_dofs[0, facets][:, None]]
+        corners = basis.nodal_dofs[0, mesh.facets[:, facets]].T
+        nodes = [corners, basis.facet_dofs[0, facets][:, None]]
         if self.d == 3:
             nodes.append(basis.edge_dofs[0, mesh.f2e[:, facets]].T)
         nodes = np.concatenate(nodes, axis=1)

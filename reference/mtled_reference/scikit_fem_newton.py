@@ -80,15 +80,27 @@ class StaticSolution:
 
 
 def solve_static(
-    model: Model, steps: int, progress: Callable[[float, str], None], factors: Factorisation
+    model: Model,
+    steps: int,
+    progress: Callable[[float, str], None],
+    factors: Factorisation,
+    guess: np.ndarray | None = None,
 ) -> StaticSolution:
-    """Equilibrium at the end of loading, reached in proportional load steps; a
-    step that fails is halved."""
+    """Equilibrium at the end of loading: from a guess (n, d) [m] if that leads to
+    it, otherwise in proportional load steps; a step that fails is halved."""
     end = model.case.time.load_end
     full = model.prescribed(lambda amplitude: amplitude(end))
     loads = model.loads(lambda amplitude: amplitude(end))
     u, load, step = np.zeros_like(full), 0.0, 1.0 / steps
     taken = iterations = 0
+    if guess is not None:
+        progress(0.0, "from the solution of a coarser mesh")
+        try:
+            start = np.where(model.fixed, full, guess)
+            u, iterations = _equilibrium(model, start, full, loads, factors)
+            load, taken = 1.0, 1
+        except (NotConverged, FloatingPointError):
+            progress(0.0, "with load steps, since the coarser mesh is no help")
     while load < 1.0 - 1e-12:
         target = min(1.0, load + step)
         progress(load, f"load {target:.3f}")

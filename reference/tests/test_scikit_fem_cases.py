@@ -12,7 +12,7 @@ from mtled_reference.hexahedra_cases import MESHES, CaseMesh, case_mesh
 from mtled_reference.measure import Measurements
 from mtled_reference.scikit_fem_dynamics import solve_dynamic
 from mtled_reference.scikit_fem_measure import Observer
-from mtled_reference.scikit_fem_mesh import mesh_of_blocks
+from mtled_reference.scikit_fem_mesh import Block, carried_over, mesh_of_blocks
 from mtled_reference.scikit_fem_model import Model
 from mtled_reference.scikit_fem_newton import Factorisation, solve_static
 from mtled_reference.scikit_fem_solve import solve_mesh
@@ -98,6 +98,26 @@ def values_of(name: str, division: CaseMesh) -> dict:
     values = Measurements()
     Observer(model).record(values, solved.displacements, solved.reactions, solved.strain_energy)
     return values.values
+
+
+def test_a_quadratic_field_is_carried_to_a_finer_mesh():
+    stretch = np.array([[1.0, 0.3, 0.0], [0.0, 0.8, 0.1], [0.2, 0.0, -1.2]])  # left-handed
+
+    def blocks(n: int) -> list[Block]:
+        return [
+            Block(lambda r: r @ stretch.T, (n, 2 * n, n)),
+            Block(lambda r: (r * [-1.0, 1.0, 1.0]) @ stretch.T, (n, 2 * n, n)),
+        ]
+
+    coarse, fine = blocks(2), blocks(3)
+    bases = [
+        skfem.CellBasis(mesh, mesh.elem(), intorder=2)
+        for mesh in (mesh_of_blocks(coarse), mesh_of_blocks(fine))
+    ]
+    places = [basis.doflocs for basis in bases]
+    fields = [np.stack([x**2 + y * z, x - 3.0 * z * y], axis=1) for x, y, z in places]
+    carried = carried_over(coarse, fine, tuple(bases), fields[0])
+    assert carried == pytest.approx(fields[1], abs=1e-12)
 
 
 def test_the_slow_solver_gives_the_same(monkeypatch):

@@ -110,7 +110,8 @@ def test_merging_keeps_the_other_code(tmp_path):
 
     merge_into(case, tmp_path, [solution("fenicsx", 1.0), solution("scikit-fem", 2.0)])
     path = merge_into(case, tmp_path, [solution("fenicsx", 3.0)])
-    stored = {s["code"]: s["meshes"][0]["values"] for s in json.loads(path.read_text())["solutions"]}
+    solutions = json.loads(path.read_text())["solutions"]
+    stored = {s["code"]: s["meshes"][0]["values"] for s in solutions}
     assert stored["fenicsx"]["strain_energy"] == [[3.0]]
     assert stored["scikit-fem"]["strain_energy"] == [[2.0]]
 
