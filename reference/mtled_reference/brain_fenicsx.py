@@ -56,7 +56,7 @@ class Elements:
         self.region = triangles.region[cKDTree(middles).query(centres)[1]]
         self._make_forms(case)
         self._measure(case)
-        self.solvers = {}
+        self.made = []
 
     def _make_forms(self, case: Case) -> None:
         """∫ Σ χ_r ψ_r dV over the regions r, with χ_r = 1 in the cells of r."""
@@ -120,7 +120,9 @@ class Elements:
         return float(fem.assemble_scalar(self.energy_form))
 
     def factorised(self, matrix: sp.csr_matrix):
-        """What solves with a matrix: LU by MUMPS."""
+        """What solves with a matrix: LU by MUMPS. The factors before are given back."""
+        for made in self.made:
+            made.destroy()
         matrix.sort_indices()
         petsc = PETSc.Mat().createAIJ(
             matrix.shape, csr=(matrix.indptr, matrix.indices, matrix.data), comm=PETSc.COMM_SELF
@@ -131,13 +133,15 @@ class Elements:
         solver.getPC().setFactorSolverType("mumps")
         solver.setOperators(petsc)
         solver.setUp()
+        self.made = [solver, petsc]
 
         def solve(right):
             b, x = petsc.createVecs()
             b.array[:] = right
             solver.solve(b, x)
             answer = x.array.copy()
-            b.destroy(), x.destroy()
+            b.destroy()
+            x.destroy()
             return answer
 
         return solve
