@@ -5,7 +5,8 @@ import numpy as np
 from .fenicsx_mesh_blocks import Block
 
 
-def _same(s):
+def even(s):
+    """Intervals of one length."""
     return s
 
 
@@ -69,19 +70,29 @@ def _direction(axis: int, across: np.ndarray) -> np.ndarray:
     return np.insert(np.tan(0.25 * np.pi * across), axis, 1.0, axis=1)
 
 
+def _sphere(axis: int, radius: float):
+    """The part of a circle or sphere that faces along an axis."""
+
+    def placed(s):
+        far = _direction(axis, s)
+        return radius * far / np.linalg.norm(far, axis=1, keepdims=True)
+
+    return placed
+
+
 def core_and_shells(
-    size: int, core: float, radius: float, outer: float, counts, gradings=(_same, _same)
+    size: int, core: float, radii: tuple, outer: float, counts, gradings
 ) -> list[Block]:
     """The part of a square or cube in the positive quadrant or octant, around its
-    origin: a core, shells to the circle or sphere of `radius` [m], and shells from
-    there to the faces at distance `outer` [m].
+    origin: a core, shells to the circles or spheres of `radii` [m] in turn, and shells
+    from the last one to the faces at distance `outer` [m].
 
-    `counts` are the cells across the core, across the inner and the outer shells.
-    `core` is the core's half width on an axis, relative to the radius; `gradings`
-    act from the core to the sphere and from there outwards.
+    `counts` are the cells across the core and across each shell, `gradings` act
+    outwards in each shell. `core` is the core's half width on an axis, relative to
+    the first radius.
     """
-    across, inside, outside = counts
-    width = core * radius
+    across = counts[0]
+    width = core * radii[0]
 
     def bulged(points):
         """The core's cube with its corners drawn in towards the sphere."""
@@ -98,16 +109,13 @@ def core_and_shells(
         def surface(s, axis=axis):
             return bulged(np.insert(s, axis, 1.0, axis=1))
 
-        def sphere(s, axis=axis):
-            far = _direction(axis, s)
-            return radius * far / np.linalg.norm(far, axis=1, keepdims=True)
-
         def face(s, axis=axis):
             return outer * _direction(axis, s)
 
-        shell = (across,) * (size - 1)
-        blocks.append(Block(_between(surface, sphere, gradings[0]), (inside, *shell)))
-        blocks.append(Block(_between(sphere, face, gradings[1]), (outside, *shell)))
+        surfaces = [surface, *(_sphere(axis, radius) for radius in radii), face]
+        for inner, outside, count, graded in zip(surfaces, surfaces[1:], counts[1:], gradings):
+            cells = (count, *(across,) * (size - 1))
+            blocks.append(Block(_between(inner, outside, graded), cells))
     return blocks
 
 

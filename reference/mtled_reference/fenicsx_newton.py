@@ -11,6 +11,7 @@ CORRECTION = 1e-7
 """Largest last correction, relative to the largest unknown; the one after it would
 be of the order of its square."""
 ITERATIONS = 25
+HALVINGS = 6
 
 
 class NotConverged(RuntimeError):
@@ -50,10 +51,8 @@ class Newton:
         free = np.ones(len(unknown), dtype=bool)
         free[places] = False
         correction = np.inf
+        residual = self.internal_forces() - load
         for _ in range(ITERATIONS):
-            residual = self.internal_forces() - load
-            if not np.all(np.isfinite(residual)):
-                raise NotConverged("the residual is not finite")
             error = np.linalg.norm(residual[free])
             scale = max(np.linalg.norm(residual[~free]), np.linalg.norm(load))
             held = np.abs(unknown[places] - values).max(initial=0.0)
@@ -64,10 +63,23 @@ class Newton:
             self._factorise(places, values - unknown[places], -residual)
             self.solver.solve(self.rhs, self.step)
             self._assert_solved()
-            unknown += self.step.array
-            correction = np.abs(self.step.array[self.model.fields]).max()
+            residual, share = self._advance(load)
+            correction = share * np.abs(self.step.array[self.model.fields]).max()
             self.iterations += 1
         raise NotConverged(f"residual {error:.1e} of {scale:.1e} after {ITERATIONS} iterations")
+
+    def _advance(self, load) -> tuple[np.ndarray, float]:
+        """Adds the step, or a part of it where the whole would turn a cell inside out
+        (the energy is then undefined); returns the residual and the part."""
+        unknown = self.model.unknown.x.array
+        start, share = unknown.copy(), 1.0
+        for _ in range(HALVINGS):
+            unknown[:] = start + share * self.step.array
+            residual = self.internal_forces() - load
+            if np.all(np.isfinite(residual)):
+                return residual, share
+            share *= 0.5
+        raise NotConverged("the residual is not finite")
 
     def _factorise(self, places, increments, rhs) -> None:
         versions.assemble_matrix(self.matrix, self.model.jacobian_form)

@@ -9,6 +9,7 @@ from .fenicsx_mesh_shapes import (
     bilinear,
     box,
     core_and_shells,
+    even,
     extruded,
     half_disc,
     towards_both,
@@ -104,12 +105,15 @@ def _falling_beam(case: Case, level: int) -> Recipe:
 
 
 def _indented_block(case: Case, level: int) -> Recipe:
-    """A quarter of the block; the disc's edge is a circle of the mesh."""
+    """A quarter of the block; the disc's edge and the circle through the point beside
+    it are circles of the mesh."""
     _, _, high = _corners(case)
     disc = case.prescriptions[1].selector["intersection"][1]["sphere"]
     n = (1, 2, 4)[level]
-    around = towards_one(1.3), towards_zero(1.3)
-    plane = core_and_shells(2, 0.4, disc["radius"], high[0], (n, n, 2 * n), around)
+    (beside,) = [p.positions[0] for p in case.probes if len(p.positions) == 1]
+    radii = disc["radius"], float(np.hypot(*beside[:2]))
+    gradings = towards_one(1.3), towards_zero(1.3), even
+    plane = core_and_shells(2, 0.4, radii, high[0], (n,) * 4, gradings)
     blocks = extruded(plane, 0.0, high[2], 2 * n, towards_one(1.3))
     points, cells = mesh_of_blocks(blocks, "hexahedron")
     family = "hexahedra graded towards the disc's edge; a quarter of the block"
@@ -123,7 +127,8 @@ def _soft_inclusion(case: Case, level: int) -> Recipe:
     _, centre, high = _corners(case)
     radius = case.regions[0].selector["sphere"]["radius"]
     n = (1, 2, 4)[level]
-    blocks = core_and_shells(3, 0.5, radius, high[0] - centre[0], (2 * n, n, 2 * n))
+    counts, gradings = (2 * n, n, 2 * n), (even, even)
+    blocks = core_and_shells(3, 0.5, (radius,), high[0] - centre[0], counts, gradings)
     points, cells = mesh_of_blocks(blocks, "tetrahedron")
     mirrors = (
         Mirror(0, centre[0]),
