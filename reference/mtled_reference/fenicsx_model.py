@@ -130,7 +130,8 @@ class Model:
         """Nodal forces (nodes, components) [N] of an acceleration [m/s²] on regions."""
         self.chosen.x.array[:] = 1.0 if regions is None else np.isin(self.owner, regions)
         self.direction.value[:] = direction
-        return versions.assemble_vector(self.mass_force_form).reshape(-1, self.kinematics.components)
+        forces = versions.assemble_vector(self.mass_force_form)
+        return forces.reshape(-1, self.kinematics.components)
 
     def u(self) -> np.ndarray:
         """The unknowns of the nodes (nodes, components)."""

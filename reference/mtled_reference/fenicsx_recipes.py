@@ -23,9 +23,8 @@ from .measure import recorded_times
 from .selection import bounding_box
 
 
-EDGE = 2.0
-"""Power of the grading towards an edge between held and free surface, where
-stresses grow like the inverse square root of the distance."""
+CORNER = 2.0
+"""Power of the grading towards a clamped corner, where stresses are singular."""
 
 
 def recipe(case: Case, level: int) -> Recipe:
@@ -148,13 +147,17 @@ def _soft_inclusion(case: Case, level: int) -> Recipe:
 
 
 def _sphere_gravity(case: Case, level: int) -> Recipe:
-    """A meridian section; the edge of the fixed cap is a point of the mesh."""
+    """A meridian section; the edge of the fixed cap is a point of the mesh.
+
+    Above that edge the free surface folds over the fixed one, the deeper the finer
+    the cells there. So the cells are not graded: a finer edge does not converge.
+    """
     radius = case.shape["sphere"]["radius"]
     height = case.prescriptions[0].selector["half_space"]["point"][2]
     n = (4, 8, 16)[level]
     blocks = half_disc(radius, np.arcsin(height / radius), (n, n), 1.0)
     points, cells = mesh_of_blocks(blocks, "quadrilateral")
-    family = "curved quadrilaterals of a meridian section, graded towards the edge of the cap"
+    family = "curved quadrilaterals of a meridian section, even along the fixed cap"
     return Recipe(
         "quadrilateral", 2, points, cells, radius / (2 * n), family, Axisymmetric(), load_steps=5
     )
@@ -184,7 +187,7 @@ def _plane_strain(case: Case) -> PlaneStrain:
 def _cook_membrane(case: Case, level: int) -> Recipe:
     corners = np.array(case.shape["polygon"]["points"])[[0, 1, 3, 2]]
     n = (12, 24, 48)[level]
-    gradings = [towards_zero(EDGE), towards_both(EDGE)]
+    gradings = [towards_zero(CORNER), towards_both(CORNER)]
     points, cells = mesh_of_blocks(bilinear(corners, (n, n), gradings), "triangle")
     size = (corners[1, 0] - corners[0, 0]) / n
     family = "triangles, two to a quadrilateral, graded towards the clamped corners"
