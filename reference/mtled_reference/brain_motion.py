@@ -121,7 +121,9 @@ class Motion:
             last = size
             change = np.zeros(len(u))
             change[free] = -self._inverse(residual[free])
-            u, forces = self._advanced(u, change, lambda u: self._forces(u, k, known_u, known_v, push))
+            u, forces = self._advanced(
+                u, change, lambda u: self._forces(u, k, known_u, known_v, push)
+            )
             self.iterations += 1
         raise RuntimeError(f"Newton's method does not end at {time:.4f} s, residual {size:.1e} N")
 

@@ -58,7 +58,7 @@ def solve_mesh(case: Case, level: int, progress) -> dict:
     result["mesh"] = {"size_m": 0.5 * sizes.far, "elements": quads.mesh.nelements} | result["mesh"]
     result["solution"] = {
         "version": skfem.__version__,
-        "formulation": "three fields u, p, θ: ψ((θ/J)^(1/3) F) + p(J − θ); ventricles displacement",
+        "formulation": "three fields u, p, θ: ψ((θ/J)^(1/3) F) + p(J − θ); ventricles u alone",
         "element": "Q2 / P1 discontinuous",
         "mesh_family": "three quadrilaterals per triangle, edges bent along the outline and the "
         "borders of the regions; finer there and at the ends of the craniotomy",

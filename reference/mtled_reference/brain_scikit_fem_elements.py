@@ -27,7 +27,8 @@ class Block:
         self.dofs = basis.element_dofs.T
         self.weight = basis.dx * thickness
         shapes = [shape[0] for shape in basis.basis]
-        self.shape = np.stack([np.broadcast_to(np.asarray(s), self.weight.shape) for s in shapes], axis=-1)
+        values = [np.broadcast_to(np.asarray(s), self.weight.shape) for s in shapes]
+        self.shape = np.stack(values, axis=-1)
         self.node_weight = np.sum(self.shape * self.weight[..., None], axis=1)
         self.point = np.asarray(basis.global_coordinates()).transpose(1, 2, 0)
         self.slope = np.stack([s.grad for s in shapes], axis=-1).transpose(1, 2, 3, 0).copy()
@@ -187,8 +188,8 @@ class QuadElements:
             self.shares.append(share)
             self.centres.append(moment / block.weight.sum())
         self.mass = sp.csr_matrix(sp.kron(self._mass(case), np.eye(2)))
-        dofs = [(2 * b.dofs[:, :, None] + np.arange(2)).reshape(len(b.dofs), -1) for b in self.blocks]
-        self.dofs = dofs
+        pairs = [2 * block.dofs[:, :, None] + np.arange(2) for block in self.blocks]
+        self.dofs = dofs = [pair.reshape(len(pair), -1) for pair in pairs]
         self.rows = np.concatenate([np.repeat(d, d.shape[1], axis=1).ravel() for d in dofs])
         self.columns = np.concatenate([np.tile(d, (1, d.shape[1])).ravel() for d in dofs])
 

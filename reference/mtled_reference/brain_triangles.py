@@ -191,7 +191,8 @@ def _middled(points, corners, fixed: int) -> np.ndarray:
 def _delaunay(points: np.ndarray, outline: np.ndarray) -> np.ndarray:
     """Anticlockwise triangles whose middle lies in the body."""
     corners = Delaunay(points).simplices
-    a, b = points[corners[:, 1]] - points[corners[:, 0]], points[corners[:, 2]] - points[corners[:, 0]]
+    first, second, third = points[corners].transpose(1, 0, 2)
+    a, b = second - first, third - first
     turned = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] < 0.0
     corners[turned] = corners[turned][:, ::-1]
     return corners[inside_polygon(points[corners].mean(axis=1), outline)]
