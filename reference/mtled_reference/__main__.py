@@ -1,6 +1,7 @@
 """Command line: solve a case with one code, merge solutions, regenerate all."""
 
 import argparse
+import signal
 import sys
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from .reference_file import merge_into
 def main(arguments: list[str] | None = None) -> int:
     """Runs a command; 0 on success, 2 with a message on stderr on failure."""
     options = _parser().parse_args(arguments)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that children end too
     try:
         options.run(options)
     except Exception as error:  # the boundary of the program: every failure is reported

@@ -23,8 +23,8 @@ stiff along and soft across."""
 
 MAX_ITERATIONS = 20
 
-KEEP = 0.02
-"""A matrix is kept after an iteration that reduced the residual to this part [–]."""
+KEEP = 1e-4
+"""From this residual on [–] a matrix is kept while it reduces the residual tenfold."""
 
 SMALLEST_STEP = 1.0 / 512.0
 """Of the load; a smaller step means failure."""
@@ -87,7 +87,8 @@ def solve_static(
     guess: np.ndarray | None = None,
 ) -> StaticSolution:
     """Equilibrium at the end of loading: from a guess (n, d) [m] if that leads to
-    it, otherwise in proportional load steps; a step that fails is halved."""
+    it, otherwise in proportional load steps. A step starts in the direction of the
+    last one, or if that fails from where it ended; if that fails it is halved."""
     end = model.case.time.load_end
     full = model.prescribed(lambda amplitude: amplitude(end))
     loads = model.loads(lambda amplitude: amplitude(end))
@@ -101,17 +102,23 @@ def solve_static(
             load, taken = 1.0, 1
         except (NotConverged, FloatingPointError):
             progress(0.0, "with load steps, since the coarser mesh is no help")
+    rate = np.zeros_like(full)
     while load < 1.0 - 1e-12:
         target = min(1.0, load + step)
         progress(load, f"load {target:.3f}")
+        foreseen = u + (target - load) * rate
         try:
-            u, used = _equilibrium(model, u, target * full, target * loads, factors)
+            found, used = _equilibrium(model, foreseen, target * full, target * loads, factors)
         except (NotConverged, FloatingPointError):
+            if np.any(rate):
+                rate = np.zeros_like(full)
+                continue
             step *= 0.5
             if step < SMALLEST_STEP:
                 raise NotConverged(f"no equilibrium beyond {load:.4f} of the load") from None
             continue
-        load, taken, iterations = target, taken + 1, iterations + used
+        rate = (found - u) / (target - load)
+        u, load, taken, iterations = found, target, taken + 1, iterations + used
     energy, internal = model.internal(u)
     progress(1.0, "solved")
     return StaticSolution(u, internal - loads, energy, taken, iterations)
@@ -120,7 +127,7 @@ def solve_static(
 def _equilibrium(model, start, prescribed, loads, factors) -> tuple[np.ndarray, int]:
     """Newton from `start`; the first iteration carries the change of the supports.
 
-    A matrix is kept where the last iteration reduced the residual well.
+    Near the end the matrix is kept: solving again is cheaper than a new one.
     """
     free = model.free
     along = np.where(model.fixed, prescribed - start, 0.0)
@@ -136,7 +143,7 @@ def _equilibrium(model, start, prescribed, loads, factors) -> tuple[np.ndarray, 
             raise NotConverged("the residual is not finite")
         if is_converged(norm, previous, float(np.linalg.norm(internal))):
             return u, iteration
-        if norm > KEEP * previous or iteration == 1:
+        if norm > KEEP * np.linalg.norm(internal) or norm > 0.1 * previous:
             factors.factorise(model.internal(u, True)[2])
         previous = norm
         u = u - _solved(model, factors, residual)

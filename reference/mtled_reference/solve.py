@@ -95,13 +95,23 @@ def _run_child(case_path: Path, code: str, level: int, out: Path, share) -> None
     command += ["--code", code, "--mesh", str(level), "--out", str(out)]
     start, length = share
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as child:
-        for line in child.stdout:
-            try:
-                report = json.loads(line)
-                report["progress"] = round(start + length * report["progress"], 4)
-            except (ValueError, KeyError, TypeError):
-                sys.stderr.write(line)
-                continue
-            print(json.dumps(report), flush=True)
+        try:
+            for line in child.stdout:
+                _pass_on(line, start, length)
+        except BaseException:
+            child.terminate()
+            raise
     if child.returncode != 0:
         raise RuntimeError(f"mesh {level} of {case_path.stem} was not solved by {code}")
+
+
+def _pass_on(line: str, start: float, length: float) -> None:
+    """Prints a child's report with its progress turned into that of the whole call;
+    lines that are no report go to stderr."""
+    try:
+        report = json.loads(line)
+        report["progress"] = round(start + length * report["progress"], 4)
+    except (ValueError, KeyError, TypeError):
+        sys.stderr.write(line)
+        return
+    print(json.dumps(report), flush=True)
