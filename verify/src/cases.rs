@@ -34,6 +34,19 @@ pub const CASES: &[(&str, &str)] = carried![
 /// (case, text) of every reference in `reference/data`.
 pub const REFERENCES: &[(&str, &str)] = carried![
     "data/", ".json":
+    "bonded_block",
+    "brain_slice",
+    "cook_membrane",
+    "cube_compression",
+    "falling_beam",
+    "indented_block",
+    "soft_inclusion",
+    "sphere_gravity",
+    "turek_hron_csm1",
+    "turek_hron_csm2",
+    "turek_hron_csm3",
+    "twisted_cylinder",
+    "uniaxial_bar",
 ];
 
 const SLICE: &[u8] = include_bytes!("../../reference/brain/slice.nrrd");

@@ -6,7 +6,9 @@ use crate::report::vtu::{PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::report::write_atomically;
 use crate::scene::Case;
 use anyhow::Result;
+use mtled::internal_force::projected_mean_stress;
 use mtled::problem::{Motion, Problem};
+use mtled::tensor::Matrix3;
 use std::path::Path;
 
 /// Writes everything of a run to `dir`.
@@ -47,7 +49,7 @@ fn write_frames(case: &Case, prepared: &Prepared, record: &Record, dir: &Path) -
 }
 
 /// Fields at the nodes: displacement of the field (not its parameters), and
-/// J and Cauchy stress averaged from the quadrature points around.
+/// J, Cauchy stress and pressure averaged from the quadrature points around.
 fn node_frame<'a>(
     problem: &Problem,
     prepared: &Prepared,
@@ -61,6 +63,7 @@ fn node_frame<'a>(
     let displacement: Vec<f64> =
         (0..rows.len()).flat_map(|i| <[f64; 3]>::from(rows.interpolate(i, u, d))).collect();
     let (jacobian, stress) = averaged(problem, prepared, u);
+    let pressure = stress.chunks(9).map(|s| -(s[0] + s[4] + s[8]) / 3.0).collect();
     Ok(VtuFrame {
         time,
         points,
@@ -68,11 +71,12 @@ fn node_frame<'a>(
             PointArray::new("displacement", 3, displacement),
             PointArray::new("J", 1, jacobian),
             PointArray::new("cauchy_stress", 9, stress),
+            PointArray::new("pressure", 1, pressure),
         ],
     })
 }
 
-/// J \[–\] and Cauchy stress by rows \[Pa\], averaged over the quadrature points
+/// J \[–\] and Cauchy stress by rows \[Pa\], its projected pressure included, averaged over the quadrature points
 /// that a node supports, weighted by their volume times φ where positive.
 fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let discretisation = &prepared.discretisation;
@@ -80,10 +84,11 @@ fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec
     let nodes = discretisation.cloud.positions.len();
     let (mut total, mut jacobian, mut stress) =
         (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; 9 * nodes]);
+    let projected = projected_mean_stress(&prepared.model, u);
     for point in 0..rows.len() {
         let F = rows.deformation_gradient(point, u, prepared.model.components);
         let law = &problem.regions[quadrature.regions[point] as usize].material.law;
-        let sigma = law.cauchy(&F);
+        let sigma = law.cauchy(&F) + Matrix3::from_diagonal_element(projected[point]);
         for entry in rows.row(point) {
             let node = rows.nodes[entry] as usize;
             let share = quadrature.weights[point] * rows.phi[entry].max(1e-6);
