@@ -35,9 +35,12 @@ pub const CASES: &[(&str, &str)] = carried![
 pub const REFERENCES: &[(&str, &str)] = carried![
     "data/", ".json":
     "bonded_block",
+    "brain_cube_compression",
+    "brain_cube_shear",
     "brain_slice",
     "cook_membrane",
     "cube_compression",
+    "cube_shear",
     "falling_beam",
     "indented_block",
     "soft_inclusion",

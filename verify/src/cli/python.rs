@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 /// How to get FEniCSx, told where it is not found.
 const FENICSX: &str =
     "no Python that imports dolfinx was found. Install FEniCSx in one of these ways:
-  Debian, Ubuntu:  apt-get install python3-dolfinx-real
+  Debian, Ubuntu:  apt-get install python3-dolfinx-real libopenblas0-serial
   conda-forge:     conda create -n fenicsx -c conda-forge fenics-dolfinx && conda activate fenicsx
   container:       docker run -ti -v \"$PWD\":/work -w /work dolfinx/dolfinx:stable";
 

@@ -3,8 +3,8 @@
 use super::case::{diagnose, load};
 use super::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
 use crate::run::{
-    Prepared, Record, Recorder, Solved, march_on, prepare, result_json, summary_text,
-    write_outputs, write_recorded,
+    Prepared, Record, Recorder, Solved, march_on, prepare, summary_text, write_outputs,
+    write_recorded,
 };
 use crate::scene::Case;
 use anyhow::Context;
@@ -91,9 +91,9 @@ fn finish(
     out: &Path,
     common: &Common,
 ) -> anyhow::Result<u8> {
-    write_outputs(case, solved, record, out)?;
+    let result = write_outputs(case, solved, record, out)?;
     match common.format {
-        Format::Json => print_data(&format!("{:#}\n", result_json(case, solved, record)))?,
+        Format::Json => print_data(&result)?,
         Format::Human if !common.quiet => {
             let summary = summary_text(case, solved, record);
             print_data(&format!("{summary}\n  results in {}\n", out.display()))?;

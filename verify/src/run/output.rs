@@ -11,11 +11,13 @@ use mtled::problem::{Motion, Problem};
 use mtled::tensor::Matrix3;
 use std::path::Path;
 
-/// Writes everything of a run to `dir`.
-pub fn write_outputs(case: &Case, solved: &Solved, record: &Record, dir: &Path) -> Result<()> {
+/// Writes everything of a run to `dir` and returns what stands in
+/// `result.json`.
+pub fn write_outputs(case: &Case, solved: &Solved, record: &Record, dir: &Path) -> Result<String> {
     write_recorded(case, &solved.prepared, record, dir)?;
     let text = serde_json::to_string_pretty(&result_json(case, solved, record))? + "\n";
-    write_atomically(&dir.join("result.json"), text.as_bytes())
+    write_atomically(&dir.join("result.json"), text.as_bytes())?;
+    Ok(text)
 }
 
 /// Writes what was recorded, which a failed run has too. A `result.json` of an

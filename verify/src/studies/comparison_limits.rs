@@ -14,33 +14,33 @@ pub struct Limits {
 }
 
 const ALL_WELL: &str = "";
-const LOCKING: &str = "the plain scheme locks at this Poisson's ratio";
-const SLENDER: &str =
-    "five nodes across the bar at the recipe; the study `benchmarks` has finer ones";
+const EDGES: &str = "bonded edges are singular, and nodes are few there at the recipe: finer clouds \
+                     come closer, slowly";
 const FOOT: &str = "the edge of the cap falls between nodes, and the ball is soft on its foot; \
                     the difference falls with the spacing";
+const SMALL: &str = "the axial force is small, of second order in the twist";
 const RINGING: &str = "the reaction of an undamped body rings with the scheme";
 
 const TABLE: &[(&str, Limits)] = &[
     (
         "bonded_block",
         Limits {
-            why: LOCKING,
-            rows: &[("displacement", 0.05), ("force", 0.18), ("strain_energy", 0.15)],
+            why: EDGES,
+            rows: &[("displacement", 0.03), ("force", 0.10), ("strain_energy", 0.08)],
         },
     ),
     (
         "brain_cube_compression",
         Limits {
-            why: LOCKING,
-            rows: &[("displacement", 0.05), ("force", 0.18), ("strain_energy", 0.15)],
+            why: EDGES,
+            rows: &[("displacement", 0.03), ("force", 0.10), ("strain_energy", 0.08)],
         },
     ),
     (
         "brain_cube_shear",
         Limits {
-            why: LOCKING,
-            rows: &[("displacement", 0.05), ("force", 0.08), ("strain_energy", 0.08)],
+            why: EDGES,
+            rows: &[("displacement", 0.03), ("force", 0.05), ("strain_energy", 0.05)],
         },
     ),
     ("brain_slice", Limits { why: ALL_WELL, rows: &[("centre_of_mass", WANTED)] }),
@@ -59,8 +59,8 @@ const TABLE: &[(&str, Limits)] = &[
     (
         "cube_compression",
         Limits {
-            why: ALL_WELL,
-            rows: &[("displacement", WANTED), ("force", WANTED), ("strain_energy", WANTED)],
+            why: EDGES,
+            rows: &[("displacement", WANTED), ("force", 0.025), ("strain_energy", WANTED)],
         },
     ),
     (
@@ -77,7 +77,7 @@ const TABLE: &[(&str, Limits)] = &[
             rows: &[
                 ("displacement", WANTED),
                 ("centre_of_mass", WANTED),
-                ("force", 0.05),
+                ("force", 0.03),
                 ("strain_energy", WANTED),
             ],
         },
@@ -85,8 +85,8 @@ const TABLE: &[(&str, Limits)] = &[
     (
         "indented_block",
         Limits {
-            why: LOCKING,
-            rows: &[("displacement", 0.05), ("force", 0.10), ("strain_energy", 0.10)],
+            why: EDGES,
+            rows: &[("displacement", 0.03), ("force", 0.10), ("strain_energy", 0.10)],
         },
     ),
     (
@@ -106,48 +106,48 @@ const TABLE: &[(&str, Limits)] = &[
         Limits {
             why: FOOT,
             rows: &[
-                ("displacement", 0.13),
-                ("centre_of_mass", 0.13),
+                ("displacement", 0.18),
+                ("centre_of_mass", 0.21),
                 ("force", WANTED),
-                ("strain_energy", 0.10),
+                ("strain_energy", 0.18),
             ],
         },
     ),
     (
         "turek_hron_csm1",
         Limits {
-            why: SLENDER,
+            why: ALL_WELL,
             rows: &[
-                ("displacement", 0.03),
+                ("displacement", WANTED),
                 ("force", WANTED),
                 ("moment", WANTED),
-                ("strain_energy", 0.03),
+                ("strain_energy", WANTED),
             ],
         },
     ),
     (
         "turek_hron_csm2",
         Limits {
-            why: SLENDER,
+            why: ALL_WELL,
             rows: &[
-                ("displacement", 0.03),
+                ("displacement", WANTED),
                 ("force", WANTED),
                 ("moment", WANTED),
-                ("strain_energy", 0.03),
+                ("strain_energy", WANTED),
             ],
         },
     ),
     (
         "turek_hron_csm3",
-        Limits { why: SLENDER, rows: &[("displacement", 0.03), ("strain_energy", 0.03)] },
+        Limits { why: ALL_WELL, rows: &[("displacement", WANTED), ("strain_energy", WANTED)] },
     ),
     (
         "twisted_cylinder",
         Limits {
-            why: ALL_WELL,
+            why: SMALL,
             rows: &[
                 ("displacement", WANTED),
-                ("force", WANTED),
+                ("force", 0.06),
                 ("moment", WANTED),
                 ("strain_energy", WANTED),
             ],
