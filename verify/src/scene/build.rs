@@ -150,7 +150,12 @@ pub fn build(
     let probes = builder.probes(format);
     let outputs = builder.outputs(&format.output);
     let problem_hash = problem_hash(document.text(), base_dir)
-        .inspect_err(|reason| builder.mistake("", reason))
+        // A file that is missing has been noted where it stands.
+        .inspect_err(|reason| {
+            if builder.mistakes.is_empty() {
+                builder.mistake("", reason);
+            }
+        })
         .unwrap_or_default();
     let Builder { mistakes, hash, .. } = builder;
     match problem {

@@ -1,0 +1,131 @@
+//! Consistent gradients and the projection of J.
+#![allow(non_snake_case)]
+
+mod common;
+
+use common::*;
+use mtled::discretisation::Discretisation;
+use mtled::geometry::Shape;
+use mtled::internal_force::{Workspace, internal_force, strain_energy};
+use mtled::model::Model;
+use mtled::problem::*;
+use mtled::tensor::{Matrix3, Vector3};
+
+fn consistent(mut problem: Problem, tolerance: f64) -> Discretisation {
+    problem.recipe.gradients = Gradients::Consistent { tolerance };
+    Discretisation::new(&problem).unwrap()
+}
+
+/// Largest Σ_q w_q Grad φ_a over interior nodes, whose φ is 0 on the boundary.
+fn largest_interior_sum(discretisation: &Discretisation) -> f64 {
+    let nodes = &discretisation.cloud;
+    let mut sums = vec![Vector3::zeros(); nodes.positions.len()];
+    for (q, weight) in discretisation.quadrature.weights.iter().enumerate() {
+        for entry in discretisation.supports.row(q) {
+            let node = discretisation.supports.nodes[entry] as usize;
+            sums[node] += *weight * discretisation.supports.grad_phi[entry];
+        }
+    }
+    let inside = |X: &Vector3| X.iter().all(|c| (c - 0.5 * EDGE).abs() < 0.2 * EDGE);
+    let deep = sums.iter().zip(&nodes.positions).filter(|(_, X)| inside(X));
+    deep.map(|(sum, _)| sum.norm()).fold(0.0, f64::max)
+}
+
+#[test]
+fn inside_the_body_the_sum_of_weighted_gradients_vanishes() {
+    let problem = jittered(cube(8), 0.3, 1);
+    let plain = largest_interior_sum(&Discretisation::new(&problem).unwrap());
+    let mended = largest_interior_sum(&consistent(problem, 1e-12));
+    assert!(plain > 1e-7, "{plain}");
+    assert!(mended < 1e-10 * plain, "{mended} after {plain}");
+}
+
+#[test]
+fn changed_gradients_still_differentiate_linear_fields() {
+    for problem in [jittered(cube(6), 0.4, 2), jittered(square(9), 0.4, 2)] {
+        let d = problem.dimension.components();
+        let discretisation = consistent(problem, 1e-3);
+        let rows = &discretisation.supports;
+        for q in 0..rows.len() {
+            let mut sum = Vector3::zeros();
+            let mut slope = Matrix3::zeros();
+            for entry in rows.row(q) {
+                let X = discretisation.cloud.positions[rows.nodes[entry] as usize];
+                sum += rows.grad_phi[entry];
+                slope +=
+                    (X - discretisation.quadrature.positions[q]) * rows.grad_phi[entry].transpose();
+            }
+            let mut identity = Matrix3::identity();
+            if d == 2 {
+                identity[(2, 2)] = 0.0;
+            }
+            assert!(sum.norm() < 1e-9, "{sum}");
+            assert!((slope - identity).norm() < 1e-12, "{slope}");
+        }
+    }
+}
+
+#[test]
+fn iterations_do_not_grow_with_the_number_of_nodes_nor_on_slender_bodies() {
+    let mut beam = cube(8);
+    beam.body = Shape::Box { min: Vector3::zeros(), max: Vector3::new(0.8, 0.05, 0.05) };
+    for (name, problem) in [
+        ("small", cube(6)),
+        ("large", cube(18)),
+        ("jittered", jittered(cube(12), 0.4, 3)),
+        ("beam", beam),
+    ] {
+        let correction = consistent(problem, 1e-3).correction.unwrap();
+        assert!(correction.residual <= 1e-3, "{name}: {correction:?}");
+        assert!(correction.iterations <= 20, "{name}: {correction:?}");
+    }
+}
+
+#[test]
+fn two_bodies_are_made_consistent_each_by_itself() {
+    let mut problem = cube(6);
+    let ball = |x: f64| Shape::Sphere { centre: Vector3::new(x, 0.0, 0.0), radius: 0.04 };
+    problem.body = Shape::Union(vec![ball(0.0), ball(0.3)]);
+    problem.recipe.cloud = Cloud::Regular { spacing: 0.012 };
+    let correction = consistent(problem, 1e-10).correction.unwrap();
+    assert_eq!(correction.bodies, 2);
+    assert!(correction.residual <= 1e-10, "{correction:?}");
+}
+
+#[test]
+fn projected_forces_are_the_derivative_of_the_projected_energy() {
+    for law in objective_laws() {
+        let mut problem = with_law(jittered(cube(5), 0.3, 4), law);
+        problem.recipe.dilatation = Dilatation::Projected;
+        let discretisation = Discretisation::new(&problem).unwrap();
+        let model = Model::new(&problem, &discretisation).unwrap();
+        let mut workspace = Workspace::new(&model);
+        let wave = |i: usize| 1e-3 * (1.7 * i as f64).sin();
+        let u: Vec<f64> = (0..model.size()).map(wave).collect();
+        let mut f = vec![0.0; model.size()];
+        internal_force(&model, &u, &mut workspace, &mut f);
+        let scale = f.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        for i in (0..model.size()).step_by(37) {
+            let mut energy = |shift: f64| {
+                let mut moved = u.clone();
+                moved[i] += shift;
+                strain_energy(&model, &moved, &mut workspace)
+            };
+            let difference = (energy(1e-7) - energy(-1e-7)) / 2e-7;
+            assert!((difference - f[i]).abs() < 1e-5 * scale, "{law:?}: {difference} {}", f[i]);
+        }
+    }
+}
+
+#[test]
+fn a_material_that_changes_its_volume_is_not_projected() {
+    let mut problem = cube(5);
+    problem.recipe.dilatation = Dilatation::Projected;
+    let discretisation = Discretisation::new(&problem).unwrap();
+    let projected = |problem: &Problem| {
+        let model = Model::new(problem, &discretisation).unwrap();
+        model.blocks.iter().any(|block| block.projection.is_some())
+    };
+    assert!(!projected(&problem));
+    assert!(projected(&with_law(problem, neo_hookean(3000.0, 0.49))));
+}
