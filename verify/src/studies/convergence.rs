@@ -90,7 +90,7 @@ fn ladders(bench: &Workbench) -> Result<Vec<Ladder>> {
             truth: moment,
             // ν = 0.49 instead of ½ changes the moment by about this much.
             floor: 1e-3,
-            spacings: bench.pick(vec![0.02, 0.014, 0.01], vec![0.02, 0.014, 0.01, 0.007, 0.005]),
+            spacings: bench.pick(vec![0.014, 0.01, 0.0075], vec![0.014, 0.01, 0.0075, 0.005]),
         },
         Ladder {
             case: bench.case("cook_membrane")?,
@@ -153,14 +153,20 @@ fn rung(ladder: &Ladder, case: &Case) -> Result<Rung> {
     })
 }
 
-/// The finest spacing must be better than the coarsest; orders are printed.
+/// The finest spacing must be better than the worst of the others: an error that
+/// changes its sign may be small once by luck. Orders are printed.
 fn judge(study: &mut Study, ladder: &Ladder, rungs: &[Rung]) {
-    let (coarsest, finest) = (rungs[0].error, rungs[rungs.len() - 1].error);
+    let finest = rungs[rungs.len() - 1].error;
+    let others = rungs[..rungs.len() - 1].iter().map(|rung| rung.error);
+    let worst = others.fold(0.0, f64::max);
     study.checks.push(Check::new(
         &format!("convergence/{}/refinement", ladder.case.name),
-        &format!("{}: error at the finest over error at the coarsest spacing", ladder.case.title),
+        &format!(
+            "{}: error at the finest spacing over the largest at the others",
+            ladder.case.title
+        ),
         Kind::Exact,
-        finest / coarsest,
+        finest / worst,
         Bound::AtMost(1.0),
         "1",
         "a consistent scheme gets better as it is refined",
