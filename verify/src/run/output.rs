@@ -87,10 +87,10 @@ fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec
     let (mut total, mut jacobian, mut stress) =
         (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; 9 * nodes]);
     let projected = projected_mean_stress(&prepared.model, u);
-    for point in 0..rows.len() {
+    for (point, mean_stress) in projected.into_iter().enumerate() {
         let F = rows.deformation_gradient(point, u, prepared.model.components);
         let law = &problem.regions[quadrature.regions[point] as usize].material.law;
-        let sigma = law.cauchy(&F) + Matrix3::from_diagonal_element(projected[point]);
+        let sigma = law.cauchy(&F) + Matrix3::from_diagonal_element(mean_stress);
         for entry in rows.row(point) {
             let node = rows.nodes[entry] as usize;
             let share = quadrature.weights[point] * rows.phi[entry].max(1e-6);
