@@ -11,7 +11,7 @@ use crate::problem::{Dimension, Gradients, Problem};
 use crate::quadrature::{Quadrature, quadrature};
 pub use crate::rows::Rows;
 use crate::surface_rule::{SurfaceRule, close};
-use crate::tensor::Vector3;
+use crate::tensor::{Vector3, box_around};
 use rayon::prelude::*;
 
 /// The body, discretised.
@@ -251,11 +251,7 @@ fn check_coverage(cloud: &NodeCloud, supports: &Rows) -> Result<(), Error> {
 /// Sorts quadrature points by region, then along a Morton curve, so that
 /// neighbours in space are neighbours in memory.
 fn sort_along_curve(quadrature: &mut Quadrature) {
-    let (mut min, mut max) = (quadrature.positions[0], quadrature.positions[0]);
-    for X in &quadrature.positions {
-        min = min.inf(X);
-        max = max.sup(X);
-    }
+    let (min, max) = box_around(&quadrature.positions);
     let scale = 1023.0 / (max - min).max().max(f64::MIN_POSITIVE);
     let key = |X: &Vector3| {
         let index = (X - min) * scale;

@@ -10,7 +10,7 @@ use crate::material::Law;
 use crate::patches::orthonormal_basis;
 use crate::problem::{Dilatation, Problem};
 use crate::projection::Projection;
-use crate::tensor::Vector3;
+use crate::tensor::{Vector3, box_around};
 use crate::time_step_bound::per_point_bound;
 use std::ops::Range;
 
@@ -184,11 +184,7 @@ fn projection(share: f64, starts: &[usize], discretisation: &Discretisation) -> 
 }
 
 fn extent(positions: &[Vector3]) -> f64 {
-    let (mut min, mut max) = (positions[0], positions[0]);
-    for position in positions {
-        min = min.inf(position);
-        max = max.sup(position);
-    }
+    let (min, max) = box_around(positions);
     (max - min).norm()
 }
 

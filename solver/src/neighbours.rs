@@ -1,6 +1,6 @@
 //! Who covers a point: nodes in uniform cells.
 
-use crate::tensor::Vector3;
+use crate::tensor::{Vector3, box_around};
 
 /// Nodes sorted into cubes whose edge is the largest influence radius or a
 /// fraction of it, so that a query visits few of them.
@@ -18,11 +18,7 @@ impl Neighbours {
     /// Sorts `positions` \[m\] into cells of edge `cell` \[m\], enlarged where
     /// there would be many more cells than nodes.
     pub fn new(positions: &[Vector3], cell: f64) -> Neighbours {
-        let (mut min, mut max) = (positions[0], positions[0]);
-        for position in positions {
-            min = min.inf(position);
-            max = max.sup(position);
-        }
+        let (min, max) = box_around(positions);
         let mut cell = cell;
         let counts = loop {
             let counts = [0, 1, 2].map(|k| ((max[k] - min[k]) / cell) as usize + 1);

@@ -26,6 +26,13 @@ pub fn rotation(axis: &Vector3, angle: f64) -> Matrix3 {
     nalgebra::Rotation3::from_axis_angle(&unit, angle).into_inner()
 }
 
+/// Lower and upper corner of the box around `positions`, of which there is at
+/// least one.
+pub fn box_around(positions: &[Vector3]) -> (Vector3, Vector3) {
+    let first = (positions[0], positions[0]);
+    positions.iter().fold(first, |(lower, upper), x| (lower.inf(x), upper.sup(x)))
+}
+
 /// Entry `node` of a packed nodal field with `components` per node; what is
 /// missing in a plane is 0.
 pub fn vector_at(field: &[f64], node: usize, components: usize) -> Vector3 {

@@ -10,32 +10,10 @@ use tempfile::TempDir;
 const PROGRAM: &str = env!("CARGO_BIN_EXE_mtled");
 
 /// A block that is pulled, a few hundred points, a fraction of a second.
-const CASE: &str = r#"
-title = "Pulled block"
-
-[geometry]
-shape = { box = { min = [0.0, 0.0, 0.0], max = [0.1, 0.1, 0.1] } }
-
-[material.tissue]
-law = "neo_hookean_log_j"
-density = 1000.0
-young_modulus = 3000.0
-poisson_ratio = 0.3
-
-[discretisation]
-cloud = "regular"
-spacing = 0.02
-
-[[prescribe]]
-name = "bottom"
-of = "surface"
-where = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] } }
-displacement = { x = 0.0, y = 0.0, z = 0.0 }
-
-[[body_force]]
-acceleration = [0.0, 0.0, 1.0]
-
-[time]
+const CASE: &str = concat!(
+    "\n",
+    include_str!("common/pulled_block.toml"),
+    r#"[time]
 method = "dynamic"
 end = 0.2
 
@@ -46,7 +24,8 @@ point = [0.05, 0.05, 0.1]
 [output]
 frames = 3
 history = 5
-"#;
+"#
+);
 
 fn mtled(arguments: &[&str]) -> Command {
     let mut command = Command::new(PROGRAM);

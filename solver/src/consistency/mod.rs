@@ -39,6 +39,7 @@ pub struct Correction {
 
 /// More iterations than this are not spent.
 const MOST_ITERATIONS: usize = 500;
+
 /// Changes the gradients of `rows` until the residual of condition 2 has
 /// fallen to `tolerance` of its first size; `targets` are ∮ φ_a N dA \[node\]
 /// \[m²\], `bodies` the connected body of each node.

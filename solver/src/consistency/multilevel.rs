@@ -7,7 +7,7 @@
 #![allow(non_snake_case)]
 
 use super::operator::{Layout, Operator};
-use crate::tensor::Vector3;
+use crate::tensor::{Vector3, box_around};
 
 /// Spacing of the finest lattice over that of the nodes \[–\].
 const FINEST: f64 = 1.5;
@@ -113,8 +113,7 @@ impl Axis {
 
 impl Lattice {
     fn new(nodes: &[Vector3], edge: f64, components: usize) -> Lattice {
-        let (mut min, mut max) = (nodes[0], nodes[0]);
-        nodes.iter().for_each(|X| (min, max) = (min.inf(X), max.sup(X)));
+        let (min, max) = box_around(nodes);
         let extent = max - min;
         let axes =
             [0, 1, 2].map(|k| if k < components { Axis::new(extent[k], edge) } else { Axis::Flat });

@@ -4,7 +4,7 @@
 use super::{NodeCloud, refuse_too_many};
 use crate::geometry::{GeometryError, PointHash, Shape};
 use crate::problem::Dimension;
-use crate::tensor::Vector3;
+use crate::tensor::{Vector3, box_around};
 use rayon::prelude::*;
 
 /// A node this close to the boundary is on it \[spacing\].
@@ -55,7 +55,7 @@ pub(super) fn given(
 }
 
 fn hashed(nodes: &[Vector3], dimension: &Dimension) -> PointHash {
-    let (lower, upper) = nodes.iter().fold((nodes[0], nodes[0]), |(l, u), X| (l.inf(X), u.sup(X)));
+    let (lower, upper) = box_around(nodes);
     let largest = (upper - lower).max().max(f64::MIN_POSITIVE);
     // The spacing if the nodes filled their bounding box, and less.
     let across = (nodes.len() as f64).powf(1.0 / dimension.components() as f64);
