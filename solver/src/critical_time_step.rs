@@ -1,9 +1,9 @@
 //! The largest stable step of the tangent operator, by Lanczos.
 #![allow(non_snake_case)]
 
-use crate::essential::ConstraintForces;
-use crate::internal_force::{Workspace, internal_force};
+use crate::internal_force::Workspace;
 use crate::model::Model;
+use crate::tangent::Tangent;
 
 /// The critical step and what it cost.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,23 +11,31 @@ pub struct CriticalStep {
     /// 2/√λ with λ the upper end of the interval that holds the largest
     /// eigenvalue \[s\].
     pub time_step: f64,
-    /// Products with the tangent operator.
+    /// Products with the tangent operator; each is one evaluation of the
+    /// internal force, and one more is needed for all.
     pub products: usize,
-    /// The mode found \[component of node\], to start from next time.
+    /// The mode found, M^(1/2) u with norm 1 \[component of node\].
     pub mode: Vec<f64>,
+    /// The stiffest motion of every neighbourhood, as large everywhere, M^(1/2) u
+    /// \[component of node\]: where [`local_growth`] starts from.
+    pub pattern: Vec<f64>,
 }
 
 /// Relative width of the interval for the largest eigenvalue \[–\].
 const EIGENVALUE_TOLERANCE: f64 = 5e-3;
 const MOST_PRODUCTS: usize = 80;
-/// Fewest products from a random start and from a known mode. A small residual
-/// only tells that some eigenvalue is near; from a random start the largest of
-/// n is missed by more than a share ε with a probability below
-/// 1.648 √n exp(−(2k − 1)√ε) after k products (Kuczyński, Woźniakowski 1992):
-/// one per cent for ε = 3 %, n = 10⁴ and k = 30, and for ε = 19 %, which a
-/// safety factor of 0.9 covers, and k = 12.
-const FEWEST_PRODUCTS: usize = 30;
-const FEWEST_PRODUCTS_KNOWN: usize = 12;
+/// Products after which the start of a Lanczos run shows the stiffest pattern
+/// of every neighbourhood.
+const PATTERN_POWER: usize = 18;
+/// Fewest products from a random start, and from what an earlier run has left.
+/// A small residual only tells that some eigenvalue is near; from a random
+/// start the largest of n is missed by more than a share ε with a probability
+/// below 1.648 √n exp(−(2k − 1)√ε) after k products (Kuczyński, Woźniakowski
+/// 1992): one per cent for n = 10⁴, ε = 6 % and k = 20. The levelled pattern of
+/// an earlier run holds the stiffest motion of every neighbourhood, and few
+/// products suffice (study "time_step" compares with runs from random starts).
+const FEWEST_PRODUCTS: usize = 20;
+const FEWEST_PRODUCTS_KNOWN: usize = 8;
 
 /// The stable limit 2/√λ_max(M⁻¹K) of the tangent operator at displacements
 /// `u` \[m\] under the conditions of time `t` \[s\], by Lanczos with full
@@ -38,12 +46,12 @@ pub fn critical_time_step(
     model: &Model,
     u: &[f64],
     t: f64,
-    start: Option<&[f64]>,
+    earlier: Option<&CriticalStep>,
     workspace: &mut Workspace,
 ) -> CriticalStep {
     let mut tangent = Tangent::new(model, u, t, workspace);
-    let mut basis = vec![starting_vector(&mut tangent, start)];
-    let fewest = if start.is_some() { FEWEST_PRODUCTS_KNOWN } else { FEWEST_PRODUCTS };
+    let mut basis = vec![starting_vector(&mut tangent, earlier)];
+    let fewest = if earlier.is_some() { FEWEST_PRODUCTS_KNOWN } else { FEWEST_PRODUCTS };
     let (mut diagonal, mut off_diagonal): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     loop {
         let last = basis.len() - 1;
@@ -65,9 +73,10 @@ pub fn critical_time_step(
         // The Krylov space ends where beta is nothing but round-off.
         let ended = beta.is_nan() || beta <= 1e-12 * ritz;
         if converged || exhausted || ended {
-            let mode = combine(&basis, &weights, &tangent.root_mass);
+            let mode = combine(&basis, &weights);
             let time_step = 2.0 / (ritz + residual).sqrt();
-            return CriticalStep { time_step, products, mode };
+            let pattern = pattern(model, &basis, &diagonal, &off_diagonal);
+            return CriticalStep { time_step, products, mode, pattern };
         }
         next.iter_mut().for_each(|x| *x /= beta);
         off_diagonal.push(beta);
@@ -75,75 +84,63 @@ pub fn critical_time_step(
     }
 }
 
-/// v ↦ Π M^(−1/2) K M^(−1/2) Π v with Π the projection onto free displacements.
-struct Tangent<'a> {
-    model: &'a Model,
-    u: &'a [f64],
+/// The largest local growth \[1/s²\] of a product with the tangent at
+/// displacements `u` \[m\] with internal force `f_int` \[N\]: the largest, over
+/// all neighbourhoods, of the size of the image over the size of `pattern`. The
+/// pattern is replaced by its image, brought to the same size everywhere: power
+/// iteration in all neighbourhoods at once, so that one product sees the body
+/// stiffen wherever it does.
+pub fn local_growth(
+    model: &Model,
+    u: &[f64],
     t: f64,
-    workspace: &'a mut Workspace,
-    /// √m per component of node \[√kg\].
-    root_mass: Vec<f64>,
-    /// Displacement of the difference quotient \[m\].
-    amplitude: f64,
-    forces: ConstraintForces,
+    f_int: &[f64],
+    pattern: &mut Vec<f64>,
+    workspace: &mut Workspace,
+) -> f64 {
+    let mut tangent = Tangent::with_force(model, u, t, f_int.to_vec(), workspace);
+    let before = local_squares(model, pattern);
+    let image = tangent.apply(pattern);
+    let after = local_squares(model, &image);
+    let growth = before.iter().zip(&after).filter(|(b, _)| **b > 0.0).map(|(b, a)| a / b);
+    let largest = growth.fold(0.0, f64::max).sqrt();
+    *pattern = image;
+    level(model, pattern, &after);
+    largest
 }
 
-impl<'a> Tangent<'a> {
-    fn new(model: &'a Model, u: &'a [f64], t: f64, workspace: &'a mut Workspace) -> Tangent<'a> {
-        let d = model.components;
-        let root_mass =
-            model.lumped_mass.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
-        // Small against the finest gradients: F changes by about 1e-6.
-        let steepest =
-            model.blocks.iter().flat_map(|b| &b.grad_phi).fold(0.0f64, |a, g| a.max(g.abs()));
-        let amplitude = 1e-6 / steepest;
-        Tangent {
-            model,
-            u,
-            t,
-            workspace,
-            root_mass,
-            amplitude,
-            forces: ConstraintForces::default(),
-        }
-    }
-
-    fn free_size(&self) -> usize {
-        let fixed: usize =
-            self.model.constraints.active(self.t).iter().map(|set| set.rows.len()).sum();
-        self.model.size().saturating_sub(fixed).max(1)
-    }
-
-    /// Removes what the conditions forbid from M^(1/2) u.
-    fn project(&mut self, vector: &mut [f64]) {
-        vector.iter_mut().zip(&self.root_mass).for_each(|(x, r)| *x /= r);
-        self.model.constraints.project(self.t, &self.model.lumped_mass, vector, &mut self.forces);
-        vector.iter_mut().zip(&self.root_mass).for_each(|(x, r)| *x *= r);
-    }
-
-    /// K v as a central difference of the internal force.
-    fn apply(&mut self, vector: &[f64]) -> Vec<f64> {
-        let direction: Vec<f64> = vector.iter().zip(&self.root_mass).map(|(x, r)| x / r).collect();
-        let largest = direction.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-        let epsilon = self.amplitude / largest.max(f64::MIN_POSITIVE);
-        let mut moved = vec![0.0; self.u.len()];
-        let (mut plus, mut minus) = (vec![0.0; self.u.len()], vec![0.0; self.u.len()]);
-        for (sign, f) in [(epsilon, &mut plus), (-epsilon, &mut minus)] {
-            for ((x, u), v) in moved.iter_mut().zip(self.u).zip(&direction) {
-                *x = u + sign * v;
+/// Mean square of a field over the supports of the points around each node.
+fn local_squares(model: &Model, field: &[f64]) -> Vec<f64> {
+    let d = model.components;
+    let square = |node: u32| -> f64 {
+        field[d * node as usize..d * (node as usize + 1)].iter().map(|x| x * x).sum()
+    };
+    let mut sums = vec![(0.0, 0.0); model.positions.len()];
+    for block in &model.blocks {
+        for ends in block.starts.windows(2) {
+            let support = &block.supports[ends[0] as usize..ends[1] as usize];
+            let nodes = || support.iter().map(|&local| block.nodes[local as usize]);
+            let mean = nodes().map(square).sum::<f64>() / support.len() as f64;
+            for node in nodes() {
+                let (sum, count) = &mut sums[node as usize];
+                (*sum, *count) = (*sum + mean, *count + 1.0);
             }
-            internal_force(self.model, &moved, self.workspace, f);
         }
-        for ((p, m), r) in plus.iter_mut().zip(&minus).zip(&self.root_mass) {
-            *p = (*p - m) / (2.0 * epsilon * r);
+    }
+    sums.into_iter().map(|(sum, count)| sum / count).collect()
+}
+
+/// Scales a field by its local size.
+fn level(model: &Model, field: &mut [f64], squares: &[f64]) {
+    for (values, square) in field.chunks_exact_mut(model.components).zip(squares) {
+        if *square > 0.0 {
+            values.iter_mut().for_each(|x| *x /= square.sqrt());
         }
-        self.project(&mut plus);
-        plus
     }
 }
 
-/// The last mode if there is one, with some noise so that a new one is seen.
-fn starting_vector(tangent: &mut Tangent, start: Option<&[f64]>) -> Vec<f64> {
+/// Noise, or the last mode and pattern in equal parts with a little of it.
+fn starting_vector(tangent: &mut Tangent, earlier: Option<&CriticalStep>) -> Vec<f64> {
     let mut seed = 0x9E37_79B9_7F4A_7C15u64;
     let mut noise = || {
         seed ^= seed << 13;
@@ -153,10 +150,11 @@ fn starting_vector(tangent: &mut Tangent, start: Option<&[f64]>) -> Vec<f64> {
     };
     let mut vector: Vec<f64> = tangent.root_mass.iter().map(|_| noise()).collect();
     normalise(&mut vector);
-    if let Some(mode) = start {
-        let mut known: Vec<f64> = mode.iter().zip(&tangent.root_mass).map(|(x, r)| x * r).collect();
-        normalise(&mut known);
-        vector.iter_mut().zip(&known).for_each(|(x, k)| *x = 0.1 * *x + k);
+    if let Some(CriticalStep { mode, pattern, .. }) = earlier {
+        vector.iter_mut().for_each(|x| *x *= 0.1);
+        for known in [mode, pattern] {
+            axpy(&mut vector, 1.0 / norm(known).max(f64::MIN_POSITIVE), known);
+        }
     }
     tangent.project(&mut vector);
     normalise(&mut vector);
@@ -176,13 +174,33 @@ fn largest_ritz_pair(diagonal: &[f64], off_diagonal: &[f64]) -> (f64, Vec<f64>) 
     (eigen.eigenvalues[top], eigen.eigenvectors.column(top).iter().copied().collect())
 }
 
-fn combine(basis: &[Vec<f64>], weights: &[f64], root_mass: &[f64]) -> Vec<f64> {
-    let mut mode = vec![0.0; root_mass.len()];
-    for (vector, &weight) in basis.iter().zip(weights) {
-        axpy(&mut mode, weight, vector);
+/// The start after [`PATTERN_POWER`] products, from the Krylov space alone:
+/// A^k v₀ = V T^k e₁, levelled.
+fn pattern(model: &Model, basis: &[Vec<f64>], diagonal: &[f64], off_diagonal: &[f64]) -> Vec<f64> {
+    let n = basis.len();
+    let mut weights = vec![0.0; n];
+    weights[0] = 1.0;
+    for _ in 0..PATTERN_POWER.min(n - 1) {
+        let image = |i: usize| {
+            let below = if i > 0 { off_diagonal[i - 1] * weights[i - 1] } else { 0.0 };
+            let above = if i + 1 < n { off_diagonal[i] * weights[i + 1] } else { 0.0 };
+            diagonal[i] * weights[i] + below + above
+        };
+        weights = (0..n).map(image).collect();
+        normalise(&mut weights);
     }
-    mode.iter_mut().zip(root_mass).for_each(|(x, r)| *x /= r);
-    mode
+    let mut field = combine(basis, &weights);
+    let squares = local_squares(model, &field);
+    level(model, &mut field, &squares);
+    field
+}
+
+fn combine(basis: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; basis[0].len()];
+    for (vector, &weight) in basis.iter().zip(weights) {
+        axpy(&mut sum, weight, vector);
+    }
+    sum
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

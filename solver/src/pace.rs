@@ -1,7 +1,7 @@
 //! What every run does around its steps: follow the critical step, count,
 //! look for divergence, show itself.
 
-use crate::critical_time_step::critical_time_step;
+use crate::critical_time_step::{CriticalStep, critical_time_step, local_growth};
 use crate::error::Error;
 use crate::internal_force::SmallestJacobian;
 use crate::model::Model;
@@ -78,12 +78,34 @@ pub(crate) fn check(model: &Model, state: &State, report: &StepReport) -> Result
     })
 }
 
+/// Fewest and most steps between two looks at the tangent; a look takes one
+/// evaluation of the internal force.
+const LOOKS: (usize, usize) = (20, 50);
+/// Change of the local growth from look to look above which looks become much
+/// more frequent; below half of it they become rarer \[–\].
+const WANTED_CHANGE: f64 = 0.02;
+/// Change of the local growth since the last Lanczos run that has the next one
+/// made \[–\]. Below it the step follows the growth by itself.
+const CHANGE: f64 = 0.3;
+
 /// Follows the critical step as the body deforms and counts what is done.
+///
+/// Between two Lanczos runs one product with the tangent now and then tells
+/// how much the body has stiffened anywhere ([`local_growth`]): the step shrinks
+/// with it, and by four times as much again as since the last look, for what happens
+/// until the next. Once the growth has changed by [`CHANGE`], up or down, or
+/// `reevaluate_every` steps have passed, the largest eigenvalue is found again.
 pub(crate) struct Pace {
     control: StepControl,
     /// The step to take next \[s\].
     pub time_step: f64,
-    mode: Vec<f64>,
+    /// Of the last Lanczos run; its pattern is kept up.
+    critical: CriticalStep,
+    /// Local growth at the first look after that run and at the last \[1/s²\].
+    growth: Option<(f64, f64)>,
+    /// Steps from one look to the next, and until the next.
+    looks: (usize, usize),
+    changed: bool,
     stage: usize,
     since: usize,
     summary: Summary,
@@ -96,13 +118,8 @@ impl Pace {
         state: &State,
         buffers: &mut Buffers,
     ) -> Result<Pace, Error> {
-        let critical = critical_time_step(
-            model,
-            &state.displacement,
-            state.time,
-            None,
-            &mut buffers.workspace,
-        );
+        let (u, t) = (&state.displacement, state.time);
+        let critical = critical_time_step(model, u, t, None, &mut buffers.workspace);
         if let Some(fixed) = control.fixed
             && fixed > critical.time_step
         {
@@ -111,7 +128,9 @@ impl Pace {
         Ok(Pace {
             control,
             time_step: control.fixed.unwrap_or(control.safety_factor * critical.time_step),
-            mode: critical.mode,
+            growth: None,
+            looks: (LOOKS.0, 1),
+            changed: false,
             stage: model.constraints.stage(state.time),
             since: 0,
             summary: Summary {
@@ -119,43 +138,78 @@ impl Pace {
                 time: 0.0,
                 time_steps: (f64::INFINITY, 0.0),
                 critical_time_step: critical.time_step,
-                lanczos_evaluations: 2 * critical.products,
+                lanczos_evaluations: critical.products + 1,
                 smallest_jacobian: f64::INFINITY,
                 relaxation: None,
                 stopped: false,
             },
+            critical,
         })
     }
 
-    /// Finds the critical step anew after some steps, and when conditions are
+    /// Finds the critical step anew where it is due, and when conditions are
     /// released. Returns whether the step changed.
     pub fn reevaluate(&mut self, model: &Model, state: &State, buffers: &mut Buffers) -> bool {
         let stage = model.constraints.stage(state.time);
-        let due = self.since >= self.control.reevaluate_every || stage != self.stage;
-        if self.control.fixed.is_some() || !due {
+        let due = self.changed || self.since >= self.control.reevaluate_every;
+        if self.control.fixed.is_some() || !(due || stage != self.stage) {
             return false;
         }
-        let start = Some(self.mode.as_slice());
-        let critical = critical_time_step(
-            model,
-            &state.displacement,
-            state.time,
-            start,
-            &mut buffers.workspace,
-        );
-        self.time_step = self.control.safety_factor * critical.time_step;
-        self.mode = critical.mode;
+        let (u, t) = (&state.displacement, state.time);
+        self.critical =
+            critical_time_step(model, u, t, Some(&self.critical), &mut buffers.workspace);
+        self.time_step = self.control.safety_factor * self.critical.time_step;
+        self.summary.lanczos_evaluations += self.critical.products + 1;
+        self.growth = None;
+        self.looks.1 = 1;
+        self.changed = false;
         self.stage = stage;
         self.since = 0;
-        self.summary.lanczos_evaluations += 2 * critical.products;
         true
     }
 
-    pub fn record(&mut self, time_step: f64, report: &StepReport) {
+    /// Counts a step and looks at the tangent now and then. To be called right
+    /// after the step, whose internal force is still at hand.
+    pub fn record(
+        &mut self,
+        model: &Model,
+        state: &State,
+        buffers: &mut Buffers,
+        report: &StepReport,
+    ) {
         self.since += 1;
         let (low, high) = self.summary.time_steps;
-        self.summary.time_steps = (low.min(time_step), high.max(time_step));
+        self.summary.time_steps = (low.min(state.time_step), high.max(state.time_step));
         self.see(report.smallest_jacobian);
+        self.looks.1 -= 1;
+        if self.looks.1 == 0 {
+            if self.control.fixed.is_none() {
+                self.look(model, state, buffers);
+            }
+            self.looks.1 = self.looks.0;
+        }
+    }
+
+    fn look(&mut self, model: &Model, state: &State, buffers: &mut Buffers) {
+        // f_int belongs to the displacements before the step.
+        let before: Vec<f64> = (state.displacement.iter().zip(&state.velocity))
+            .map(|(u, v)| u - state.time_step * v)
+            .collect();
+        let Buffers { workspace, f_int, .. } = buffers;
+        let pattern = &mut self.critical.pattern;
+        let growth = local_growth(model, &before, state.time, f_int, pattern, workspace);
+        self.summary.lanczos_evaluations += 1;
+        let (first, last) = self.growth.unwrap_or((growth, growth));
+        self.growth = Some((first, growth));
+        let (ratio, change) = (growth / first, (growth - last) / first);
+        self.changed |= (ratio - 1.0).abs() > CHANGE;
+        let expected = (ratio + 4.0 * change.max(0.0)).max(1.0);
+        self.time_step = self.control.safety_factor * self.critical.time_step / expected.sqrt();
+        if change.abs() > WANTED_CHANGE {
+            self.looks.0 = (self.looks.0 / 4).max(LOOKS.0);
+        } else if change.abs() < 0.5 * WANTED_CHANGE {
+            self.looks.0 = (self.looks.0 * 2).min(LOOKS.1);
+        }
     }
 
     pub fn see(&mut self, smallest: SmallestJacobian) {

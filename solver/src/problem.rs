@@ -288,7 +288,8 @@ pub enum Motion {
 pub struct StepControl {
     /// Step over the critical step of the tangent operator \[–\].
     pub safety_factor: f64,
-    /// The critical step is found again after this many steps.
+    /// The critical step is found again after this many steps at the latest,
+    /// and before as the tangent changes.
     pub reevaluate_every: usize,
     /// A step \[s\] to be used instead; the run is refused if it is not stable
     /// in the reference configuration.
@@ -297,7 +298,7 @@ pub struct StepControl {
 
 impl Default for StepControl {
     fn default() -> Self {
-        StepControl { safety_factor: 0.9, reevaluate_every: 500, fixed: None }
+        StepControl { safety_factor: 0.94, reevaluate_every: 1000, fixed: None }
     }
 }
 

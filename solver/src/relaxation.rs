@@ -40,10 +40,10 @@ pub(crate) fn relax(
         let scheme = Scheme::relaxation(pace.time_step, damping.c);
         let report =
             step(model, &scheme, load_time(count - 1), load_time(count), state, &mut buffers);
-        pace.record(pace.time_step, &report);
+        pace.record(model, state, &mut buffers, &report);
         check(model, state, &report)?;
         increment = increment.max(report.largest_increment);
-        damping.learn(model, state, &buffers, pace.time_step);
+        damping.learn(model, state, &buffers, state.time_step);
         let held = count > settings.load_steps;
         if held && count.is_multiple_of(LOOK_EVERY) {
             convergence = assess(model, state, &mut buffers, damping.c, increment);

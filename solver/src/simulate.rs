@@ -47,7 +47,7 @@ fn march(
         let scheme = Scheme::central_difference(time_step, state.time_step, damping);
         let (now, then) = (state.time, state.time + time_step);
         let report = step(model, &scheme, now, then, state, &mut buffers);
-        pace.record(time_step, &report);
+        pace.record(model, state, &mut buffers, &report);
         check(model, state, &report)?;
         let progress = state.time / end;
         let jacobian = report.smallest_jacobian.jacobian;

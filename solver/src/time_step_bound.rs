@@ -1,4 +1,4 @@
-//! A bound on the stable time step from each quadrature point alone.
+//! Bounds on the stable time step at rest that need no eigenvalue.
 
 use crate::discretisation::Discretisation;
 use crate::problem::{MassRule, Problem};
@@ -32,4 +32,50 @@ pub fn per_point_bound(problem: &Problem, discretisation: &Discretisation, mass:
         2.0 / (material(point).wave_speed() * sum.sqrt())
     };
     (0..supports.len()).map(bound).fold(f64::INFINITY, f64::min)
+}
+
+/// Two more bounds at rest \[s\], of which runs use none: with the stiffness
+/// of a point K_q ≤ w_q M_q G_q ⊗ G_q for G_q the lengths |Grad φ_a|, M = ρc²,
+/// and T_a = Σ_q w_q M_q |Grad φ_a(X_q)|,
+/// - by shares: a point takes the part w_q M_q |Grad φ_a|/T_a of each m_a, and
+///   λ ≤ max_q Σ_a |Grad φ_a(X_q)| T_a/m_a;
+/// - by rows, after Gershgorin: λ ≤ max_a Σ_q w_q M_q |Grad φ_a| Σ_b |Grad φ_b|/m_a.
+pub fn comparison_bounds(
+    problem: &Problem,
+    discretisation: &Discretisation,
+    mass: &[f64],
+) -> ComparisonBounds {
+    let (supports, quadrature) = (&discretisation.supports, &discretisation.quadrature);
+    let stiffness = |point: usize| {
+        let material = &problem.regions[quadrature.regions[point] as usize].material;
+        quadrature.weights[point] * material.density * material.wave_speed().powi(2)
+    };
+    let length = |entry: usize| supports.grad_phi[entry].norm();
+    let mut total = vec![0.0; mass.len()];
+    let mut row_sums = vec![0.0; mass.len()];
+    for point in 0..supports.len() {
+        let all: f64 = supports.row(point).map(length).sum();
+        for entry in supports.row(point) {
+            let (node, part) = (supports.nodes[entry] as usize, stiffness(point) * length(entry));
+            total[node] += part;
+            row_sums[node] += part * all;
+        }
+    }
+    let of_point = |point: usize| -> f64 {
+        let part = |entry: usize| {
+            let node = supports.nodes[entry] as usize;
+            length(entry) * total[node] / mass[node]
+        };
+        supports.row(point).map(part).sum()
+    };
+    let by_shares = (0..supports.len()).map(of_point).fold(0.0, f64::max);
+    let by_rows = row_sums.iter().zip(mass).map(|(sum, m)| sum / m).fold(0.0, f64::max);
+    ComparisonBounds { by_shares: 2.0 / f64::sqrt(by_shares), by_rows: 2.0 / f64::sqrt(by_rows) }
+}
+
+/// Steps \[s\] that [`comparison_bounds`] gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ComparisonBounds {
+    pub by_shares: f64,
+    pub by_rows: f64,
 }

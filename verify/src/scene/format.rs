@@ -300,10 +300,10 @@ pub struct TimeFormat {
     pub end: Option<f64>,
     /// Mass-proportional damping [1/s]; 0 if left out.
     pub damping: Option<f64>,
-    /// Step over the critical step [–], in (0, 1]; 0.9 if left out, 0.8 for
+    /// Step over the critical step [–], in (0, 1]; 0.94 if left out, 0.8 for
     /// motion without damping.
     pub safety_factor: Option<f64>,
-    /// The critical step is found again after this many steps.
+    /// The critical step is found again after this many steps at the latest.
     pub reevaluate_every: Option<usize>,
     /// A step to be used instead [s]; refused if it is not stable.
     pub fixed_step: Option<f64>,

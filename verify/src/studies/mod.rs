@@ -4,6 +4,7 @@ mod benchmarks;
 mod brain;
 mod closed_forms;
 mod closed_forms_motion;
+mod clouds;
 mod comparison;
 mod comparison_limits;
 mod comparison_tables;
@@ -19,6 +20,8 @@ mod problems;
 mod references;
 mod specimens;
 mod time_step;
+mod time_step_clouds;
+mod time_step_runs;
 mod vibration;
 
 use crate::reference::{ReferenceError, ReferenceFile, read_reference};

@@ -4,6 +4,8 @@ use super::Workbench;
 use super::plain::{axis, number, styled, text};
 use super::problems::Random;
 use super::specimens::{Specimen, specimens};
+use super::time_step_clouds::random_clouds;
+use super::time_step_runs::runs;
 use crate::run::prepare;
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, SeriesStyle, Study, Table};
 use mtled::critical_time_step::critical_time_step;
@@ -74,12 +76,13 @@ pub fn time_step(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
         slopes: Vec::new(),
     }));
     study.notes.push(format!(
-        "The largest stable step is found by bisection to a relative width of {BISECTION}, from the per-point bound upwards, on undamped runs of \
+        "The largest stable step is found by bisection to a relative width of {BISECTION} on undamped runs of \
          {TRIAL_STEPS} steps from a random velocity too small to deform the body; a run is unstable \
          if its kinetic energy grows by {GROWTH:e}. The per-point bound belongs to the body at \
          rest; for the compressed block it is listed only."
     ));
-    Ok(())
+    random_clouds(bench, study)?;
+    runs(bench, study)
 }
 
 fn measure(specimen: &Specimen) -> anyhow::Result<Limits> {
@@ -93,37 +96,51 @@ fn measure(specimen: &Specimen) -> anyhow::Result<Limits> {
     }
     let (u, t) = (&state.displacement, state.time);
     let critical = critical_time_step(model, u, t, None, &mut workspace);
-    let followed = || critical_time_step(model, u, t, Some(&rest.mode), &mut workspace).time_step;
+    let followed = || critical_time_step(model, u, t, Some(&rest), &mut workspace).time_step;
     let followed = specimen.deformed.then(followed);
-    let velocity = disturbance(model, &prepared.discretisation.cloud.spacing, critical.time_step);
-    let stable = |time_step: f64| is_stable(model, u, t, &velocity, time_step);
-    // From the bound, so that the bracket owes nothing to Lanczos.
-    let (mut low, mut high) = (0.5 * model.bound, model.bound);
-    anyhow::ensure!(stable(low), "half of the per-point bound is not stable");
-    while stable(high) {
-        (low, high) = (high, 1.3 * high);
-    }
-    while high - low > BISECTION * low {
-        let middle = 0.5 * (low + high);
-        if stable(middle) { low = middle } else { high = middle }
-    }
+    let velocity = trial_velocity(model, &prepared.discretisation.cloud.spacing);
     Ok(Limits {
         nodes: model.positions.len(),
         points: model.point_positions.len(),
         bound: model.bound,
         lanczos: critical.time_step,
-        bisected: 0.5 * (low + high),
+        bisected: largest_stable_step(model, u, t, &velocity, critical.time_step),
         products: critical.products,
         followed,
     })
 }
 
-/// A random velocity that moves nodes by 1e-8 of the spacing in a step.
-fn disturbance(model: &Model, spacing: &[f64], time_step: f64) -> Vec<f64> {
+/// A random velocity that moves nodes by 1e-8 of the spacing in a step of the
+/// size of the per-point bound.
+pub(super) fn trial_velocity(model: &Model, spacing: &[f64]) -> Vec<f64> {
     let finest = spacing.iter().copied().fold(f64::INFINITY, f64::min);
-    let size = 1e-8 * finest / time_step;
+    let size = 1e-8 * finest / model.bound;
     let mut random = Random(11);
     (0..model.size()).map(|_| size * random.symmetric()).collect()
+}
+
+/// By bisection between a step \[s\] that is stable and one that is not; `guess`
+/// only says where to look first.
+pub(super) fn largest_stable_step(
+    model: &Model,
+    u: &[f64],
+    t: f64,
+    velocity: &[f64],
+    guess: f64,
+) -> f64 {
+    let stable = |time_step: f64| is_stable(model, u, t, velocity, time_step);
+    let (mut low, mut high) = (0.98 * guess, 1.02 * guess);
+    while !stable(low) {
+        (low, high) = (0.8 * low, low);
+    }
+    while stable(high) {
+        (low, high) = (high, 1.2 * high);
+    }
+    while high - low > BISECTION * low {
+        let middle = 0.5 * (low + high);
+        if stable(middle) { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
 }
 
 /// Marches with conditions held as at time `t` and no damping.
