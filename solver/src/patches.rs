@@ -8,6 +8,9 @@ use std::ops::Range;
 
 /// Edge of a patch over the nodal spacing \[–\].
 const EDGE: f64 = 2.5;
+/// Lengths and volumes that differ by less than this share are the same: on a
+/// grid they tie, and round-off must not choose the patches \[–\].
+const SAME: f64 = 1e-9;
 /// A direction in which a patch is thinner than this share of its widest
 /// carries no slope \[–\].
 const FLATTEST: f64 = 0.15;
@@ -54,7 +57,7 @@ impl Bisection<'_> {
         let volume: f64 = points.iter().map(|&q| self.quadrature.weights[q]).sum();
         let spacing = points.iter().map(|&q| self.spacing[q]).sum::<f64>() / count;
         let largest = (EDGE * spacing).powi(self.components as i32) * self.thickness;
-        if volume <= largest || points.len() < 2 {
+        if volume <= largest * (1.0 + SAME) || points.len() < 2 {
             starts.push(starts[starts.len() - 1] + points.len());
             return;
         }
@@ -62,16 +65,33 @@ impl Bisection<'_> {
         let (min, max) = points
             .iter()
             .fold((first, first), |(l, u), &q| (l.inf(&positions[q]), u.sup(&positions[q])));
-        let axis = (max - min).imax();
-        points.sort_by(|&a, &b| positions[a][axis].total_cmp(&positions[b][axis]).then(a.cmp(&b)));
+        let longest = (max - min).max();
+        let across = (0..3).find(|&k| max[k] - min[k] >= longest * (1.0 - SAME)).unwrap_or(0);
+        for turn in (0..3).rev() {
+            self.sort_into_layers(points, (across + turn) % 3, SAME * longest);
+        }
         let (mut below, mut middle) = (0.0, 0);
-        while middle < points.len() - 1 && below < 0.5 * volume {
+        while middle < points.len() - 1 && below < 0.5 * volume * (1.0 - SAME) {
             below += self.quadrature.weights[points[middle]];
             middle += 1;
         }
         let (low, high) = points.split_at_mut(middle.max(1));
         self.split(low, starts);
         self.split(high, starts);
+    }
+
+    /// Sorts points along an axis; points of one layer, each within `same`
+    /// \[m\] of the one before, keep their order.
+    fn sort_into_layers(&self, points: &mut [usize], axis: usize, same: f64) {
+        let at = |q: usize| self.quadrature.positions[q][axis];
+        let mut coordinates: Vec<f64> = points.iter().map(|&q| at(q)).collect();
+        coordinates.sort_by(f64::total_cmp);
+        let edges: Vec<f64> = coordinates
+            .windows(2)
+            .filter(|pair| pair[1] - pair[0] > same)
+            .map(|pair| 0.5 * (pair[0] + pair[1]))
+            .collect();
+        points.sort_by_key(|&q| edges.partition_point(|&edge| edge < at(q)));
     }
 }
 
@@ -112,4 +132,48 @@ pub fn orthonormal_basis(
         }
     }
     basis
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Shape;
+    use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
+    use crate::problem::{BackgroundGrid, Dimension, InsideRule, Region};
+    use crate::quadrature::quadrature;
+    use crate::selection::Selector;
+
+    /// Starts of patches and sorted points \[edge\] of a cube of edge `size`
+    /// \[m\] at `at` \[m\], on a grid that fits it.
+    fn patches(size: f64, at: Vector3) -> (Vec<usize>, Vec<Vector3>) {
+        let body = Shape::Box { min: at, max: at + Vector3::repeat(size) };
+        let constants = ElasticConstants::from_young_poisson(3000.0, 0.49).unwrap();
+        let law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
+        let material = Material { density: 1000.0, law };
+        let regions = [Region { name: "all".into(), part: Selector::All, material }];
+        let grid = BackgroundGrid {
+            cell: size / 7.0,
+            boundary_cell: None,
+            refinements: Vec::new(),
+            gauss_points: 1,
+            inside: InsideRule::VolumeFraction,
+        };
+        let mut points = quadrature(&body, &regions, &grid, &Dimension::Three).unwrap();
+        let spacing = vec![size / 6.0; points.positions.len()];
+        let starts = sort_into_patches(&mut points, &spacing, 1.0, 3);
+        (starts, points.positions.iter().map(|X| (X - at) / size).collect())
+    }
+
+    #[test]
+    fn patches_do_not_depend_on_the_unit_or_the_place() {
+        let (starts, positions) = patches(1.0, Vector3::zeros());
+        let places = [Vector3::zeros(), Vector3::new(6.0, -7.0, 4.0)];
+        for (size, place) in [1e-6, 0.1, 3e4].into_iter().zip(places.into_iter().cycle()) {
+            let (others, moved) = patches(size, place * size);
+            assert_eq!(starts, others, "edge {size} m");
+            for (a, b) in positions.iter().zip(&moved) {
+                assert!((a - b).norm() < 1e-9, "edge {size} m: {a:?} against {b:?}");
+            }
+        }
+    }
 }

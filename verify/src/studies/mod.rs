@@ -11,6 +11,13 @@ mod comparison_tables;
 mod consistency;
 mod convergence;
 mod energy;
+mod hard;
+mod hard_bodies;
+mod hard_cases;
+mod hard_moving;
+mod hard_run;
+mod hard_thin;
+mod hard_twins;
 mod manufactured;
 mod manufactured_report;
 mod patch;
@@ -64,6 +71,14 @@ pub const STUDIES: &[Definition] = &[
         claim: "Undamped motion keeps its energy over tens of thousands of steps up to O(Δt²), the \
                 balance of all works closes, and any number of threads gives the same bits.",
         body: energy::energy,
+    },
+    Definition {
+        id: "hard_cases",
+        title: "Hard cases",
+        claim: "Large strains, poor clouds, thin parts, hard contrasts, long undamped runs and \
+                extreme units end with a sound body, every J above zero, or with an error that \
+                says why; none ends in silence.",
+        body: hard::hard,
     },
     Definition {
         id: "brain",
