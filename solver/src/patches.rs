@@ -7,7 +7,7 @@ use crate::tensor::Vector3;
 use std::ops::Range;
 
 /// Edge of a patch over the nodal spacing \[–\].
-const EDGE: f64 = 2.5;
+const EDGE: f64 = 3.0;
 /// A direction in which a patch is thinner than this share of its widest
 /// carries no slope \[–\].
 const FLATTEST: f64 = 0.15;
@@ -15,7 +15,7 @@ const FLATTEST: f64 = 0.15;
 /// Sorts the points of each region into patches by recursive bisection and
 /// returns where patches start, the end included. `spacing` is that of the
 /// nodes around each point \[m\]; a patch is no larger than
-/// (2.5 spacings)^`components`.
+/// (3 spacings)^`components`.
 pub fn sort_into_patches(
     quadrature: &mut Quadrature,
     spacing: &[f64],
