@@ -7,11 +7,12 @@ use crate::error::Error;
 use crate::mls::{Approximation, PoorSupport, Support};
 use crate::nodes::{NodeCloud, node_cloud};
 use crate::patches::sort_into_patches;
-use crate::problem::{Dimension, Gradients, Problem};
+use crate::problem::{Dimension, EssentialCondition, Gradients, Problem};
 use crate::quadrature::{Quadrature, quadrature};
 pub use crate::rows::Rows;
-use crate::surface_rule::{SurfaceRule, close};
-use crate::tensor::{Vector3, box_around};
+use crate::selection::Extent;
+use crate::surface_rule::SurfaceRule;
+use crate::tensor::Vector3;
 use rayon::prelude::*;
 
 /// The body, discretised.
@@ -23,7 +24,7 @@ pub struct Discretisation {
     pub quadrature: Quadrature,
     /// Supports of the quadrature points.
     pub supports: Rows,
-    /// The boundary, shared among the boundary nodes.
+    /// The boundary; without panels where nobody asks for it.
     pub surface: SurfaceRule,
     /// Quadrature points of patch p: `patches[p]..patches[p + 1]`; a patch
     /// lies in one region.
@@ -37,13 +38,14 @@ pub struct Discretisation {
 }
 
 /// Edge of the boundary panels over the smallest nodal spacing \[–\].
-const PANEL: f64 = 0.25;
+const PANEL: f64 = 0.5;
 
 /// Something that a user should know before trusting the result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
     FewerPointsThanNodes { points: usize, nodes: usize },
     EnlargedSupports { points: usize, of: usize },
+    InconsistentGradients { residual: f64, tolerance: f64, iterations: usize },
 }
 
 impl std::fmt::Display for Warning {
@@ -59,13 +61,19 @@ impl std::fmt::Display for Warning {
                 "the influence radii had to be enlarged at {points} of {of} quadrature points; \
                  a larger dilation avoids that"
             ),
+            Warning::InconsistentGradients { residual, tolerance, iterations } => write!(
+                f,
+                "the gradients are consistent to {residual:.1e} only, not to the wanted {tolerance:.1e}, \
+                 after {iterations} iterations; a larger tolerance, a larger dilation or a more even \
+                 cloud avoids that"
+            ),
         }
     }
 }
 
 impl Discretisation {
     /// Nodes and quadrature points of a problem with their supports. Points
-    /// are sorted by region and along a space-filling curve.
+    /// are sorted by region and patch, neighbours in space close in memory.
     pub fn new(problem: &Problem) -> Result<Discretisation, Error> {
         problem.body.validate_body()?;
         let dimension = problem.dimension;
@@ -82,7 +90,6 @@ impl Discretisation {
             recipe.weight_function,
             &dimension,
         );
-        sort_along_curve(&mut quadrature);
         let spacing: Vec<f64> = quadrature
             .positions
             .par_iter()
@@ -100,8 +107,17 @@ impl Discretisation {
         let supports = Rows::from_supports(supports);
         check_coverage(&cloud, &supports)?;
         let finest = cloud.spacing.iter().copied().fold(f64::INFINITY, f64::min);
-        let panels = problem.body.boundary_panels(PANEL * finest, &dimension)?;
-        let surface = SurfaceRule::new(panels, &cloud, dimension.components());
+        let consistent = matches!(recipe.gradients, Gradients::Consistent { .. });
+        let panels = match consistent || !problem.loads.tractions.is_empty() {
+            true => problem.body.boundary_panels(PANEL * finest, &dimension)?,
+            false => Vec::new(),
+        };
+        let held: Vec<bool> = (0..cloud.positions.len())
+            .map(|node| problem.conditions.iter().any(|condition| holds(condition, &cloud, node)))
+            .collect();
+        let surface =
+            SurfaceRule::new(panels, &cloud, &approximation, &held, dimension.components())
+                .map_err(|(position, poor)| outside(position, &poor))?;
         let mut discretisation = Discretisation {
             dimension,
             cloud,
@@ -125,22 +141,15 @@ impl Discretisation {
     fn make_consistent(&mut self, tolerance: f64) -> Result<(), Error> {
         let (nodes, d) = (self.cloud.positions.len(), self.dimension.components());
         let bodies = connected_bodies(&self.supports, nodes);
-        let mut areas = self.surface.vector_areas(nodes);
+        let mut areas = self.surface.strengths(nodes, |panel| panel.normal);
         for body in 0..bodies.iter().max().map_or(0, |&last| last + 1) {
-            let own: Vec<u32> =
-                (0..nodes as u32).filter(|&node| bodies[node as usize] == body).collect();
-            let volume = close(&mut areas, &self.cloud.positions, &own, d);
-            self.scale_weights(volume, |node| bodies[node as usize] == body);
-        }
-        let mut targets = vec![Vector3::zeros(); nodes];
-        let boundary: Vec<usize> = (0..nodes).filter(|&node| areas[node].norm() > 0.0).collect();
-        let positions: Vec<Vector3> = boundary.iter().map(|&c| self.cloud.positions[c]).collect();
-        let rows = self.rows_at(&positions)?;
-        for (i, &node) in boundary.iter().enumerate() {
-            for entry in rows.row(i) {
-                targets[rows.nodes[entry] as usize] += rows.phi[entry] * areas[node];
+            let owns = |node: u32| bodies[node as usize] == body;
+            let volume = self.surface.close(&mut areas, d, owns);
+            if volume > 0.0 {
+                self.scale_weights(volume, owns);
             }
         }
+        let targets = self.surface.spread(nodes, &areas);
         let layout = Layout {
             nodes: &self.cloud.positions,
             spacing: &self.cloud.spacing,
@@ -166,15 +175,7 @@ impl Discretisation {
     pub fn rows_at(&self, positions: &[Vector3]) -> Result<Rows, Error> {
         let supports: Result<Vec<Support>, Error> = positions
             .iter()
-            .map(|X| {
-                self.approximation.evaluate(X).map_err(|poor| Error::ProbeOutside {
-                    position: *X,
-                    reason: format!(
-                        "{} nodes in its support, condition {:.1e}",
-                        poor.support_size, poor.condition
-                    ),
-                })
-            })
+            .map(|X| self.approximation.evaluate(X).map_err(|poor| outside(*X, &poor)))
             .collect();
         Ok(Rows::from_supports(supports?))
     }
@@ -194,8 +195,25 @@ impl Discretisation {
         if self.enlarged > 0 {
             warnings.push(Warning::EnlargedSupports { points: self.enlarged, of: points });
         }
+        if let Some(Correction { residual, tolerance, iterations, .. }) = self.correction
+            && residual > tolerance
+        {
+            warnings.push(Warning::InconsistentGradients { residual, tolerance, iterations });
+        }
         warnings
     }
+}
+
+/// Whether a condition selects a node.
+pub fn holds(condition: &EssentialCondition, cloud: &NodeCloud, node: usize) -> bool {
+    (condition.extent == Extent::Volume || cloud.on_boundary[node])
+        && condition.part.contains(&cloud.positions[node])
+}
+
+fn outside(position: Vector3, poor: &PoorSupport) -> Error {
+    let (size, condition) = (poor.support_size, poor.condition);
+    let reason = format!("{size} nodes in its support, condition {condition:.1e}");
+    Error::ProbeOutside { position, reason }
 }
 
 fn evaluate_all(
@@ -248,23 +266,45 @@ fn check_coverage(cloud: &NodeCloud, supports: &Rows) -> Result<(), Error> {
     Ok(())
 }
 
-/// Sorts quadrature points by region, then along a Morton curve, so that
-/// neighbours in space are neighbours in memory.
-fn sort_along_curve(quadrature: &mut Quadrature) {
-    let (min, max) = box_around(&quadrature.positions);
-    let scale = 1023.0 / (max - min).max().max(f64::MIN_POSITIVE);
-    let key = |X: &Vector3| {
-        let index = (X - min) * scale;
-        (0..3).map(|k| spread_bits(index[k] as u64) << k).sum::<u64>()
-    };
-    let mut order: Vec<usize> = (0..quadrature.positions.len()).collect();
-    order.sort_by_key(|&q| (quadrature.regions[q], key(&quadrature.positions[q]), q));
-    quadrature.positions = order.iter().map(|&q| quadrature.positions[q]).collect();
-    quadrature.weights = order.iter().map(|&q| quadrature.weights[q]).collect();
-    quadrature.regions = order.iter().map(|&q| quadrature.regions[q]).collect();
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Spreads the lowest 10 bits to every third place.
-fn spread_bits(x: u64) -> u64 {
-    (0..10).map(|bit| ((x >> bit) & 1) << (3 * bit)).sum()
+    #[test]
+    fn a_correction_that_stops_above_its_tolerance_is_told() {
+        let discretisation = |residual: f64| Discretisation {
+            dimension: Dimension::Three,
+            cloud: NodeCloud { positions: vec![], spacing: vec![], on_boundary: vec![] },
+            approximation: Approximation::new(
+                vec![Vector3::zeros()],
+                vec![1.0],
+                crate::problem::Basis::Linear,
+                crate::problem::WeightFunction::QuarticSpline,
+                &Dimension::Three,
+            ),
+            quadrature: Quadrature {
+                positions: vec![],
+                weights: vec![],
+                regions: vec![],
+                cells: 0,
+                cut_cells: 0,
+            },
+            supports: Rows::default(),
+            surface: SurfaceRule::default(),
+            patches: vec![0],
+            correction: Some(Correction {
+                iterations: 500,
+                residual,
+                tolerance: 1e-3,
+                defect: 1.0,
+                bodies: 1,
+            }),
+            enlarged: 0,
+            worst_condition: 1.0,
+        };
+        assert!(discretisation(9e-4).warnings().is_empty());
+        let warnings = discretisation(2e-3).warnings();
+        assert!(matches!(warnings[..], [Warning::InconsistentGradients { iterations: 500, .. }]));
+        assert!(warnings[0].to_string().contains("consistent to 2.0e-3 only"), "{}", warnings[0]);
+    }
 }

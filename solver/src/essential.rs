@@ -2,10 +2,9 @@
 #![allow(non_snake_case)]
 
 use crate::collocation::{Collocation, Scratch};
-use crate::discretisation::Discretisation;
+use crate::discretisation::{Discretisation, holds};
 use crate::error::Error;
 use crate::problem::{Enforcement, EssentialCondition, Prescribed, Problem};
-use crate::selection::Extent;
 use crate::tensor::{Matrix3, Vector3, rotation, vector_at};
 
 /// The conditions of a problem, resolved to nodes and components.
@@ -272,11 +271,7 @@ impl Pose {
 
 fn select(condition: &EssentialCondition, discretisation: &Discretisation) -> Vec<u32> {
     let cloud = &discretisation.cloud;
-    let chosen = |&node: &u32| {
-        let node = node as usize;
-        (condition.extent == Extent::Volume || cloud.on_boundary[node])
-            && condition.part.contains(&cloud.positions[node])
-    };
+    let chosen = |&node: &u32| holds(condition, cloud, node as usize);
     (0..cloud.positions.len() as u32).filter(chosen).collect()
 }
 

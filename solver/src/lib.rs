@@ -35,6 +35,7 @@ pub mod patches;
 
 pub mod rows;
 
+pub mod moments;
 pub mod surface_rule;
 
 pub mod consistency;

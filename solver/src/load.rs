@@ -16,8 +16,8 @@ pub struct LoadPattern {
 }
 
 /// All load patterns of a problem: body forces Σ_q ρ w_q φ_a b and tractions
-/// ∮ φ_a t dA over the selected boundary panels, by the quadrature whose points
-/// are the boundary nodes: consistent gradients balance it exactly.
+/// ∮ φ_a t dA over the selected boundary panels, by the quadrature that consistent
+/// gradients balance exactly.
 pub fn load_patterns(
     problem: &Problem,
     discretisation: &Discretisation,
@@ -59,16 +59,12 @@ fn traction_force(
     if !discretisation.surface.panels.iter().any(chosen) {
         return Err(Error::EmptyTraction { name: traction.name.clone() });
     }
-    let positions = &discretisation.cloud.positions;
-    let areas = discretisation.surface.areas(positions.len(), chosen);
-    let loaded: Vec<usize> = (0..areas.len()).filter(|&node| areas[node] != 0.0).collect();
-    let places: Vec<Vector3> = loaded.iter().map(|&node| positions[node]).collect();
-    let rows = discretisation.rows_at(&places)?;
-    for (i, &node) in loaded.iter().enumerate() {
-        for entry in rows.row(i) {
-            let share = traction.traction * (areas[node] * rows.phi[entry]);
-            add(&mut force, d, rows.nodes[entry], &share);
-        }
+    let nodes = discretisation.cloud.positions.len();
+    let density = |panel: &Panel| if chosen(panel) { traction.traction } else { Vector3::zeros() };
+    let surface = &discretisation.surface;
+    let shares = surface.spread(nodes, &surface.strengths(nodes, density));
+    for (node, share) in shares.iter().enumerate() {
+        add(&mut force, d, node as u32, share);
     }
     Ok(force)
 }

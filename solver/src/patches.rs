@@ -7,7 +7,7 @@ use crate::tensor::Vector3;
 use std::ops::Range;
 
 /// Edge of a patch over the nodal spacing \[–\].
-const EDGE: f64 = 2.5;
+const EDGE: f64 = 3.0;
 /// Lengths and volumes that differ by less than this share are the same: on a
 /// grid they tie, and round-off must not choose the patches \[–\].
 const SAME: f64 = 1e-9;
@@ -18,7 +18,7 @@ const FLATTEST: f64 = 0.15;
 /// Sorts the points of each region into patches by recursive bisection and
 /// returns where patches start, the end included. `spacing` is that of the
 /// nodes around each point \[m\]; a patch is no larger than
-/// (2.5 spacings)^`components`.
+/// (3 spacings)^`components`.
 pub fn sort_into_patches(
     quadrature: &mut Quadrature,
     spacing: &[f64],

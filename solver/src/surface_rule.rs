@@ -1,83 +1,194 @@
-//! Quadrature over the boundary whose points are the boundary nodes.
+//! Quadrature over the boundary.
 #![allow(non_snake_case)]
 
 use crate::geometry::Panel;
+use crate::mls::{Approximation, PoorSupport, Support};
+use crate::moments::take_moments;
 use crate::neighbours::Neighbours;
 use crate::nodes::NodeCloud;
+use crate::rows::Rows;
 use crate::tensor::{Matrix3, Vector3};
-use nalgebra::{Matrix4, Vector4};
+use rayon::prelude::*;
 
-/// Shares of every panel of the boundary in the boundary nodes near it.
+/// Surface integrals ∮ φ_a g dA as Σ_i φ_a(X_i) g_i over points of the boundary.
 ///
-/// A surface integral ∮ g dA becomes Σ_c g(X_c) A_c with A_c = Σ_p A_p ψ_c(p).
-/// The shares ψ_c of a panel have the smallest weighted norm among those that
-/// reproduce linear functions along its plane. With the nodes as points, the
-/// forces of a uniform stress on the boundary are forces at the nodes, where
-/// collocation can take them up (method §3).
-#[derive(Debug, Clone)]
+/// A panel is a point of its own where the boundary is free. Where all nodes near
+/// it are held, it is shared among them: only at nodes can collocation take up the
+/// forces of a uniform stress (method §3). The shares ψ_c of such a panel have the
+/// smallest weighted norm among those that reproduce linear functions along its
+/// plane; then the strengths at the nodes are changed towards
+/// Σ_c φ_a(X_c) g_c = Σ_p φ_a(p) g_p over the panels p, moments kept.
+#[derive(Debug, Clone, Default)]
 pub struct SurfaceRule {
     pub panels: Vec<Panel>,
-    /// Entries of panel p: `starts[p]..starts[p + 1]`.
+    /// φ at the middle of each panel.
+    panel_rows: Rows,
+    /// Points and shares of panel p: `starts[p]..starts[p + 1]`.
     starts: Vec<usize>,
-    /// Node of each entry.
-    nodes: Vec<u32>,
-    /// Share ψ of each entry \[–\].
+    points: Vec<u32>,
+    /// \[–\]
     shares: Vec<f64>,
+    /// The points: `held` nodes first, then free panels \[m\].
+    positions: Vec<Vector3>,
+    held: usize,
+    /// φ at the points.
+    rows: Rows,
 }
 
 /// Nodes farther than this from a panel take no share of it \[spacing\]. Larger
 /// values smear the boundary, which makes sheared and twisted bodies stiffer (at
-/// 1.6 by 2 %), smaller ones make smooth solutions converge more slowly.
+/// 1.6 by 2 %).
 const REACH: f64 = 1.2;
 /// Nodes farther than this from the plane of a panel, over their distance
 /// along it plus a spacing, lie on another face \[–\].
 const LIFT: f64 = 0.3;
 /// Smallest accepted ratio of the eigenvalues of a moment matrix.
 const FLATTEST: f64 = 1e-3;
+/// Steps of the strengths at nodes down the gradient of ½ Σ_a (Σ_c φ_a(X_c) g_c −
+/// Σ_p φ_a(p) g_p)². More change reactions by 0.1 %; at the minimum the strengths
+/// oscillate.
+const SWEEPS: usize = 3;
 
 impl SurfaceRule {
-    /// Shares the panels among the boundary nodes of a cloud.
-    pub fn new(panels: Vec<Panel>, cloud: &NodeCloud, components: usize) -> SurfaceRule {
-        let boundary: Vec<u32> = (0..cloud.positions.len() as u32)
-            .filter(|&node| cloud.on_boundary[node as usize])
-            .collect();
-        let mut rule = SurfaceRule { panels, starts: vec![0], nodes: vec![], shares: vec![] };
-        if boundary.is_empty() {
-            rule.panels.clear();
-            return rule;
-        }
+    /// Finds the points of a boundary; `held` tells which nodes are prescribed.
+    pub fn new(
+        panels: Vec<Panel>,
+        cloud: &NodeCloud,
+        approximation: &Approximation,
+        held: &[bool],
+        components: usize,
+    ) -> Result<SurfaceRule, (Vector3, PoorSupport)> {
+        let nodes = |on: &[bool]| -> Vec<u32> {
+            (0..on.len() as u32).filter(|&node| on[node as usize]).collect()
+        };
+        let boundary = nodes(&cloud.on_boundary);
+        let mut held: Vec<u32> = nodes(held);
+        held.retain(|&node| cloud.on_boundary[node as usize]);
+        let at = |node: &u32| cloud.positions[*node as usize];
         let near = Nearby::new(cloud, &boundary);
-        for panel in &rule.panels {
-            for (node, share) in near.shares(panel, components) {
-                rule.nodes.push(node);
-                rule.shares.push(share);
+        // A panel that the nodes do not reach stands where the nearest one does.
+        let centres: Vec<Vector3> = (panels.par_iter())
+            .map(|panel| match approximation.evaluate(&panel.centre) {
+                Ok(_) => panel.centre,
+                Err(_) => near.nearest(panel).map_or(panel.centre, |node| at(&node)),
+            })
+            .collect();
+        let panel_rows = values_at(approximation, &centres)?;
+        let mut rule = SurfaceRule {
+            panels,
+            panel_rows,
+            starts: vec![0],
+            positions: held.iter().map(at).collect(),
+            held: held.len(),
+            ..SurfaceRule::default()
+        };
+        for (p, panel) in rule.panels.iter().enumerate() {
+            let shares = near.shares(panel, components);
+            let point = |(node, _): &(u32, f64)| held.binary_search(node).ok();
+            match shares.iter().map(point).collect::<Option<Vec<usize>>>() {
+                Some(points) if !points.is_empty() => {
+                    rule.points.extend(points.iter().map(|&point| point as u32));
+                    rule.shares.extend(shares.iter().map(|(_, share)| share));
+                }
+                _ => {
+                    rule.points.push(rule.positions.len() as u32);
+                    rule.shares.push(1.0);
+                    rule.positions.push(centres[p]);
+                }
             }
-            rule.starts.push(rule.nodes.len());
+            rule.starts.push(rule.points.len());
         }
-        rule
+        rule.rows = values_at(approximation, &rule.positions)?;
+        Ok(rule)
     }
 
-    /// Area \[m²\] at each node of the cloud that the chosen panels leave there.
-    pub fn areas(&self, nodes: usize, chosen: impl Fn(&Panel) -> bool) -> Vec<f64> {
-        let mut areas = vec![0.0; nodes];
-        self.scatter(chosen, |node, area, _| areas[node] += area);
-        areas
-    }
-
-    /// Vector area ∮ N dA \[m²\] at each node of the cloud.
-    pub fn vector_areas(&self, nodes: usize) -> Vec<Vector3> {
-        let mut areas = vec![Vector3::zeros(); nodes];
-        self.scatter(|_| true, |node, area, normal| areas[node] += area * normal);
-        areas
-    }
-
-    fn scatter(&self, chosen: impl Fn(&Panel) -> bool, mut add: impl FnMut(usize, f64, &Vector3)) {
-        for (p, panel) in self.panels.iter().enumerate().filter(|(_, panel)| chosen(panel)) {
-            for entry in self.starts[p]..self.starts[p + 1] {
-                add(self.nodes[entry] as usize, panel.area * self.shares[entry], &panel.normal);
+    /// Strengths g_i of a density g on the panels, with its resultant and first
+    /// moments, linear in g.
+    pub fn strengths(&self, nodes: usize, g: impl Fn(&Panel) -> Vector3) -> Vec<Vector3> {
+        let mut strengths = vec![Vector3::zeros(); self.positions.len()];
+        let mut sizes = vec![0.0; self.held];
+        let mut wanted = vec![Vector3::zeros(); nodes];
+        for (p, panel) in self.panels.iter().enumerate() {
+            let strength = panel.area * g(panel);
+            let entries = self.starts[p]..self.starts[p + 1];
+            let shared = (self.points[entries.start] as usize) < self.held;
+            for entry in entries {
+                let point = self.points[entry] as usize;
+                strengths[point] += self.shares[entry] * strength;
+                if shared {
+                    sizes[point] += (self.shares[entry] * panel.area).abs();
+                }
+            }
+            if shared {
+                add(&self.panel_rows, p, &strength, &mut wanted);
             }
         }
+        let own: Vec<usize> = (0..self.held).collect();
+        for _ in 0..SWEEPS {
+            let mut rest = wanted.clone();
+            for (c, strength) in strengths[..self.held].iter().enumerate() {
+                add(&self.rows, c, &-strength, &mut rest);
+            }
+            let value = |entry: usize| self.rows.phi[entry] * rest[self.rows.nodes[entry] as usize];
+            let mut change: Vec<Vector3> =
+                (0..self.held).map(|c| self.rows.row(c).map(value).sum()).collect();
+            take_moments(&mut change, &sizes, &self.positions, &own, |moments, _| moments);
+            strengths.iter_mut().zip(&change).for_each(|(strength, change)| *strength += change);
+        }
+        strengths
     }
+
+    /// Σ_i φ_a(X_i) g_i at each of `nodes` nodes.
+    pub fn spread(&self, nodes: usize, strengths: &[Vector3]) -> Vec<Vector3> {
+        let mut sums = vec![Vector3::zeros(); nodes];
+        for (point, strength) in strengths.iter().enumerate() {
+            add(&self.rows, point, strength, &mut sums);
+        }
+        sums
+    }
+
+    /// Changes vector areas as little as possible, in proportion to their sizes,
+    /// until Σ a_i = 0 and Σ X_i ⊗ a_i = V I over the points of one body, whose
+    /// nodes `owns` tells; returns V \[m³\]. Only so can consistent gradients exist.
+    pub fn close(
+        &self,
+        areas: &mut [Vector3],
+        components: usize,
+        owns: impl Fn(u32) -> bool,
+    ) -> f64 {
+        let nodes = &self.rows.nodes;
+        let own: Vec<usize> =
+            (0..areas.len()).filter(|&point| owns(nodes[self.rows.starts[point]])).collect();
+        let sizes: Vec<f64> = areas.iter().map(|area| area.norm()).collect();
+        let mut volume = 0.0;
+        take_moments(areas, &sizes, &self.positions, &own, |mut moments, length| {
+            let trace: f64 = (0..components).map(|k| moments[(k + 1, k)]).sum();
+            volume = trace * length / components as f64;
+            for k in 0..components {
+                moments[(k + 1, k)] -= trace / components as f64;
+            }
+            moments
+        });
+        volume
+    }
+}
+
+fn add(rows: &Rows, row: usize, strength: &Vector3, sums: &mut [Vector3]) {
+    for entry in rows.row(row) {
+        sums[rows.nodes[entry] as usize] += rows.phi[entry] * strength;
+    }
+}
+
+/// φ without its gradients.
+fn values_at(
+    approximation: &Approximation,
+    positions: &[Vector3],
+) -> Result<Rows, (Vector3, PoorSupport)> {
+    let evaluate = |X: &Vector3| approximation.evaluate(X).map_err(|poor| (*X, poor));
+    let supports: Result<Vec<Support>, _> = positions.par_iter().map(evaluate).collect();
+    let mut rows = Rows::from_supports(supports?);
+    rows.grad_phi = Vec::new();
+    Ok(rows)
 }
 
 /// The boundary nodes, ready to be found.
@@ -107,7 +218,7 @@ impl Nearby<'_> {
             }
             reach *= 1.25;
         }
-        self.nearest(panel)
+        self.nearest(panel).map(|node| vec![(node, 1.0)]).unwrap_or_default()
     }
 
     /// Nodes on the face of the panel, with weights that fall to 0 at `reach`
@@ -130,10 +241,9 @@ impl Nearby<'_> {
         candidates
     }
 
-    fn nearest(&self, panel: &Panel) -> Vec<(u32, f64)> {
-        let distance = |node: &&u32| (self.cloud.positions[**node as usize] - panel.centre).norm();
-        let nearest = self.boundary.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.map(|&node| vec![(node, 1.0)]).unwrap_or_default()
+    fn nearest(&self, panel: &Panel) -> Option<u32> {
+        let distance = |node: &u32| (self.cloud.positions[*node as usize] - panel.centre).norm();
+        self.boundary.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 }
 
@@ -176,53 +286,4 @@ fn linear_shares(
             })
             .collect(),
     )
-}
-
-/// Changes vector areas as little as possible, in proportion to their sizes,
-/// until Σ a_c = 0 and Σ X_c ⊗ a_c = V I over the nodes of one body; returns
-/// V \[m³\]. Only so can consistent gradients exist.
-pub fn close(
-    areas: &mut [Vector3],
-    positions: &[Vector3],
-    nodes: &[u32],
-    components: usize,
-) -> f64 {
-    let size = |areas: &[Vector3], node: u32| areas[node as usize].norm();
-    let total: f64 = nodes.iter().map(|&node| size(areas, node)).sum();
-    if total == 0.0 {
-        return 0.0;
-    }
-    let centre =
-        nodes.iter().map(|&node| positions[node as usize] * size(areas, node)).sum::<Vector3>()
-            / total;
-    let length = (nodes.iter())
-        .map(|&node| (positions[node as usize] - centre).norm())
-        .fold(f64::MIN_POSITIVE, f64::max);
-    let p = |node: u32| {
-        let x = (positions[node as usize] - centre) / length;
-        Vector4::new(1.0, x.x, x.y, x.z)
-    };
-    let mut gram = Matrix4::zeros();
-    let mut moments = nalgebra::Matrix4x3::<f64>::zeros();
-    for &node in nodes {
-        gram += size(areas, node) * p(node) * p(node).transpose();
-        moments += p(node) * areas[node as usize].transpose();
-    }
-    let volume =
-        (0..components).map(|k| moments[(k + 1, k)]).sum::<f64>() * length / components as f64;
-    for k in 0..components {
-        moments[(k + 1, k)] -= volume / length;
-    }
-    if components == 2 {
-        gram[(3, 3)] = 1.0;
-        moments.row_mut(3).fill(0.0);
-    }
-    if let Some(factor) = gram.cholesky() {
-        let change = factor.solve(&moments);
-        let sizes: Vec<f64> = nodes.iter().map(|&node| size(areas, node)).collect();
-        for (&node, size) in nodes.iter().zip(sizes) {
-            areas[node as usize] -= size * change.transpose() * p(node);
-        }
-    }
-    volume
 }

@@ -1,9 +1,10 @@
 //! Affine fields on each connected body: what the operator does not see.
 #![allow(non_snake_case)]
 
+use crate::moments::homogeneous;
 use crate::rows::Rows;
 use crate::tensor::Vector3;
-use nalgebra::{Matrix4, Matrix4x3, Vector4};
+use nalgebra::{Matrix4, Matrix4x3};
 
 /// Affine functions on each body, orthonormal over its nodes.
 pub(super) struct Affine<'a> {
@@ -57,10 +58,6 @@ impl Affine<'_> {
             *value -= parts[self.bodies[node] as usize].tr_mul(&basis(node));
         }
     }
-}
-
-fn homogeneous(x: &Vector3) -> Vector4<f64> {
-    Vector4::new(1.0, x.x, x.y, x.z)
 }
 
 /// The connected body of each node: nodes that share a support are joined.

@@ -31,6 +31,8 @@ pub struct Correction {
     pub iterations: usize,
     /// Residual of condition 2 over that of the plain gradients \[–\].
     pub residual: f64,
+    /// The largest residual that was asked for, or that round-off allows \[–\].
+    pub tolerance: f64,
     /// The plain gradients' residual over the size of the targets \[–\].
     pub defect: f64,
     /// Number of connected bodies.
@@ -70,6 +72,7 @@ pub fn make_consistent(
     Correction {
         iterations,
         residual: last / first.max(f64::MIN_POSITIVE),
+        tolerance: goal / first.max(f64::MIN_POSITIVE),
         defect: first / size,
         bodies: affine.bases.len(),
     }

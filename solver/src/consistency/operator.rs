@@ -6,8 +6,9 @@ use crate::tensor::Vector3;
 use nalgebra::{Matrix4, Matrix4x3, Vector4};
 use rayon::prelude::*;
 
-/// Added to |φ| in the metric so that no entry is out of reach \[–\].
-const METRIC_FLOOR: f64 = 1e-3;
+/// Added to |φ| in the metric so that no entry is out of reach \[–\]; 0.001 makes
+/// bonded cubes 0.3 % stiffer.
+const METRIC_FLOOR: f64 = 0.03;
 
 /// Where and with what weight the gradients stand.
 #[derive(Debug)]
