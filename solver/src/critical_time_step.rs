@@ -1,9 +1,9 @@
 //! The largest stable step of the tangent operator, by Lanczos.
 #![allow(non_snake_case)]
 
-use crate::essential::ConstraintForces;
-use crate::internal_force::{Workspace, internal_force};
+use crate::internal_force::Workspace;
 use crate::model::Model;
+use crate::tangent::Tangent;
 
 /// The critical step and what it cost.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,73 +72,6 @@ pub fn critical_time_step(
         next.iter_mut().for_each(|x| *x /= beta);
         off_diagonal.push(beta);
         basis.push(next);
-    }
-}
-
-/// v ↦ Π M^(−1/2) K M^(−1/2) Π v with Π the projection onto free displacements.
-struct Tangent<'a> {
-    model: &'a Model,
-    u: &'a [f64],
-    t: f64,
-    workspace: &'a mut Workspace,
-    /// √m per component of node \[√kg\].
-    root_mass: Vec<f64>,
-    /// Displacement of the difference quotient \[m\].
-    amplitude: f64,
-    forces: ConstraintForces,
-}
-
-impl<'a> Tangent<'a> {
-    fn new(model: &'a Model, u: &'a [f64], t: f64, workspace: &'a mut Workspace) -> Tangent<'a> {
-        let d = model.components;
-        let root_mass =
-            model.lumped_mass.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
-        // Small against the finest gradients: F changes by about 1e-6.
-        let steepest =
-            model.blocks.iter().flat_map(|b| &b.grad_phi).fold(0.0f64, |a, g| a.max(g.abs()));
-        let amplitude = 1e-6 / steepest;
-        Tangent {
-            model,
-            u,
-            t,
-            workspace,
-            root_mass,
-            amplitude,
-            forces: ConstraintForces::default(),
-        }
-    }
-
-    fn free_size(&self) -> usize {
-        let fixed: usize =
-            self.model.constraints.active(self.t).iter().map(|set| set.rows.len()).sum();
-        self.model.size().saturating_sub(fixed).max(1)
-    }
-
-    /// Removes what the conditions forbid from M^(1/2) u.
-    fn project(&mut self, vector: &mut [f64]) {
-        vector.iter_mut().zip(&self.root_mass).for_each(|(x, r)| *x /= r);
-        self.model.constraints.project(self.t, &self.model.lumped_mass, vector, &mut self.forces);
-        vector.iter_mut().zip(&self.root_mass).for_each(|(x, r)| *x *= r);
-    }
-
-    /// K v as a central difference of the internal force.
-    fn apply(&mut self, vector: &[f64]) -> Vec<f64> {
-        let direction: Vec<f64> = vector.iter().zip(&self.root_mass).map(|(x, r)| x / r).collect();
-        let largest = direction.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-        let epsilon = self.amplitude / largest.max(f64::MIN_POSITIVE);
-        let mut moved = vec![0.0; self.u.len()];
-        let (mut plus, mut minus) = (vec![0.0; self.u.len()], vec![0.0; self.u.len()]);
-        for (sign, f) in [(epsilon, &mut plus), (-epsilon, &mut minus)] {
-            for ((x, u), v) in moved.iter_mut().zip(self.u).zip(&direction) {
-                *x = u + sign * v;
-            }
-            internal_force(self.model, &moved, self.workspace, f);
-        }
-        for ((p, m), r) in plus.iter_mut().zip(&minus).zip(&self.root_mass) {
-            *p = (*p - m) / (2.0 * epsilon * r);
-        }
-        self.project(&mut plus);
-        plus
     }
 }
 

@@ -57,6 +57,8 @@ pub mod model;
 
 pub mod internal_force;
 
+pub mod tangent;
+
 pub mod critical_time_step;
 pub mod state;
 
