@@ -41,7 +41,6 @@ pub mod consistency;
 
 pub mod discretisation;
 
-pub mod mass;
 pub mod time_step_bound;
 
 pub mod collocation;
@@ -50,6 +49,11 @@ pub mod load;
 pub mod essential;
 
 pub mod projection;
+
+pub mod blocks;
+
+pub mod mass;
+pub mod stiffness;
 
 pub mod contact;
 
@@ -70,6 +74,9 @@ pub mod observe;
 
 pub mod pace;
 
+pub mod balance;
+
+pub mod equilibrium;
 pub mod relaxation;
 
 pub mod simulate;
