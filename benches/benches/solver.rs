@@ -5,7 +5,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use mtled::discretisation::Discretisation;
 use mtled::internal_force::{Workspace, internal_force};
 use mtled::model::Model;
-use mtled::problem::{Basis, Cloud, Motion, Problem};
+use mtled::problem::{Basis, Cloud, Motion, Problem, StepControl};
 use mtled::state::State;
 use mtled::step::{Buffers, Scheme, step};
 use mtled_verify::cases::unpack;
@@ -108,11 +108,13 @@ fn whole_step(criterion: &mut Criterion) {
     for (name, problem) in [("cube_1k", cube(1.0)), ("brain_slice", problem("brain_slice"))] {
         let discretisation = discretise(&problem);
         note_size("step", name, &discretisation);
-        let model = Model::new(&problem, &discretisation).expect("carried cases are sound");
+        let mut problem = problem;
         let damping = match problem.motion {
             Motion::Dynamic { damping, .. } => damping,
-            Motion::Static(_) => 10.0,
+            _ => 10.0,
         };
+        problem.motion = Motion::Dynamic { end: 1.0, step: StepControl::default(), damping };
+        let model = Model::new(&problem, &discretisation).expect("carried cases are sound");
         let time_step = 0.9 * model.bound;
         let scheme = Scheme::central_difference(time_step, time_step, damping);
         let (mut state, mut buffers) = (State::new(&model), Buffers::new(&model, false));

@@ -27,7 +27,7 @@ impl Energies {
 pub fn energies(model: &Model, state: &State, workspace: &mut Workspace) -> Energies {
     let d = model.components;
     let mut kinetic = 0.0;
-    for (node, mass) in model.lumped_mass.iter().enumerate() {
+    for (node, mass) in model.inertia.iter().enumerate() {
         let squares = state.velocity[d * node..d * (node + 1)].iter().map(|v| v * v);
         kinetic += 0.5 * mass * squares.sum::<f64>();
     }

@@ -63,6 +63,20 @@ pub enum Error {
              {tolerance:.2e} m, residual {residual:.2e} of the largest force"
     )]
     NotConverged { steps: usize, error: f64, tolerance: f64, residual: f64 },
+    #[error(
+        "newton's method does not treat contact: use dynamic relaxation for a body with obstacles"
+    )]
+    ContactInNewton,
+    #[error(
+        "newton's method has found no equilibrium beyond {reached:.4} of the load: after {iterations} iterations the residual \
+             is {residual:.2e} of the largest force{}: use dynamic relaxation, or lower the load",
+        if *.indefinite { " and the tangent is indefinite, as where a body buckles" } else { "" }
+    )]
+    NoEquilibrium { reached: f64, iterations: usize, residual: f64, indefinite: bool },
+    #[error(
+        "the model was built for a static problem, its masses are fictitious: build it from a problem whose motion is dynamic"
+    )]
+    FictitiousMass,
 }
 
 /// Coordinates in metres for a message.

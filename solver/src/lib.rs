@@ -42,7 +42,6 @@ pub mod consistency;
 
 pub mod discretisation;
 
-pub mod mass;
 pub mod time_step_bound;
 
 pub mod collocation;
@@ -52,13 +51,18 @@ pub mod essential;
 
 pub mod projection;
 
+pub mod blocks;
+
+pub mod mass;
+pub mod stiffness;
+
 pub mod contact;
 
 pub mod model;
 
 pub mod internal_force;
 
-mod tangent;
+pub mod tangent;
 
 pub mod critical_time_step;
 pub mod state;
@@ -71,6 +75,9 @@ pub mod observe;
 
 pub mod pace;
 
+pub mod balance;
+
+pub mod equilibrium;
 pub mod relaxation;
 
 pub mod simulate;

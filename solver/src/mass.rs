@@ -37,3 +37,9 @@ pub fn lumped_mass(
         None => Ok(mass),
     }
 }
+
+/// Masses in proportion to `shares` with the total of `mass` \[kg\].
+pub fn mass_like(shares: &[f64], mass: &[f64]) -> Vec<f64> {
+    let factor = mass.iter().sum::<f64>() / shares.iter().sum::<f64>();
+    shares.iter().map(|share| factor * share).collect()
+}

@@ -26,8 +26,26 @@ pub struct Summary {
     pub smallest_jacobian: f64,
     /// Estimated error \[m\] and relative residual of a static solution.
     pub relaxation: Option<Convergence>,
+    /// What Newton's method took; it has no time steps, which are 0.
+    pub newton: Option<NewtonCounts>,
     /// Whether the observer ended the run early.
     pub stopped: bool,
+}
+
+/// Work and outcome of Newton's method.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct NewtonCounts {
+    /// Parts in which the load was applied.
+    pub increments: usize,
+    /// Corrections, those of increments that failed included.
+    pub iterations: usize,
+    /// Products with the tangent operator, one evaluation of the internal force
+    /// each.
+    pub products: usize,
+    /// All evaluations of the internal force.
+    pub evaluations: usize,
+    /// Largest unbalanced nodal force over the largest nodal force \[–\].
+    pub residual: f64,
 }
 
 /// How well dynamic relaxation has converged.
@@ -141,6 +159,7 @@ impl Pace {
                 lanczos_evaluations: critical.products + 1,
                 smallest_jacobian: f64::INFINITY,
                 relaxation: None,
+                newton: None,
                 stopped: false,
             },
             critical,

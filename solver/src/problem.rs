@@ -281,6 +281,8 @@ pub enum Motion {
     },
     /// Dynamic relaxation to a static solution.
     Static(Relaxation),
+    /// Newton's method to a static solution.
+    Equilibrium(Newton),
 }
 
 /// How the time step follows the critical one.
@@ -314,6 +316,27 @@ pub struct Relaxation {
     pub tolerance: f64,
     pub max_steps: usize,
     pub step: StepControl,
+    pub mass: RelaxationMass,
+}
+
+/// The mass of dynamic relaxation, on which static solutions do not depend.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum RelaxationMass {
+    /// In proportion to the diagonal of the stiffness at rest: stiff and soft
+    /// places then move at the same pace.
+    #[default]
+    Stiffness,
+    /// The lumped mass of the body.
+    Lumped,
+}
+
+/// Settings of Newton's method.
+#[derive(Debug, Clone, Copy)]
+pub struct Newton {
+    /// Amplitudes run from t = 0 to this time \[s\].
+    pub load_end: f64,
+    /// Wanted largest unbalanced nodal force over the largest nodal force \[–\].
+    pub tolerance: f64,
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Dynamic relaxation: damped motion towards a static solution.
 
+use crate::balance::{Imbalance, largest};
 use crate::error::Error;
-use crate::internal_force::internal_force;
 use crate::model::Model;
 use crate::observe::{Continue, Observer};
 use crate::pace::{Convergence, Pace, Summary, check, watch};
@@ -13,6 +13,8 @@ use crate::step::{Buffers, Scheme, external_force, step};
 const ESTIMATE_EVERY: usize = 10;
 /// Steps between two looks at the error.
 const LOOK_EVERY: usize = 20;
+/// Slowest fall of the error per step that two looks can tell \[–\].
+const SLOWEST_RATE: f64 = 0.999;
 
 /// Applies the loads over `load_steps` steps, then holds them until the
 /// estimated error of the largest displacement is below the tolerance and the
@@ -30,7 +32,7 @@ pub(crate) fn relax(
     watch(model, state, &mut buffers, 1.0, 0.0, observer);
     // At a turning point a single increment says nothing: take the largest
     // since the last look.
-    let mut increment = 0.0f64;
+    let (mut increment, mut increment_before) = (0.0f64, f64::INFINITY);
     for count in 1..=settings.max_steps {
         if pace.reevaluate(model, state, &mut buffers) {
             damping.forget();
@@ -45,14 +47,20 @@ pub(crate) fn relax(
         increment = increment.max(report.largest_increment);
         damping.learn(model, state, &buffers, state.time_step);
         let held = count > settings.load_steps;
-        if held && count.is_multiple_of(LOOK_EVERY) {
-            convergence = assess(model, state, &mut buffers, damping.c, increment);
+        // The last look tells how far it came, should it not have converged.
+        let last = count == settings.max_steps;
+        if held && count.is_multiple_of(LOOK_EVERY) || last {
+            let rate = rate(damping.c, increment / increment_before);
+            // One window may lie at a turning point, two do not.
+            let moved = if held { increment.max(increment_before) } else { increment };
+            convergence = assess(model, state, &mut buffers, rate, moved);
         }
         if count.is_multiple_of(LOOK_EVERY) {
-            increment = 0.0;
+            increment_before = std::mem::take(&mut increment);
         }
         let size = largest(&state.displacement).max(1e-12 * model.extent);
-        let converged = convergence.estimated_error <= settings.tolerance * size
+        let converged = held
+            && convergence.estimated_error <= settings.tolerance * size
             && convergence.residual <= 10.0 * settings.tolerance;
         let progress = if converged { 1.0 } else { progress(count, settings, &convergence, size) };
         let jacobian = report.smallest_jacobian.jacobian;
@@ -60,7 +68,9 @@ pub(crate) fn relax(
             watch(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
         if converged || stop {
             let summary = pace.summary(state, stop);
-            return Ok(Summary { relaxation: Some(convergence), ..summary });
+            // Stopped early, it may never have looked.
+            let relaxation = convergence.residual.is_finite().then_some(convergence);
+            return Ok(Summary { relaxation, ..summary });
         }
     }
     Err(Error::NotConverged {
@@ -111,7 +121,7 @@ impl Damping {
         self.since = 0;
         let (mut stiffness, mut inertia) = (0.0, 0.0);
         let d = model.components;
-        for (node, mass) in model.lumped_mass.iter().enumerate() {
+        for (node, mass) in model.inertia.iter().enumerate() {
             for i in d * node..d * (node + 1) {
                 let change = time_step * self.displacement_change[i];
                 stiffness += change * (buffers.f_int[i] - self.force_before[i]);
@@ -129,44 +139,37 @@ fn factor(kappa: f64) -> f64 {
     (kappa - 1.0) / (kappa + 1.0)
 }
 
-/// Error estimate max|Δu| c'/(1 − c') with c' = c + 0.2(1 − c), and the
-/// residual of the static equations.
+/// By how much the error falls in a step: c' = c + 0.2(1 − c) if the damping
+/// fits, or what the increments have shown since the last look if that is
+/// slower. Increments that grow say no more than that the error is large.
+fn rate(c: f64, fallen: f64) -> f64 {
+    let seen = fallen.powf(1.0 / LOOK_EVERY as f64).min(SLOWEST_RATE);
+    (c + 0.2 * (1.0 - c)).max(seen)
+}
+
+/// Error estimate max|Δu| c'/(1 − c'), and the residual of the static
+/// equations.
 fn assess(
     model: &Model,
     state: &mut State,
     buffers: &mut Buffers,
-    c: f64,
+    rate: f64,
     increment: f64,
 ) -> Convergence {
-    let slowed = c + 0.2 * (1.0 - c);
     Convergence {
-        estimated_error: increment * slowed / (1.0 - slowed),
+        estimated_error: increment * rate / (1.0 - rate),
         residual: residual(model, state, buffers),
     }
 }
 
-/// Largest unbalanced nodal force over the largest nodal force, after the
-/// constraint forces have taken what they can. Nodes in contact are left out.
+/// Relative residual of the static equations, after the constraint forces have
+/// taken what they can. Nodes in contact are left out.
 fn residual(model: &Model, state: &mut State, buffers: &mut Buffers) -> f64 {
-    let d = model.components;
-    internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
     external_force(model, state.time, &mut buffers.f_ext);
-    let mut acceleration = vec![0.0; model.size()];
-    for (i, a) in acceleration.iter_mut().enumerate() {
-        *a = (buffers.f_ext[i] - buffers.f_int[i]) / model.lumped_mass[i / d];
-    }
-    let scratch = &mut state.residual_scratch;
-    model.constraints.project(state.time, &model.lumped_mass, &mut acceleration, scratch);
-    for &node in &state.contact.touching {
-        acceleration[d * node as usize..d * (node as usize + 1)].fill(0.0);
-    }
-    let unbalanced = acceleration.iter().enumerate().map(|(i, a)| a * model.lumped_mass[i / d]);
-    let scale = largest(&buffers.f_int).max(largest(&buffers.f_ext));
-    unbalanced.fold(0.0f64, |a, f| a.max(f.abs())) / scale.max(f64::MIN_POSITIVE)
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0f64, |a, x| a.max(x.abs()))
+    let State { displacement, residual_scratch, time, contact, .. } = state;
+    let mut imbalance = Imbalance::new(model, displacement, *time, buffers, residual_scratch);
+    imbalance.ignore(model, &contact.touching);
+    imbalance.relative(model)
 }
 
 /// The load is half of the way; the rest is how far the error has fallen.

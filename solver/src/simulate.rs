@@ -1,10 +1,11 @@
-//! The loop over time, and the choice between motion and relaxation.
+//! The loop over time, and the choice between motion, relaxation and Newton's method.
 
+use crate::equilibrium::equilibrate;
 use crate::error::Error;
 use crate::internal_force::internal_force;
 use crate::model::Model;
 use crate::observe::{Continue, Observer};
-pub use crate::pace::{Convergence, Summary};
+pub use crate::pace::{Convergence, NewtonCounts, Summary};
 use crate::pace::{Pace, check, watch};
 use crate::problem::{Motion, StepControl};
 use crate::relaxation::relax;
@@ -21,9 +22,13 @@ pub fn simulate(
 ) -> Result<Summary, Error> {
     match motion {
         Motion::Dynamic { end, step, damping } => {
+            if model.inertia != model.lumped_mass {
+                return Err(Error::FictitiousMass);
+            }
             march(model, *end, *step, *damping, state, observer)
         }
         Motion::Static(settings) => relax(model, settings, state, observer),
+        Motion::Equilibrium(settings) => equilibrate(model, settings, state, observer),
     }
 }
 

@@ -124,7 +124,7 @@ pub fn external_force(model: &Model, t: f64, f_ext: &mut [f64]) {
 /// The free step.
 fn predict(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers) {
     let d = model.components;
-    for (node, mass) in model.lumped_mass.iter().enumerate() {
+    for (node, mass) in model.inertia.iter().enumerate() {
         let push = scheme.push / mass;
         for i in d * node..d * (node + 1) {
             let velocity =
@@ -140,7 +140,7 @@ fn predict(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers)
 fn constrain(model: &Model, scheme: &Scheme, t: f64, state: &mut State) -> f64 {
     let State { displacement, velocity, constraint_forces, contact, .. } = state;
     let rate = 1.0 / scheme.time_step;
-    let (positions, mass) = (&model.positions, &model.lumped_mass);
+    let (positions, mass) = (&model.positions, &model.inertia);
     model.constraints.enforce(t, positions, mass, displacement, constraint_forces, |i, delta| {
         velocity[i] += delta * rate;
     });
@@ -165,7 +165,7 @@ fn largest_or_nan(values: &[f64]) -> f64 {
 fn add_work(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers) {
     let d = model.components;
     let (mut external, mut total, mut damping) = (0.0, 0.0, 0.0);
-    for (node, mass) in model.lumped_mass.iter().enumerate() {
+    for (node, mass) in model.inertia.iter().enumerate() {
         for i in d * node..d * (node + 1) {
             let mean = 0.5 * (state.velocity[i] + buffers.velocity_before[i]);
             let gained = mass * (state.velocity[i] - buffers.velocity_before[i]);

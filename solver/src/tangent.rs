@@ -42,7 +42,7 @@ impl<'a> Tangent<'a> {
     ) -> Tangent<'a> {
         let d = model.components;
         let root_mass =
-            model.lumped_mass.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
+            model.inertia.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
         // Small against the finest gradients: F changes by about 1e-7.
         let steepest =
             model.blocks.iter().flat_map(|b| &b.grad_phi).fold(0.0f64, |a, g| a.max(g.abs()));
@@ -68,7 +68,7 @@ impl<'a> Tangent<'a> {
     /// Removes what the conditions forbid from M^(1/2) u.
     pub fn project(&mut self, vector: &mut [f64]) {
         vector.iter_mut().zip(&self.root_mass).for_each(|(x, r)| *x /= r);
-        self.model.constraints.project(self.t, &self.model.lumped_mass, vector, &mut self.forces);
+        self.model.constraints.project(self.t, &self.model.inertia, vector, &mut self.forces);
         vector.iter_mut().zip(&self.root_mass).for_each(|(x, r)| *x *= r);
     }
 

@@ -270,12 +270,54 @@ fn a_relaxation_that_runs_out_of_steps_says_how_far_it_came() {
         tolerance: 1e-9,
         max_steps: 50,
         step: StepControl::default(),
+        mass: RelaxationMass::default(),
     };
     let mut state = State::new(&model);
     let run = simulate(&model, &Motion::Static(settings), &mut state, &mut Unobserved);
     let Err(Error::NotConverged { steps, error, tolerance, residual }) = run else {
         panic!("{run:?}")
     };
-    assert!(steps == 50 && error > tolerance && residual > 0.0 && residual.is_finite());
+    assert!(
+        steps == 50
+            && error.is_finite()
+            && error > tolerance
+            && residual > 0.0
+            && residual.is_finite()
+    );
     assert_eq!(state.step, 50);
+}
+
+#[test]
+fn a_relaxation_that_ends_before_its_load_does_says_finite_numbers() {
+    let mut problem = square(6);
+    problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
+    gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
+    let (_, model) = build(&problem);
+    let settings = Relaxation {
+        load_end: 1.0,
+        load_steps: 100,
+        tolerance: 0.5,
+        max_steps: 40,
+        step: StepControl::default(),
+        mass: RelaxationMass::default(),
+    };
+    let motion = Motion::Static(settings);
+    let run = simulate(&model, &motion, &mut State::new(&model), &mut Unobserved);
+    let Err(Error::NotConverged { error, residual, .. }) = run else { panic!("{run:?}") };
+    assert!(error.is_finite() && error > 0.0 && residual.is_finite() && residual > 0.0);
+}
+
+#[test]
+fn newton_refuses_obstacles() {
+    let mut problem = pressed(0.1, 0.02);
+    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-10 });
+    let shape = Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::y() };
+    problem.obstacles.push(Obstacle {
+        name: "floor".into(),
+        shape,
+        offset: 0.0,
+        side: ObstacleSide::Outside,
+        friction: Friction::Frictionless,
+    });
+    assert!(matches!(failure(&problem).0, Error::ContactInNewton));
 }

@@ -98,9 +98,11 @@ pub fn diagnose(case: &Case, error: &mtled::error::Error) -> Diagnostic {
         Error::ProbeOutside { .. } => "probe".to_string(),
         Error::PointWithoutRegion { .. } => "region".to_string(),
         Error::Geometry(_) => "discretisation".to_string(),
-        Error::Diverged { .. } | Error::Inverted { .. } | Error::NotConverged { .. } => {
-            "time".to_string()
-        }
+        Error::ContactInNewton | Error::NoEquilibrium { .. } => "time.solver".to_string(),
+        Error::Diverged { .. }
+        | Error::Inverted { .. }
+        | Error::NotConverged { .. }
+        | Error::FictitiousMass => "time".to_string(),
     };
     case.diagnostic(&key, error.to_string())
 }

@@ -3,7 +3,7 @@
 use super::format::{Mesh, ReferenceFile, SCHEMA_VERSION, Solution, Values};
 use super::quantity::{Quantity, is_dynamic, quantities};
 use crate::scene::Case;
-use mtled::problem::Motion;
+use mtled::problem::{Motion, Newton, Relaxation};
 use thiserror::Error;
 
 /// Codes that references come from; a case needs both.
@@ -95,9 +95,10 @@ fn check(case: &Case, file: &ReferenceFile) -> Result<(), ReferenceError> {
 fn check_times(case: &Case, times: &[f64]) -> Result<(), ReferenceError> {
     let refuse = |reason: String| Err(ReferenceError::Times { case: case.name.clone(), reason });
     match &case.problem.motion {
-        Motion::Static(relaxation) => {
-            if times != [relaxation.load_end] {
-                return refuse(format!("must be [{}], the end of loading", relaxation.load_end));
+        Motion::Static(Relaxation { load_end, .. })
+        | Motion::Equilibrium(Newton { load_end, .. }) => {
+            if times != [*load_end] {
+                return refuse(format!("must be [{load_end}], the end of loading"));
             }
         }
         Motion::Dynamic { end, .. } => {

@@ -8,7 +8,7 @@ mod result;
 pub use output::{write_outputs, write_recorded};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Record, Recorder, Sample};
-pub use result::{neighbour_visits, result_json, summary_text};
+pub use result::{internal_forces, neighbour_visits, result_json, summary_text};
 
 use crate::machine::cpu_seconds;
 use crate::scene::Case;

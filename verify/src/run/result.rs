@@ -55,8 +55,13 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
     })
 }
 
-fn internal_forces(solved: &Solved) -> usize {
-    solved.summary.steps + solved.summary.lanczos_evaluations
+/// Evaluations of the internal force.
+pub fn internal_forces(solved: &Solved) -> usize {
+    let summary = &solved.summary;
+    match summary.newton {
+        Some(newton) => newton.evaluations,
+        None => summary.steps + summary.lanczos_evaluations,
+    }
 }
 
 fn point_evaluations(solved: &Solved) -> usize {
@@ -77,20 +82,29 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
             "relative_residual": convergence.residual,
         })
     });
+    let newton = summary.newton.map(|counts| {
+        json!({
+            "increments": counts.increments,
+            "iterations": counts.iterations,
+            "tangent_products": counts.products,
+            "relative_residual": counts.residual,
+        })
+    });
+    let moves = newton.is_none();
+    let dynamic = matches!(case.problem.motion, Motion::Dynamic { .. });
     json!({
-        "method": match case.problem.motion {
-            Motion::Dynamic { .. } => "dynamic",
-            Motion::Static(_) => "static",
-        },
+        "method": if dynamic { "dynamic" } else { "static" },
         "complete": !summary.stopped,
         "steps": summary.steps,
         "time_s": summary.time,
-        "smallest_time_step_s": summary.time_steps.0,
-        "largest_time_step_s": summary.time_steps.1,
-        "critical_time_step_s": summary.critical_time_step,
-        "per_point_bound_s": solved.prepared.model.bound,
+        "smallest_time_step_s": moves.then_some(summary.time_steps.0),
+        "largest_time_step_s": moves.then_some(summary.time_steps.1),
+        "critical_time_step_s": moves.then_some(summary.critical_time_step),
+        // Of the lumped masses, which a static run does not have.
+        "per_point_bound_s": dynamic.then_some(solved.prepared.model.bound),
         "smallest_jacobian": summary.smallest_jacobian,
         "relaxation": relaxation,
+        "newton": newton,
     })
 }
 
@@ -154,14 +168,25 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
             d.supports.len(),
             d.mean_support()
         ),
-        format!(
-            "  {} steps of {} to {} s (critical at rest {} s), smallest J {}",
-            s.steps,
-            four_digits(s.time_steps.0),
-            four_digits(s.time_steps.1),
-            four_digits(s.critical_time_step),
-            four_digits(s.smallest_jacobian)
-        ),
+        match s.newton {
+            Some(newton) => format!(
+                "  {} corrections in {} parts of the load, {} products with the tangent, smallest J {}, \
+                 residual {} of the largest nodal force",
+                newton.iterations,
+                newton.increments,
+                newton.products,
+                four_digits(s.smallest_jacobian),
+                four_digits(newton.residual)
+            ),
+            None => format!(
+                "  {} steps of {} to {} s (critical at rest {} s), smallest J {}",
+                s.steps,
+                four_digits(s.time_steps.0),
+                four_digits(s.time_steps.1),
+                four_digits(s.critical_time_step),
+                four_digits(s.smallest_jacobian)
+            ),
+        },
     ];
     if let Some(convergence) = s.relaxation {
         lines.push(format!(

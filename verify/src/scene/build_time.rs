@@ -2,14 +2,16 @@
 
 use super::build::Builder;
 use super::format::{
-    CaseFormat, LatticeFormat, MethodFormat, OutputFormat, ProbeFormat, TimeFormat,
+    CaseFormat, LatticeFormat, MethodFormat, OutputFormat, ProbeFormat, SolverFormat, TimeFormat,
 };
 use super::{Outputs, Probe, ProbeKind};
-use mtled::problem::{Dimension, Motion, Relaxation, StepControl};
+use mtled::problem::{Dimension, Motion, Newton, Relaxation, RelaxationMass, StepControl};
 use mtled::tensor::Vector3;
 
 /// Wanted relative error of a static solution \[–\].
 const TOLERANCE: f64 = 1e-4;
+/// Wanted relative residual of Newton's method \[–\].
+const RESIDUAL: f64 = 1e-10;
 /// Step over the critical one where nothing damps: large vibrations near the
 /// limit resonate with the step and blow up (study "energy").
 const UNDAMPED_SAFETY_FACTOR: f64 = 0.8;
@@ -32,6 +34,9 @@ impl Builder<'_> {
                 self.not_negative("time.damping", damping);
                 Motion::Dynamic { end, step, damping }
             }
+            MethodFormat::Static if format.solver == Some(SolverFormat::Newton) => {
+                self.newton(format)
+            }
             MethodFormat::Static => {
                 let relaxation = Relaxation {
                     load_end: format.load_end.unwrap_or(1.0),
@@ -39,16 +44,39 @@ impl Builder<'_> {
                     tolerance: format.tolerance.unwrap_or(TOLERANCE),
                     max_steps: format.max_steps.unwrap_or(MAX_STEPS),
                     step,
+                    mass: RelaxationMass::default(),
                 };
                 self.positive("time.load_end", relaxation.load_end);
                 self.at_least_one("time.load_steps", relaxation.load_steps);
                 self.at_least_one("time.max_steps", relaxation.max_steps);
-                if !(relaxation.tolerance > 0.0 && relaxation.tolerance < 1.0) {
-                    let message = format!("is {}; it must lie in (0, 1)", relaxation.tolerance);
-                    self.mistake("time.tolerance", message);
-                }
+                self.tolerance_of_time(relaxation.tolerance);
                 Motion::Static(relaxation)
             }
+        }
+    }
+
+    fn newton(&mut self, format: &TimeFormat) -> Motion {
+        let keys = [
+            ("load_steps", format.load_steps.is_some()),
+            ("max_steps", format.max_steps.is_some()),
+            ("safety_factor", format.safety_factor.is_some()),
+            ("reevaluate_every", format.reevaluate_every.is_some()),
+            ("fixed_step", format.fixed_step.is_some()),
+        ];
+        for (name, _) in keys.into_iter().filter(|(_, given)| *given) {
+            let message = "does not belong to solver = \"newton\", which takes no time steps";
+            self.mistake(&format!("time.{name}"), message);
+        }
+        let load_end = format.load_end.unwrap_or(1.0);
+        let tolerance = format.tolerance.unwrap_or(RESIDUAL);
+        self.positive("time.load_end", load_end);
+        self.tolerance_of_time(tolerance);
+        Motion::Equilibrium(Newton { load_end, tolerance })
+    }
+
+    fn tolerance_of_time(&mut self, tolerance: f64) {
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            self.mistake("time.tolerance", format!("is {tolerance}; it must lie in (0, 1)"));
         }
     }
 
@@ -58,6 +86,7 @@ impl Builder<'_> {
         let keys = [
             ("end", format.end.is_some(), !is_static),
             ("damping", format.damping.is_some(), !is_static),
+            ("solver", format.solver.is_some(), is_static),
             ("load_end", format.load_end.is_some(), is_static),
             ("load_steps", format.load_steps.is_some(), is_static),
             ("tolerance", format.tolerance.is_some(), is_static),

@@ -291,11 +291,14 @@ pub enum FrictionFormat {
 }
 
 /// How the body moves. `end` and `damping` belong to method "dynamic";
-/// `load_end`, `load_steps`, `tolerance` and `max_steps` to "static".
+/// `solver`, `load_end`, `load_steps`, `tolerance` and `max_steps` to "static".
+/// Newton's method takes `load_end` and `tolerance` only.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeFormat {
     pub method: MethodFormat,
+    /// How a static solution is found; by relaxation if left out.
+    pub solver: Option<SolverFormat>,
     /// Simulated time of a dynamic run [s].
     pub end: Option<f64>,
     /// Mass-proportional damping [1/s]; 0 if left out.
@@ -311,18 +314,30 @@ pub struct TimeFormat {
     pub load_end: Option<f64>,
     /// Steps over which the load is applied.
     pub load_steps: Option<usize>,
-    /// Wanted relative error of the largest displacement [–].
+    /// Wanted relative error of the largest displacement [–], 1e-4 if left
+    /// out; of solver "newton" the largest unbalanced nodal force over the
+    /// largest nodal force, 1e-10 if left out.
     pub tolerance: Option<f64>,
     /// A static run that needs more steps has failed.
     pub max_steps: Option<usize>,
 }
 
-/// Central differences in time, or dynamic relaxation to a static solution.
+/// Central differences in time, or a static solution.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MethodFormat {
     Dynamic,
     Static,
+}
+
+/// The way to a static solution.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SolverFormat {
+    /// Damped explicit motion until it rests; with contact too.
+    Relaxation,
+    /// Newton's method with conjugate gradients, to round-off; no contact.
+    Newton,
 }
 
 /// Where displacements are recorded: one of `point`, `lattice`,
@@ -354,7 +369,8 @@ pub struct LatticeFormat {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputFormat {
-    /// Number of VTU frames; 20 if left out.
+    /// Number of VTU frames; 20 if left out. A static run that ends early has
+    /// fewer, and solver "newton" one for each part of the load.
     pub frames: Option<usize>,
     /// Number of samples of histories; 200 if left out.
     pub history: Option<usize>,

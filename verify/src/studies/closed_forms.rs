@@ -316,6 +316,7 @@ fn column_problem(
             tolerance: 1e-5,
             max_steps: 100_000,
             step: Default::default(),
+            mass: Default::default(),
         }),
         ..problem.clone()
     }

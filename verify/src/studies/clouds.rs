@@ -4,7 +4,10 @@ use super::problems::{
     PLANE, Random, SIZE, block_shape, bonded_face, free_body, grid, recipe, sphere_shape, tissue,
 };
 use mtled::geometry::Shape;
-use mtled::problem::{Amplitude, Basis, Cloud, Dimension, MassRule, Problem, Refinement, Region};
+use mtled::problem::{
+    Amplitude, Basis, Cloud, Dimension, MassRule, Motion, Problem, Refinement, Region,
+    RelaxationMass,
+};
 use mtled::selection::Selector;
 use mtled::tensor::Vector3;
 
@@ -95,6 +98,10 @@ impl Family {
         recipe.gradients = mtled::problem::Gradients::Consistent { tolerance: 1e-3 };
         let mut problem = free_body(self.dimension, block_shape(), tissue(poisson_ratio)?, recipe);
         (self.change)(&mut problem, &mut random, spacing);
+        // The step of real motion, with real masses.
+        if let Motion::Static(relaxation) = &mut problem.motion {
+            relaxation.mass = RelaxationMass::Lumped;
+        }
         Ok(problem)
     }
 }

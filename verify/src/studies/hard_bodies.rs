@@ -9,7 +9,7 @@ use mtled::material::{
 use mtled::nodes::node_cloud;
 use mtled::problem::{
     Amplitude, Cloud, Dimension, EssentialCondition, Motion, Prescribed, Problem, Recipe,
-    Relaxation, StepControl,
+    Relaxation, RelaxationMass, StepControl,
 };
 use mtled::selection::{Extent, Selector};
 use mtled::tensor::Vector3;
@@ -94,20 +94,21 @@ pub fn bonded(height: f64, by: f64) -> Vec<EssentialCondition> {
     vec![bottom, face(height, [Some(0.0), Some(0.0), Some(by)], SMOOTH)]
 }
 
-/// Dynamic relaxation to a tolerance \[–\], the load in `load_steps` steps; the
-/// critical step is found again every `reevaluate_every` steps.
-pub fn settle(tolerance: f64, load_steps: usize, reevaluate_every: usize) -> Motion {
-    let step = StepControl { reevaluate_every, ..StepControl::default() };
-    Motion::Static(Relaxation { load_end: 1.0, load_steps, tolerance, max_steps: 50_000, step })
+/// Dynamic relaxation to a tolerance \[–\], the load in `load_steps` steps.
+pub fn settle(tolerance: f64, load_steps: usize) -> Motion {
+    Motion::Static(Relaxation {
+        load_end: 1.0,
+        load_steps,
+        tolerance,
+        max_steps: 50_000,
+        mass: RelaxationMass::default(),
+        step: StepControl::default(),
+    })
 }
 
-/// As [`settle`] for a stretch by a share of the height: beyond 20 % the step
-/// must follow the body closely.
+/// As [`settle`] for a stretch by a share of the height.
 pub fn settle_stretch(tolerance: f64, share: f64) -> Motion {
-    match share.abs() > 0.2 {
-        true => settle(tolerance, 1000, 50),
-        false => settle(tolerance, 600, 500),
-    }
+    settle(tolerance, if share.abs() > 0.2 { 1000 } else { 600 })
 }
 
 /// The cloud of a problem with a share of its nodes taken out at random.

@@ -93,7 +93,7 @@ fn rolled_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
 /// Compressed so far that a uniform state is about to be, or is, unstable.
 fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     let (mut problem, truth) = rolled(cube(split(3000.0)?, spacing), SIZE, -0.5)?;
-    let pointwise_motion = std::mem::replace(&mut problem.motion, settle(1e-3, 1000, 50));
+    let pointwise_motion = std::mem::replace(&mut problem.motion, settle(1e-3, 1000));
     let folded = case(
         "rollers_compressed_50",
         "cube between rollers, compressed by 50 %",
@@ -111,7 +111,7 @@ fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     let words = "the same, J point by point, 2 cells per spacing";
     list.push(case("rollers_compressed_50_pointwise", words, problem, truth));
     let (mut problem, truth) = rolled(cube(split(3000.0)?, spacing), SIZE, -0.7)?;
-    problem.motion = settle(1e-3, 1000, 50);
+    problem.motion = settle(1e-3, 1000);
     let words = "cube between rollers, compressed by 70 %";
     list.push(HardCase {
         limit: None,
@@ -177,7 +177,7 @@ fn twisted(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
         let turn = Prescribed::Rotation { point: Vector3::zeros(), axis: Vector3::z(), angle };
         problem.conditions =
             vec![face(0.0, [Some(0.0); 3], Amplitude::Constant), prescribed(height, turn, SMOOTH)];
-        problem.motion = settle(1e-5, 800, 50);
+        problem.motion = settle(1e-5, 800);
         let mu = material.law.constants().shear_modulus;
         let truth = Truth::Moment(torsion::moment(mu, angle / height, radius));
         let limit = Some(Limit {

@@ -35,7 +35,7 @@ pub fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Resu
     list.push(HardCase { limit, ..case("contact_release", words, problem.clone(), Truth::Rest) });
     // Let go while pressed: the body leaps off.
     problem.conditions[0].release = Some(0.6);
-    let step = StepControl { safety_factor: 0.8, reevaluate_every: 50, ..StepControl::default() };
+    let step = StepControl { safety_factor: 0.8, ..StepControl::default() };
     problem.motion = Motion::Dynamic { end: 1.2, step, damping: 0.0 };
     list.push(HardCase {
         limit: measured(1e-2, "measured 7.4e-3, O(Δt²) in theory"),
@@ -71,7 +71,7 @@ fn pressed(spacing: f64) -> Result<Problem> {
         side: ObstacleSide::Outside,
         friction: Friction::Frictionless,
     }];
-    let step = StepControl { reevaluate_every: 50, ..StepControl::default() };
+    let step = StepControl::default();
     problem.motion = Motion::Dynamic { end: 2.5, step, damping: 30.0 };
     Ok(problem)
 }

@@ -79,6 +79,6 @@ fn bridge(nodes: f64, spacing: f64) -> Result<Problem> {
         condition
     };
     problem.conditions = vec![end(-1.0, Vector3::zeros()), end(1.0, along * (2.0 * spacing))];
-    problem.motion = settle(1e-5, 800, 50);
+    problem.motion = settle(1e-5, 800);
     Ok(problem)
 }

@@ -6,7 +6,7 @@ use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use mtled::problem::{
     Amplitude, BackgroundGrid, Basis, Cloud, Dilatation, Dimension, Enforcement,
     EssentialCondition, Gradients, InsideRule, Loads, MassRule, Motion, Prescribed, Problem,
-    Recipe, Region, Relaxation, StepControl, WeightFunction,
+    Recipe, Region, Relaxation, RelaxationMass, StepControl, WeightFunction,
 };
 use mtled::selection::{Extent, Selector};
 use mtled::tensor::Vector3;
@@ -104,6 +104,7 @@ pub fn relaxation(load_steps: usize, tolerance: f64) -> Motion {
         tolerance,
         max_steps: 100_000,
         step: StepControl::default(),
+        mass: RelaxationMass::default(),
     })
 }
 

@@ -5,7 +5,9 @@ use super::problems::{
     PLANE, SIZE, block_shape, bonded_face, free_body, grid, recipe, relaxation, sphere_shape,
     tissue,
 };
-use mtled::problem::{Amplitude, Basis, Cloud, Dimension, MassRule, Problem, Refinement};
+use mtled::problem::{
+    Amplitude, Basis, Cloud, Dimension, MassRule, Motion, Problem, Refinement, RelaxationMass,
+};
 use mtled::selection::Selector;
 use mtled::tensor::Vector3;
 
@@ -33,6 +35,10 @@ fn specimen(
     change: impl FnOnce(&mut Problem),
 ) -> Specimen {
     change(&mut problem);
+    // The step of real motion, with real masses.
+    if let Motion::Static(relaxation) = &mut problem.motion {
+        relaxation.mass = RelaxationMass::Lumped;
+    }
     Specimen { id: id.into(), words: words.into(), problem, deformed: false }
 }
 

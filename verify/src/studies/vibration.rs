@@ -91,7 +91,8 @@ fn average(samples: &[(f64, f64)]) -> f64 {
 /// `share` of the critical step at rest.
 pub fn vibrate(steps: usize, share: f64, seed: u64) -> anyhow::Result<Vibration> {
     let recipe = recipe(SIZE / 4.0, 0.3, seed);
-    let problem = free_body(Dimension::Three, block_shape(), tissue(0.49)?, recipe);
+    let mut problem = free_body(Dimension::Three, block_shape(), tissue(0.49)?, recipe);
+    problem.motion = Motion::Dynamic { end: 1.0, step: StepControl::default(), damping: 0.0 };
     let model = prepare(&problem)?.model;
     let at_rest = vec![0.0; model.size()];
     let critical = critical_time_step(&model, &at_rest, 0.0, None, &mut Workspace::new(&model));

@@ -1,0 +1,68 @@
+//! The diagonal of the stiffness at rest.
+
+use crate::blocks::Block;
+
+/// Diagonal of K at rest, the mean over the components of a node \[node\]
+/// \[N/m\]. A point adds w |Grad φ|² (μ + (λ + μ)/d) with λ less what is
+/// projected; a patch adds s U''(1) Σ_b |Σ_q w B_b Grad φ|²/d.
+pub fn stiffness_diagonal(blocks: &[Block], components: usize, nodes: usize) -> Vec<f64> {
+    let mut diagonal = vec![0.0; nodes];
+    for block in blocks {
+        let local = match components {
+            2 => block_diagonal::<2>(block),
+            _ => block_diagonal::<3>(block),
+        };
+        for (&node, value) in block.nodes.iter().zip(local) {
+            diagonal[node as usize] += value;
+        }
+    }
+    diagonal
+}
+
+fn block_diagonal<const D: usize>(block: &Block) -> Vec<f64> {
+    let constants = block.law.constants();
+    let shear = constants.shear_modulus;
+    // U'' at rest as a difference; U is smooth there.
+    let bulk = (block.law.bulk_slope(1.0 + 1e-6) - block.law.bulk_slope(1.0 - 1e-6)) / 2e-6;
+    let projected = block.projection.as_ref().map_or(0.0, |projection| projection.share * bulk);
+    let pointwise = constants.lame_modulus() - projected;
+    let modulus = shear + (pointwise + shear) / D as f64;
+    let mut diagonal = vec![0.0; block.nodes.len()];
+    for (point, weight) in block.quadrature_weights.iter().enumerate() {
+        let (nodes, gradients) = block.support::<D>(point);
+        for (&node, gradient) in nodes.iter().zip(gradients) {
+            let square: f64 = gradient.iter().map(|g| g * g).sum();
+            diagonal[node as usize] += weight * modulus * square;
+        }
+    }
+    add_projected::<D>(block, projected / D as f64, &mut diagonal);
+    diagonal
+}
+
+/// modulus · Σ_b |Σ_q w B_b Grad φ_a|² of every patch.
+fn add_projected<const D: usize>(block: &Block, modulus: f64, diagonal: &mut [f64]) {
+    let Some(projection) = &block.projection else { return };
+    let mut moments = vec![[[0.0; D]; 4]; diagonal.len()];
+    for ends in projection.starts.windows(2) {
+        let patch = ends[0] as usize..ends[1] as usize;
+        for point in patch.clone() {
+            let (nodes, gradients) = block.support::<D>(point);
+            for (&node, gradient) in nodes.iter().zip(gradients) {
+                for (moment, basis) in
+                    moments[node as usize].iter_mut().zip(projection.basis[point])
+                {
+                    let factor = block.quadrature_weights[point] * basis;
+                    moment.iter_mut().zip(gradient).for_each(|(m, g)| *m += factor * g);
+                }
+            }
+        }
+        for point in patch {
+            for &node in block.support::<D>(point).0 {
+                // Taken once: a node that comes again finds nothing.
+                let taken = std::mem::replace(&mut moments[node as usize], [[0.0; D]; 4]);
+                let square: f64 = taken.iter().flatten().map(|m| m * m).sum();
+                diagonal[node as usize] += modulus * square;
+            }
+        }
+    }
+}
