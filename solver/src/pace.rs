@@ -98,13 +98,13 @@ pub(crate) fn check(model: &Model, state: &State, report: &StepReport) -> Result
 
 /// Fewest and most steps between two looks at the tangent; a look takes one
 /// evaluation of the internal force.
-const LOOKS: (usize, usize) = (20, 50);
+const LOOKS: (usize, usize) = (10, 30);
 /// Change of the local growth from look to look above which looks become much
 /// more frequent; below half of it they become rarer \[–\].
 const WANTED_CHANGE: f64 = 0.02;
 /// Change of the local growth since the last Lanczos run that has the next one
 /// made \[–\]. Below it the step follows the growth by itself.
-const CHANGE: f64 = 0.3;
+const CHANGE: f64 = 0.15;
 
 /// Follows the critical step as the body deforms and counts what is done.
 ///

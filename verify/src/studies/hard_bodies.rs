@@ -108,7 +108,12 @@ pub fn settle(tolerance: f64, load_steps: usize) -> Motion {
 
 /// As [`settle`] for a stretch by a share of the height.
 pub fn settle_stretch(tolerance: f64, share: f64) -> Motion {
-    settle(tolerance, if share.abs() > 0.2 { 1000 } else { 600 })
+    let load_steps = match share.abs() {
+        small if small <= 0.2 => 600,
+        large if large <= 0.5 => 1000,
+        _ => 2000,
+    };
+    settle(tolerance, load_steps)
 }
 
 /// The cloud of a problem with a share of its nodes taken out at random.

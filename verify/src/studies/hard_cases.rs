@@ -93,7 +93,7 @@ fn rolled_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
 /// Compressed so far that a uniform state is about to be, or is, unstable.
 fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     let (mut problem, truth) = rolled(cube(split(3000.0)?, spacing), SIZE, -0.5)?;
-    let pointwise_motion = std::mem::replace(&mut problem.motion, settle(1e-3, 1000));
+    let pointwise_motion = std::mem::replace(&mut problem.motion, settle(1e-3, 2000));
     let folded = case(
         "rollers_compressed_50",
         "cube between rollers, compressed by 50 %",
@@ -111,7 +111,7 @@ fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     let words = "the same, J point by point, 2 cells per spacing";
     list.push(case("rollers_compressed_50_pointwise", words, problem, truth));
     let (mut problem, truth) = rolled(cube(split(3000.0)?, spacing), SIZE, -0.7)?;
-    problem.motion = settle(1e-3, 1000);
+    problem.motion = settle(1e-3, 2000);
     let words = "cube between rollers, compressed by 70 %";
     list.push(HardCase {
         limit: None,

@@ -71,7 +71,7 @@ fn pressed(spacing: f64) -> Result<Problem> {
         side: ObstacleSide::Outside,
         friction: Friction::Frictionless,
     }];
-    let step = StepControl::default();
+    let step = StepControl { safety_factor: 0.8, ..StepControl::default() };
     problem.motion = Motion::Dynamic { end: 2.5, step, damping: 30.0 };
     Ok(problem)
 }
