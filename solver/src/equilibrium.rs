@@ -4,7 +4,7 @@
 use crate::balance::{Imbalance, dot, largest};
 use crate::error::Error;
 use crate::essential::ConstraintForces;
-use crate::internal_force::strain_energy;
+use crate::internal_force::{SmallestJacobian, strain_energy};
 use crate::model::Model;
 use crate::observe::{Continue, Observer};
 use crate::pace::{NewtonCounts, Summary, watch};
@@ -124,7 +124,7 @@ struct Solver<'a> {
     path: Path,
     forces: ConstraintForces,
     counts: NewtonCounts,
-    smallest_jacobian: f64,
+    smallest_jacobian: SmallestJacobian,
 }
 
 /// Equilibrium at a share of the load.
@@ -161,7 +161,7 @@ impl<'a> Solver<'a> {
             path,
             forces: ConstraintForces::default(),
             counts: NewtonCounts::default(),
-            smallest_jacobian: f64::INFINITY,
+            smallest_jacobian: SmallestJacobian::NONE,
         };
         // With nothing to fade in yet: the conditions and forces as they are.
         solver.path.gap = solver.path.jump(model, 0.0, &state.displacement, &mut solver.forces);
@@ -300,7 +300,7 @@ impl<'a> Solver<'a> {
         let (u, imbalance) = (found.u, found.imbalance);
         self.counts.increments += 1;
         self.counts.residual = imbalance.relative(model);
-        self.smallest_jacobian = self.smallest_jacobian.min(imbalance.smallest_jacobian.jacobian);
+        self.smallest_jacobian = self.smallest_jacobian.or(imbalance.smallest_jacobian);
         let stored = strain_energy(model, &u, &mut buffers.workspace)
             - strain_energy(model, &state.displacement, &mut buffers.workspace);
         external_force(model, state.time, &mut buffers.f_ext);

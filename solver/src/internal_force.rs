@@ -33,9 +33,10 @@ pub struct SmallestJacobian {
 }
 
 impl SmallestJacobian {
-    const NONE: SmallestJacobian = SmallestJacobian { jacobian: f64::INFINITY, point: 0 };
+    pub const NONE: SmallestJacobian = SmallestJacobian { jacobian: f64::INFINITY, point: 0 };
 
-    fn or(self, other: SmallestJacobian) -> SmallestJacobian {
+    /// The smaller of two.
+    pub fn or(self, other: SmallestJacobian) -> SmallestJacobian {
         if other.jacobian < self.jacobian { other } else { self }
     }
 }

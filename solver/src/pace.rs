@@ -1,5 +1,6 @@
 //! What every run does around its steps: follow the critical step, count,
 //! look for divergence, show itself.
+#![allow(non_snake_case)]
 
 use crate::critical_time_step::{CriticalStep, critical_time_step, local_growth};
 use crate::error::Error;
@@ -8,6 +9,7 @@ use crate::model::Model;
 use crate::observe::{Continue, Observer, View};
 use crate::problem::StepControl;
 use crate::state::State;
+use crate::tensor::Vector3;
 use crate::step::{Buffers, StepReport, worst_node};
 
 /// What a run took.
@@ -23,13 +25,53 @@ pub struct Summary {
     /// Evaluations of the internal force spent on finding critical steps.
     pub lanczos_evaluations: usize,
     /// Smallest J seen at any point and step \[–\].
-    pub smallest_jacobian: f64,
+    pub smallest_jacobian: SmallestJacobian,
     /// Estimated error \[m\] and relative residual of a static solution.
     pub relaxation: Option<Convergence>,
     /// What Newton's method took; it has no time steps, which are 0.
     pub newton: Option<NewtonCounts>,
     /// Whether the observer ended the run early.
     pub stopped: bool,
+}
+
+/// J of a nearly incompressible point below which a finished run is in doubt \[–\].
+const CRUSHED: f64 = 0.3;
+
+/// A nearly incompressible point that has lost most of its volume: the body has
+/// folded there between its nodes, and the forces balance all the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crushed {
+    pub point: usize,
+    /// Reference position \[m\].
+    pub position: Vector3,
+    pub jacobian: f64,
+}
+
+impl std::fmt::Display for Crushed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Crushed { point, position: X, jacobian } = self;
+        write!(
+            f,
+            "J fell to {jacobian:.3} at quadrature point {point} at ({:.6}, {:.6}, {:.6} m), whose material hardly \
+             changes its volume: the body has folded between its nodes or is crushed at an edge, and what \
+             stands around is not to be trusted; use a finer cloud, or load it less",
+            X.x, X.y, X.z
+        )
+    }
+}
+
+impl Summary {
+    /// The point that casts doubt on a finished run, if there is one.
+    pub fn crushed(&self, model: &Model) -> Option<Crushed> {
+        let SmallestJacobian { jacobian, point } = self.smallest_jacobian;
+        let block = model.blocks.iter().find(|block| block.points.contains(&point))?;
+        let resists = block.law.projected_share() > 0.0;
+        (resists && jacobian < CRUSHED).then(|| Crushed {
+            point,
+            position: model.point_positions[point],
+            jacobian,
+        })
+    }
 }
 
 /// Work and outcome of Newton's method.
@@ -157,7 +199,7 @@ impl Pace {
                 time_steps: (f64::INFINITY, 0.0),
                 critical_time_step: critical.time_step,
                 lanczos_evaluations: critical.products + 1,
-                smallest_jacobian: f64::INFINITY,
+                smallest_jacobian: SmallestJacobian::NONE,
                 relaxation: None,
                 newton: None,
                 stopped: false,
@@ -232,7 +274,7 @@ impl Pace {
     }
 
     pub fn see(&mut self, smallest: SmallestJacobian) {
-        self.summary.smallest_jacobian = self.summary.smallest_jacobian.min(smallest.jacobian);
+        self.summary.smallest_jacobian = self.summary.smallest_jacobian.or(smallest);
     }
 
     pub fn summary(&self, state: &State, stopped: bool) -> Summary {

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::internal_force::internal_force;
 use crate::model::Model;
 use crate::observe::{Continue, Observer};
-pub use crate::pace::{Convergence, NewtonCounts, Summary};
+pub use crate::pace::{Convergence, Crushed, NewtonCounts, Summary};
 use crate::pace::{Pace, check, watch};
 use crate::problem::{Motion, StepControl};
 use crate::relaxation::relax;

@@ -100,6 +100,9 @@ fn finish(
         }
         Format::Human => {}
     }
+    if let Some(crushed) = solved.summary.crushed(&solved.prepared.model).filter(|_| !common.quiet) {
+        eprintln!("warning: {crushed}");
+    }
     if solved.summary.stopped {
         eprintln!(
             "stopped at t = {:.6} s; the files hold what was done until then",

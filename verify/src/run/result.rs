@@ -33,7 +33,7 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
             "volume_m3": quadrature.weights.iter().sum::<f64>(),
             "mass_kg": model.lumped_mass.iter().sum::<f64>(),
         },
-        "warnings": discretisation.warnings().iter().map(Warning::to_string).collect::<Vec<_>>(),
+        "warnings": warnings(solved),
         "motion": motion_json(case, solved),
         "work_counters": {
             "steps": solved.summary.steps,
@@ -53,6 +53,15 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
             "provenance": provenance(),
         },
     })
+}
+
+/// What a user should know before trusting the result.
+fn warnings(solved: &Solved) -> Vec<String> {
+    let Solved { prepared, summary, .. } = solved;
+    let mut all: Vec<String> =
+        prepared.discretisation.warnings().iter().map(Warning::to_string).collect();
+    all.extend(summary.crushed(&prepared.model).map(|crushed| crushed.to_string()));
+    all
 }
 
 /// Evaluations of the internal force.
@@ -102,7 +111,7 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
         "critical_time_step_s": moves.then_some(summary.critical_time_step),
         // Of the lumped masses, which a static run does not have.
         "per_point_bound_s": dynamic.then_some(solved.prepared.model.bound),
-        "smallest_jacobian": summary.smallest_jacobian,
+        "smallest_jacobian": summary.smallest_jacobian.jacobian,
         "relaxation": relaxation,
         "newton": newton,
     })
@@ -175,7 +184,7 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
                 newton.iterations,
                 newton.increments,
                 newton.products,
-                four_digits(s.smallest_jacobian),
+                four_digits(s.smallest_jacobian.jacobian),
                 four_digits(newton.residual)
             ),
             None => format!(
@@ -184,7 +193,7 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
                 four_digits(s.time_steps.0),
                 four_digits(s.time_steps.1),
                 four_digits(s.critical_time_step),
-                four_digits(s.smallest_jacobian)
+                four_digits(s.smallest_jacobian.jacobian)
             ),
         },
     ];

@@ -188,7 +188,7 @@ fn check_motion(study: &mut Study, run: &Run) {
         "jacobian",
         "smallest J at any point and step",
         Kind::Exact,
-        run.solved.summary.smallest_jacobian,
+        run.solved.summary.smallest_jacobian.jacobian,
         Bound::AtLeast(0.0),
         "1",
         "matter does not turn inside out",

@@ -30,9 +30,8 @@ pub fn hard(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
 const FINDINGS: [&str; 6] = [
     "Nodes are jittered by 0.3 of the spacing; bodies are turned by 20° or round, and the cells of \
      the grid fit nothing.",
-    "Beyond 20 % the critical step is found again every 50 steps. At the default of 500 and a load \
-     of 1000 steps, tension by 150 % and compression by 50 % and 70 % outrun their step and end as \
-     Inverted or Diverged.",
+    "Loads are applied in 600 steps up to 20 %, in 1000 up to 50 % and in 2000 beyond. Applied in \
+     1000 steps, the bonded cube compressed by 70 % ends as Inverted.",
     "Compression between rollers by 50 %: an incompressible neo-Hookean square column of this \
      height bends in plane strain at a stretch of 0.486 and wrinkles at 0.444 (Biot 1963), so at \
      0.5 the uniform state is still an equilibrium that can stand, and at 0.3 it is not. With J \
@@ -40,10 +39,9 @@ const FINDINGS: [&str; 6] = [
      edge and to 35 % with 8 and 10, and folds 5 % later. The likely reason is that waves shorter \
      than a patch see only the pointwise part of the bulk stiffness, 1.5 μ, and a material so \
      compressible loses its stability under less. The folded state converges with every J > 0; \
-     noise of 0.1 and more, seven orders above that of the uniform state, and J of a hundredth at \
-     ν = 0.49 tell it. A pointwise part of 6 μ holds to 40 % with 6 to 10 spacings and puts the bonded \
-     reaction at 20 % off by 7.8 instead of 4.2 %. Pointwise dilatation with two cells per spacing \
-     holds to 50 %.",
+     noise of 0.1 and more, seven orders above that of the uniform state, and J of a few hundredths \
+     at ν = 0.49 tell it, and the run warns of it. A pointwise part of 6 μ holds to 40 % with 6 to 10 spacings and puts the bonded \
+     reaction at 20 % off by 7.8 instead of 4.2 %.",
     "Noise is the root mean square of u_a − Σ φ_b(X_a) u_b, the part of the nodal parameters that \
      the field does not show, over the largest root mean square of u_a in the run: 0 for an affine \
      field, O(h²) for a smooth one, of order 1 for a field that changes its sign from node to node. \
@@ -105,18 +103,19 @@ fn row(case: &HardCase, outcome: &Outcome) -> Vec<Cell> {
 /// Nothing may end in silence, and every case must end as it is known to.
 fn add_outcomes(study: &mut Study, pairs: &[(&HardCase, &Outcome)]) {
     let silent = |(_, outcome): &&(&HardCase, &Outcome)| match outcome {
-        Outcome::Finished(m) => !m.is_sound(),
+        Outcome::Finished(m) => !m.is_sound() || (m.is_far() && m.crushed.is_none()),
         Outcome::Refused { .. } => false,
     };
     study.checks.push(Check::new(
         "hard_cases/silent",
-        "cases that ended without an error and with a displacement that is no number or with J ≤ 0",
+        "cases that ended without an error and with a displacement that is no number, with J ≤ 0, or \
+         more than 10 % from their truth without a warning",
         Kind::Exact,
         pairs.iter().filter(silent).count() as f64,
         Bound::AtMost(0.0),
         "1",
-        "A body is finite and not inside out, or the run ends in a typed error; J is computed anew \
-         from the last displacements",
+        "A body is finite, not inside out, and what is far from the truth warns; or the run ends in a \
+         typed error; J is computed anew from the last displacements",
     ));
     let far = |(_, outcome): &&(&HardCase, &Outcome)| match outcome {
         Outcome::Finished(m) => m.is_far(),
@@ -129,7 +128,7 @@ fn add_outcomes(study: &mut Study, pairs: &[(&HardCase, &Outcome)]) {
         pairs.iter().filter(far).count() as f64,
         Bound::AtMost(2.0),
         "1",
-        "measured: compression between rollers by 50 % and by 70 %, see the notes",
+        "measured: compression between rollers by 50 %, projected and pointwise, see the notes",
     ));
     for (case, outcome) in pairs {
         let found = match outcome {

@@ -11,6 +11,7 @@ use mtled::error::Error;
 use mtled::essential::Reaction;
 use mtled::internal_force::Workspace;
 use mtled::model::Model;
+use mtled::simulate::Crushed;
 use mtled::observe::{Continue, Observer, View};
 use mtled::problem::{Motion, Problem};
 use mtled::tensor::{Matrix3, Vector3};
@@ -92,6 +93,8 @@ pub struct Measures {
     /// Against the truth \[–\].
     pub error: Option<f64>,
     pub noise: f64,
+    /// What the run says about a point that lost its volume.
+    pub crushed: Option<Crushed>,
     /// Most nodes that touched an obstacle at once.
     pub touched: usize,
     /// Of the gradients' consistency, over its size before the correction \[–\].
@@ -111,10 +114,12 @@ impl Measures {
 
     /// In a word, for the table.
     pub fn verdict(&self) -> &'static str {
-        match (self.is_sound(), self.is_far()) {
-            (false, _) => "not sound",
-            (true, true) => "finite, far from the truth",
-            (true, false) => "finite",
+        match (self.is_sound(), self.is_far(), self.crushed.is_some()) {
+            (false, ..) => "not sound",
+            (true, true, true) => "finite, far from the truth, with a warning",
+            (true, true, false) => "finite, far from the truth",
+            (true, false, true) => "finite, with a warning",
+            (true, false, false) => "finite",
         }
     }
 }
@@ -250,10 +255,11 @@ fn measure(case: &HardCase, solved: &Solved, watcher: &Watcher, finer: f64) -> M
     Measures {
         nodes: model.positions.len(),
         steps: solved.summary.steps,
-        smallest_jacobian: smallest(solved.summary.smallest_jacobian, now),
+        smallest_jacobian: smallest(solved.summary.smallest_jacobian.jacobian, now),
         finite: u.iter().all(|u| u.is_finite()),
         error,
         noise: noise(solved) / watcher.size,
+        crushed: solved.summary.crushed(model),
         touched: watcher.touched,
         residual: discretisation.correction.map_or(f64::NAN, |correction| correction.residual),
     }
