@@ -25,6 +25,7 @@ mod patch_exact;
 mod plain;
 mod problems;
 mod references;
+mod set_up;
 mod specimens;
 mod statics;
 mod time_step;
@@ -153,6 +154,14 @@ pub const STUDIES: &[Definition] = &[
         claim: "The shape functions sum to one and reproduce their basis, values and gradients, to \
                 round-off, on any cloud and anywhere in space; Grad φ is the derivative of φ.",
         body: consistency::consistency,
+    },
+    Definition {
+        id: "set_up",
+        title: "Set-up",
+        claim: "Making the gradients consistent takes the same few iterations at any number of nodes \
+                and on any shape, and all that comes before the first step costs as much as some \
+                hundred steps.",
+        body: set_up::set_up,
     },
     Definition {
         id: "references",
