@@ -9,8 +9,8 @@ use crate::model::Model;
 use crate::observe::{Continue, Observer, View};
 use crate::problem::StepControl;
 use crate::state::State;
-use crate::tensor::Vector3;
 use crate::step::{Buffers, StepReport, worst_node};
+use crate::tensor::Vector3;
 
 /// What a run took.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::geometry::Shape;
 use crate::problem::{BackgroundGrid, Dimension, InsideRule, Region};
 use crate::tensor::Vector3;
+use rayon::prelude::*;
 
 /// Quadrature points of the whole body.
 #[derive(Debug, Clone, Default)]
@@ -60,32 +61,44 @@ pub fn quadrature(
         Dimension::PlaneStrain { thickness, z } => (thickness, z),
     };
     let components = dimension.components();
-    let mut builder =
-        Builder { body, regions, grid, components, thickness, out: Quadrature::default() };
     let counts = [0, 1, 2].map(|k| match k < components {
         // A grid that fits exactly must not gain a layer from round-off.
         true => ((max[k] - min[k]) / grid.cell - 1e-9).ceil().max(1.0) as usize,
         false => 1,
     });
     let middle = (min + max) * 0.5;
-    for k in 0..counts[2] {
-        for j in 0..counts[1] {
-            for i in 0..counts[0] {
-                let mut centre = middle;
-                for (axis, index) in [i, j, k].into_iter().enumerate() {
-                    centre[axis] += grid.cell * (index as f64 + 0.5 - 0.5 * counts[axis] as f64);
-                }
-                if components == 2 {
-                    centre.z = z;
-                }
-                builder.visit(Cell { centre, edge: grid.cell })?;
+    let row_of_cells = |row: usize| {
+        let mut builder =
+            Builder { body, regions, grid, components, thickness, out: Quadrature::default() };
+        for i in 0..counts[0] {
+            let mut centre = middle;
+            for (axis, index) in [i, row % counts[1], row / counts[1]].into_iter().enumerate() {
+                centre[axis] += grid.cell * (index as f64 + 0.5 - 0.5 * counts[axis] as f64);
             }
+            if components == 2 {
+                centre.z = z;
+            }
+            builder.visit(Cell { centre, edge: grid.cell })?;
         }
+        Ok(builder.out)
+    };
+    let rows: Vec<Result<Quadrature, Error>> =
+        (0..counts[1] * counts[2]).into_par_iter().map(row_of_cells).collect();
+    let all = join(rows.into_iter().collect::<Result<_, _>>()?);
+    if all.positions.is_empty() { Err(Error::NoQuadraturePoints) } else { Ok(all) }
+}
+
+/// All parts in their order.
+fn join(parts: Vec<Quadrature>) -> Quadrature {
+    let mut all = Quadrature::default();
+    for part in parts {
+        all.positions.extend(part.positions);
+        all.weights.extend(part.weights);
+        all.regions.extend(part.regions);
+        all.cells += part.cells;
+        all.cut_cells += part.cut_cells;
     }
-    if builder.out.positions.is_empty() {
-        return Err(Error::NoQuadraturePoints);
-    }
-    Ok(builder.out)
+    all
 }
 
 impl Builder<'_> {

@@ -100,7 +100,8 @@ fn finish(
         }
         Format::Human => {}
     }
-    if let Some(crushed) = solved.summary.crushed(&solved.prepared.model).filter(|_| !common.quiet) {
+    if let Some(crushed) = solved.summary.crushed(&solved.prepared.model).filter(|_| !common.quiet)
+    {
         eprintln!("warning: {crushed}");
     }
     if solved.summary.stopped {

@@ -11,9 +11,9 @@ use mtled::error::Error;
 use mtled::essential::Reaction;
 use mtled::internal_force::Workspace;
 use mtled::model::Model;
-use mtled::simulate::Crushed;
 use mtled::observe::{Continue, Observer, View};
 use mtled::problem::{Motion, Problem};
+use mtled::simulate::Crushed;
 use mtled::tensor::{Matrix3, Vector3};
 
 /// What a run may be compared with.

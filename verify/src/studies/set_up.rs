@@ -128,9 +128,8 @@ fn measure(words: String, problem: Problem) -> anyhow::Result<Costs> {
     let u = vec![0.0; model.size()];
     let (_, critical) = timed(|| critical_time_step(&model, &u, 0.0, None, &mut workspace));
     let mut f = u.clone();
-    let mut steps: Vec<f64> = (0..9)
-        .map(|_| timed(|| internal_force(&model, &u, &mut workspace, &mut f)).1)
-        .collect();
+    let mut steps: Vec<f64> =
+        (0..9).map(|_| timed(|| internal_force(&model, &u, &mut workspace, &mut f)).1).collect();
     steps.sort_by(f64::total_cmp);
     let correction = discretisation
         .correction
