@@ -56,6 +56,8 @@ pub mod contact;
 
 pub mod model;
 
+pub mod zero_energy;
+
 pub mod internal_force;
 
 mod tangent;

@@ -1,5 +1,6 @@
 //! Everything that stays constant during a run, checked.
 
+use crate::consistency::connected_bodies;
 use crate::contact::ContactPlan;
 use crate::discretisation::Discretisation;
 use crate::error::Error;
@@ -8,7 +9,7 @@ use crate::load::{LoadPattern, load_patterns};
 use crate::mass::lumped_mass;
 use crate::material::Law;
 use crate::patches::orthonormal_basis;
-use crate::problem::{Dilatation, Problem};
+use crate::problem::{Dilatation, Dimension, Problem};
 use crate::projection::Projection;
 use crate::tensor::{Vector3, box_around};
 use crate::time_step_bound::per_point_bound;
@@ -87,6 +88,7 @@ impl Model {
             .collect();
         let lumped_mass = lumped_mass(discretisation, &density, problem.recipe.mass)?;
         let constraints = Constraints::new(problem, discretisation, &lumped_mass)?;
+        check_rank(discretisation, &constraints)?;
         let bound = per_point_bound(problem, discretisation, &lumped_mass);
         Ok(Model {
             components: problem.dimension.components(),
@@ -111,6 +113,25 @@ impl Model {
     /// Bytes that one evaluation of the internal force streams.
     pub fn bytes_per_step(&self) -> usize {
         self.blocks.iter().map(|b| 8 * b.grad_phi.len() + 4 * b.supports.len()).sum()
+    }
+}
+
+/// At rest a point sees its strains and nothing else, six or three in a plane:
+/// motions beyond that number, the held components and the rigid motions of
+/// each body have no energy whatever the supports.
+fn check_rank(discretisation: &Discretisation, constraints: &Constraints) -> Result<(), Error> {
+    let (points, nodes) = (discretisation.supports.len(), discretisation.cloud.positions.len());
+    let (d, strains, rigid) = match discretisation.dimension {
+        Dimension::Three => (3, 6, 6),
+        Dimension::PlaneStrain { .. } => (2, 3, 3),
+    };
+    let held: usize = constraints.active(0.0).iter().map(|set| set.rows.len()).sum();
+    let bodies = connected_bodies(&discretisation.supports, nodes);
+    let bodies = bodies.iter().max().map_or(0, |&last| last as usize + 1);
+    let modes = (d * nodes).saturating_sub(held + strains * points + rigid * bodies);
+    match modes {
+        0 => Ok(()),
+        modes => Err(Error::TooFewPoints { points, strains, nodes, held, modes }),
     }
 }
 
