@@ -29,9 +29,23 @@ pub enum Error {
     UncoveredNode { node: usize, position: Vector3 },
     #[error("node {node} at ({}) has a lumped mass of {mass:.3e} kg: use smaller cells, or mass = \"even_split\"", show(.position))]
     MasslessNode { node: usize, position: Vector3, mass: f64 },
-    #[error("boundary node {node} at ({}) shares no support with an interior node: \
-             use a smaller spacing or a larger dilation", show(.position))]
-    IsolatedBoundaryNode { node: usize, position: Vector3 },
+    #[error(
+        "{points} quadrature points with {strains} strains each cannot see all motions of {nodes} nodes, of which \
+             {held} components are held: at least {modes} motions without energy (hourglassing) are left; use smaller \
+             cells: 1.26 per nodal spacing give two points per node"
+    )]
+    TooFewPoints { points: usize, strains: usize, nodes: usize, held: usize, modes: usize },
+    #[error("{points} quadrature points for {nodes} nodes leave at least {modes} motions of which hardly any strain \
+             energy is seen (hourglassing), {share:.1e} of it at the least, the worst about node {node} at ({}): \
+             use smaller cells: 1.26 per nodal spacing give two points per node", show(.position))]
+    ZeroEnergyModes {
+        points: usize,
+        nodes: usize,
+        modes: usize,
+        share: f64,
+        node: usize,
+        position: Vector3,
+    },
     #[error("condition \"{name}\" selects no node")]
     EmptySelection { name: String },
     #[error("traction \"{name}\" selects no part of the boundary")]

@@ -60,6 +60,8 @@ pub mod contact;
 
 pub mod model;
 
+pub mod zero_energy;
+
 pub mod internal_force;
 
 pub mod tangent;

@@ -4,7 +4,7 @@
 use crate::neighbours::Neighbours;
 use crate::problem::{Basis, Dimension, WeightFunction};
 use crate::tensor::Vector3;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
 /// Nodes with their influence domains, ready to be evaluated anywhere.
 #[derive(Debug, Clone)]
@@ -29,8 +29,8 @@ pub struct Support {
     pub phi: Vec<f64>,
     /// \[support\] \[1/m\]; the third component is 0 in a plane.
     pub grad_phi: Vec<Vector3>,
-    /// Estimated condition number of the moment matrix in the local scaled
-    /// basis, 1-norm.
+    /// Condition number of the moment matrix in the local scaled basis,
+    /// 1-norm; of its linear part where the rest is regularised.
     pub condition: f64,
     /// Factor by which influence radii were enlarged here; 1 for none.
     pub enlargement: f64,
@@ -74,24 +74,26 @@ impl Approximation {
     pub fn basis_size(&self) -> usize {
         match (self.basis, self.components) {
             (Basis::Linear, d) => d + 1,
-            (Basis::Quadratic, 2) => 6,
-            (Basis::Quadratic, _) => 10,
+            (Basis::Quadratic | Basis::ModifiedQuadratic { .. }, 2) => 6,
+            (Basis::Quadratic | Basis::ModifiedQuadratic { .. }, _) => 10,
         }
     }
 
     /// Fewest nodes that a support may have: twice the basis where it is
-    /// linear (8 in space), a half more than the basis where it is quadratic.
+    /// linear (8 in space) or regularised beyond, a half more than the basis
+    /// where it is quadratic.
     pub fn smallest_support(&self) -> usize {
         match self.basis {
-            Basis::Linear => 2 * self.basis_size(),
+            Basis::Linear | Basis::ModifiedQuadratic { .. } => 2 * (self.components + 1),
             Basis::Quadratic => self.basis_size() * 3 / 2,
         }
     }
 
-    /// Largest accepted condition number of the moment matrix.
+    /// Largest accepted condition number of the moment matrix; of its linear
+    /// part where the rest is regularised.
     pub fn largest_condition(&self) -> f64 {
         match self.basis {
-            Basis::Linear => 1e4,
+            Basis::Linear | Basis::ModifiedQuadratic { .. } => 1e4,
             Basis::Quadratic => 1e6,
         }
     }
@@ -154,14 +156,28 @@ impl Approximation {
             A.ger(a.weight, p, p, 1.0);
         }
         let poor = |condition| PoorSupport { support_size: n, condition };
+        let held = self.regularise(&mut A, &near, total, s);
         let inverse = A.cholesky().map(|factor| factor.inverse()).ok_or(poor(f64::INFINITY))?;
-        let condition = norm_1(&A) * norm_1(&inverse);
+        let linear = held.and_then(|_| linear_part(&A, self.components + 1));
+        let condition = match (held, &linear) {
+            (None, _) => norm_1(&A) * norm_1(&inverse),
+            (Some(_), Some((_, condition))) => *condition,
+            (Some(_), None) => f64::INFINITY,
+        };
         if condition.is_nan() || condition > self.largest_condition() {
             return Err(poor(condition));
         }
         let mut support = Support { condition, enlargement, ..Support::default() };
-        let c = inverse.column(0).into_owned();
-        let slopes = self.slope_coefficients(&near, &monomials, &inverse, &c, s);
+        // A regularised matrix is ill conditioned where it is needed: one
+        // refinement brings the residual down.
+        let solve = |right: SVector<f64, M>| {
+            let x = inverse * right;
+            if held.is_some() { x + inverse * (right - A * x) } else { x }
+        };
+        let mut right = SVector::<f64, M>::zeros();
+        right[0] = 1.0;
+        let c = if held.is_some() { solve(right) } else { inverse.column(0).into_owned() };
+        let slopes = self.slope_right_sides(&near, &monomials, held, &c, s).map(solve);
         for (a, p) in near.iter().zip(&monomials) {
             let value = c.dot(p);
             support.nodes.push(a.node as u32);
@@ -172,16 +188,78 @@ impl Approximation {
             }
             support.grad_phi.push(gradient);
         }
+        if let Some((inverse, _)) = linear {
+            self.restore_linear(&mut support, &near, &monomials, &inverse, s);
+        }
         Ok(support)
     }
 
-    /// d_k = A⁻¹ (e_{k+1}/s − A,_k c): the derivative of the coefficients
-    /// A⁻¹ p(X) along direction k.
-    fn slope_coefficients<const M: usize>(
+    /// Takes out what round-off has cost the reproduction of linear fields:
+    /// second-order coefficients reach 1/μ and cancel in φ, which leaves about
+    /// 1e-16/μ. `inverse` is that of the linear part of A.
+    fn restore_linear<const M: usize>(
+        &self,
+        support: &mut Support,
+        near: &[Weighed],
+        monomials: &[SVector<f64, M>],
+        inverse: &DMatrix<f64>,
+        s: f64,
+    ) {
+        let size = self.components + 1;
+        let lacking = |target: DVector<f64>, value: &dyn Fn(usize) -> f64| {
+            let lack = monomials
+                .iter()
+                .enumerate()
+                .fold(target, |lack, (a, p)| lack - DVector::from_fn(size, |i, _| p[i] * value(a)));
+            inverse * lack
+        };
+        let unit = |i: usize, value: f64| {
+            DVector::from_fn(size, |row, _| if row == i { value } else { 0.0 })
+        };
+        let values = lacking(unit(0, 1.0), &|a| support.phi[a]);
+        let slopes: Vec<DVector<f64>> = (0..self.components)
+            .map(|k| lacking(unit(k + 1, 1.0 / s), &|a| support.grad_phi[a][k]))
+            .collect();
+        for (a, p) in monomials.iter().enumerate() {
+            let part =
+                |c: &DVector<f64>| near[a].weight * (0..size).map(|i| c[i] * p[i]).sum::<f64>();
+            support.phi[a] += part(&values);
+            for (k, slope) in slopes.iter().enumerate() {
+                support.grad_phi[a][k] += part(slope);
+            }
+        }
+    }
+
+    /// Adds μ Σw to the second-order diagonal of A in the scaled basis (Joldes
+    /// et al. 2015, eq. 12, there without Σw) and returns μ times the gradient
+    /// of what was added: with R = Σ w |X_a − X|² it is Σw s⁴ = R²/Σw in metres,
+    /// so that s⁻⁴ ∂(R²/Σw) = 2 s⁻² ∂R − ∂Σw.
+    fn regularise<const M: usize>(
+        &self,
+        A: &mut SMatrix<f64, M, M>,
+        near: &[Weighed],
+        total: f64,
+        s: f64,
+    ) -> Option<Vector3> {
+        let Basis::ModifiedQuadratic { regularisation } = self.basis else { return None };
+        for i in self.components + 1..M {
+            A[(i, i)] += regularisation * total;
+        }
+        let mut slope = Vector3::zeros();
+        for a in near {
+            let moment = a.gradient * a.offset.norm_squared() - a.offset * (2.0 * a.weight);
+            slope += moment * (2.0 / (s * s)) - a.gradient;
+        }
+        Some(slope * regularisation)
+    }
+
+    /// e_{k+1}/s − A,_k c: with A⁻¹ they give the derivatives of the
+    /// coefficients A⁻¹ p(X) along the directions k.
+    fn slope_right_sides<const M: usize>(
         &self,
         near: &[Weighed],
         monomials: &[SVector<f64, M>],
-        inverse: &SMatrix<f64, M, M>,
+        held: Option<Vector3>,
         c: &SVector<f64, M>,
         s: f64,
     ) -> [SVector<f64, M>; 3] {
@@ -191,8 +269,13 @@ impl Approximation {
             for (a, p) in near.iter().zip(monomials) {
                 column.axpy(-a.gradient[k] * c.dot(p), p, 1.0);
             }
+            if let Some(slope) = held {
+                for i in self.components + 1..M {
+                    column[i] -= slope[k] * c[i];
+                }
+            }
         }
-        right.map(|column| inverse * column)
+        right
     }
 
     /// The nodes that cover X with their weights, ascending.
@@ -246,6 +329,17 @@ fn monomials<const M: usize>(xi: &Vector3, components: usize) -> SVector<f64, M>
         }
     }
     p
+}
+
+/// Inverse and condition (1-norm) of the first `size` rows and columns.
+fn linear_part<const M: usize>(A: &SMatrix<f64, M, M>, size: usize) -> Option<(DMatrix<f64>, f64)> {
+    let norm = |part: &DMatrix<f64>| {
+        part.column_iter().map(|column| column.abs().sum()).fold(0.0, f64::max)
+    };
+    let part = DMatrix::from_fn(size, size, |i, j| A[(i, j)]);
+    let inverse = part.clone().cholesky()?.inverse();
+    let condition = norm(&part) * norm(&inverse);
+    Some((inverse, condition))
 }
 
 fn norm_1<const M: usize>(matrix: &SMatrix<f64, M, M>) -> f64 {

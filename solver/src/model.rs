@@ -2,13 +2,14 @@
 
 pub use crate::blocks::Block;
 use crate::blocks::blocks;
+use crate::consistency::connected_bodies;
 use crate::contact::ContactPlan;
 use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::essential::Constraints;
 use crate::load::{LoadPattern, load_patterns};
 use crate::mass::{lumped_mass, mass_like};
-use crate::problem::{Motion, Problem, Relaxation, RelaxationMass};
+use crate::problem::{Dimension, Motion, Problem, Relaxation, RelaxationMass};
 use crate::stiffness::stiffness_diagonal;
 use crate::tensor::{Vector3, box_around};
 use crate::time_step_bound::per_point_bound;
@@ -63,6 +64,7 @@ impl Model {
             Motion::Static(_) | Motion::Equilibrium(_) => mass_like(&stiffness, &lumped_mass),
         };
         let constraints = Constraints::new(problem, discretisation, &inertia)?;
+        check_rank(discretisation, &constraints)?;
         let bound = per_point_bound(problem, discretisation, &lumped_mass);
         Ok(Model {
             components,
@@ -89,6 +91,25 @@ impl Model {
     /// Bytes that one evaluation of the internal force streams.
     pub fn bytes_per_step(&self) -> usize {
         self.blocks.iter().map(|b| 8 * b.grad_phi.len() + 4 * b.supports.len()).sum()
+    }
+}
+
+/// At rest a point sees its strains and nothing else, six or three in a plane:
+/// motions beyond that number, the held components and the rigid motions of
+/// each body have no energy whatever the supports.
+fn check_rank(discretisation: &Discretisation, constraints: &Constraints) -> Result<(), Error> {
+    let (points, nodes) = (discretisation.supports.len(), discretisation.cloud.positions.len());
+    let (d, strains, rigid) = match discretisation.dimension {
+        Dimension::Three => (3, 6, 6),
+        Dimension::PlaneStrain { .. } => (2, 3, 3),
+    };
+    let held: usize = constraints.active(0.0).iter().map(|set| set.rows.len()).sum();
+    let bodies = connected_bodies(&discretisation.supports, nodes);
+    let bodies = bodies.iter().max().map_or(0, |&last| last as usize + 1);
+    let modes = (d * nodes).saturating_sub(held + strains * points + rigid * bodies);
+    match modes {
+        0 => Ok(()),
+        modes => Err(Error::TooFewPoints { points, strains, nodes, held, modes }),
     }
 }
 

@@ -71,12 +71,17 @@ pub struct Refinement {
 }
 
 /// Polynomial basis of the moving least squares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Basis {
     /// 1, x, y, z (1, x, y in a plane).
     Linear,
     /// All monomials up to second order.
     Quadratic,
+    /// All monomials up to second order, the coefficients of second order held
+    /// small by `regularisation` \[–\]: sound wherever the linear basis is, and
+    /// close to the quadratic one where that is sound (modified moving least
+    /// squares, Joldes et al. 2015).
+    ModifiedQuadratic { regularisation: f64 },
 }
 
 /// Weight function W(q) of the scaled distance q = |X − X_a|/r_a.

@@ -132,14 +132,6 @@ fn a_cloud_with_an_isolated_node_is_refused_with_the_place_of_the_gap() {
 }
 
 #[test]
-fn a_plate_of_boundary_nodes_alone_is_refused() {
-    let mut problem = cube(4);
-    problem.body = Shape::Box { min: Vector3::zeros(), max: Vector3::new(EDGE, EDGE, 0.25 * EDGE) };
-    let error = refusal(&problem);
-    assert!(matches!(error, Error::IsolatedBoundaryNode { .. }), "{error}");
-}
-
-#[test]
 fn a_probe_outside_every_influence_domain_is_refused_with_its_place() {
     let (discretisation, _) = build(&square(4));
     let error = discretisation.rows_at(&[Vector3::repeat(7.0)]).unwrap_err();
@@ -151,8 +143,7 @@ fn a_probe_outside_every_influence_domain_is_refused_with_its_place() {
 fn fewer_points_than_nodes_give_a_warning_that_names_hourglassing() {
     let mut problem = square(6);
     problem.recipe.grid.cell = EDGE / 5.0;
-    let (discretisation, _) = build(&problem);
-    let warnings = discretisation.warnings();
+    let warnings = Discretisation::new(&problem).unwrap().warnings();
     assert_eq!(warnings[0], Warning::FewerPointsThanNodes { points: 25, nodes: 49 });
     assert!(warnings[0].to_string().contains("hourglassing"));
 }

@@ -44,6 +44,8 @@ const BAD_CASES: &[Expected] = &[
     ("missing_spacing", 13, "discretisation.spacing", "is missing"),
     ("coarse_spacing", 15, "discretisation.spacing", "must not be larger than the body, which is 0.1 m"),
     ("large_jitter", 16, "discretisation.jitter", "must lie in 0 ≤ jitter < 0.5"),
+    ("regularisation_elsewhere", 16, "discretisation.regularisation", "belongs to basis = \"modified_quadratic\""),
+    ("no_regularisation", 17, "discretisation.regularisation", "is 0; it must lie in 0 < regularisation ≤ 1"),
     ("jitter_elsewhere", 16, "discretisation.jitter", "belongs to cloud = \"jittered\""),
     ("small_dilation", 16, "discretisation.dilation", "it must be larger than 1"),
     ("no_gauss_points", 16, "discretisation.grid.gauss_points", "is 0; it must be 1 to 5"),

@@ -61,8 +61,13 @@ fn result(out: &Path) -> Value {
 
 #[test]
 fn help_and_version_are_data() {
-    for arguments in [&["--version"][..], &["--help"], &["solve", "--help"], &["verify", "--help"]]
-    {
+    for arguments in [
+        &["--version"][..],
+        &["--help"],
+        &["solve", "--help"],
+        &["verify", "--help"],
+        &["inspect", "--help"],
+    ] {
         let (code, out, err) = run(arguments);
         assert_eq!((code, err.as_str()), (0, ""), "{arguments:?}");
         assert!(!out.is_empty(), "{arguments:?}");
@@ -72,13 +77,16 @@ fn help_and_version_are_data() {
 
 #[test]
 fn wrong_usage_cannot_run_and_says_so_on_standard_error() {
-    let wrong: [&[&str]; 7] = [
+    let wrong: [&[&str]; 10] = [
         &[],
         &["slove"],
         &["solve", "--nodes", "3"],
         &["solve", "no_such_case.toml"],
         &["case", "check", "no_such_case.toml"],
         &["case", "show", "no_such_case"],
+        &["inspect"],
+        &["inspect", "no_such_case.toml"],
+        &["inspect", "no_such_case.toml", "--modes", "sometimes"],
         &["verify", "--only", "no_such_study"],
     ];
     for arguments in wrong {
@@ -165,13 +173,65 @@ fn a_condition_that_selects_nothing_is_located() {
 }
 
 #[test]
-fn too_few_points_are_warned_about_on_standard_error() {
-    let (dir, case) =
-        case_with("spacing = 0.02", "spacing = 0.02\ngrid = { cells_per_spacing = 0.8 }");
+fn poor_supports_are_warned_about_on_standard_error_and_in_the_result() {
+    let (dir, case) = case_with("spacing = 0.02", "spacing = 0.02\ndilation = 1.1");
     let (code, out, err) = solve(&case, dir.path(), &["--format", "json"]);
-    assert!(err.contains("warning:") && err.contains("hourglassing"), "{code} {err}");
+    assert!(code == 0 && err.contains("warning:") && err.contains("enlarged"), "{code} {err}");
     let warnings = serde_json::from_str::<Value>(&out).unwrap()["warnings"].clone();
-    assert!(warnings[0].as_str().unwrap().contains("hourglassing"), "{warnings}");
+    assert!(warnings[0].as_str().unwrap().contains("enlarged"), "{warnings}");
+}
+
+#[test]
+fn a_recipe_with_zero_energy_modes_is_refused_before_the_first_step() {
+    // Too few strains at all, and enough strains that miss some motions.
+    for (cells, words) in [("0.8", "cannot see all motions"), ("1.0", "hardly any strain")] {
+        let grid = format!("spacing = 0.02\ngrid = {{ cells_per_spacing = {cells} }}");
+        let (dir, case) = case_with("spacing = 0.02", &grid);
+        let (code, out, err) = solve(&case, dir.path(), &[]);
+        assert_eq!((code, out.as_str()), (2, ""));
+        assert!(err.contains("discretisation.grid") && err.contains("case.toml:"), "{err}");
+        assert!(err.contains(words) && err.contains("1.26"), "{err}");
+        assert_eq!(run(&["case", "check", case.to_str().unwrap()]).0, 2);
+    }
+}
+
+fn inspected(from: &str, to: &str, more: &[&str]) -> Value {
+    let (_dir, case) = case_with(from, to);
+    let arguments = [&["inspect", case.to_str().unwrap(), "--format", "json"], more].concat();
+    let (code, out, err) = run(&arguments);
+    assert_eq!((code, err.as_str()), (0, ""), "{arguments:?}");
+    serde_json::from_str(&out).unwrap()
+}
+
+#[test]
+fn an_inspection_tells_what_a_sound_case_is_made_of() {
+    let seen = inspected("", "", &[]);
+    assert_eq!(seen["zero_energy_modes"]["count"], 0);
+    assert_eq!(seen["zero_energy_modes"]["free_rigid_motions"], 0);
+    assert!(seen["points_per_node"].as_f64().unwrap() > 1.0, "{seen}");
+    assert!(seen["critical_time_step_s"].as_f64() > seen["per_point_bound_s"].as_f64());
+    assert_eq!(seen["advice"], serde_json::json!(["Nothing stands against running this case."]));
+    let (_dir, case) = case_with("", "");
+    let (code, out, err) = run(&["inspect", case.to_str().unwrap()]);
+    assert_eq!((code, err.as_str()), (0, ""));
+    for words in ["points per node", "zero-energy modes   0", "critical step", "worst conditions"] {
+        let found = out.contains(words) || words == "points per node" && out.contains("per node");
+        assert!(found, "{words}: {out}");
+    }
+}
+
+#[test]
+fn an_inspection_counts_and_places_the_motions_that_are_not_seen() {
+    let grid = "spacing = 0.02\ngrid = { cells_per_spacing = 1.0 }";
+    let seen = inspected("spacing = 0.02", grid, &[]);
+    let modes = &seen["zero_energy_modes"];
+    assert!(modes["count"].as_u64().unwrap() > 0, "{seen}");
+    assert!(modes["softest"][0]["share"].as_f64() < modes["threshold"].as_f64());
+    assert_eq!(modes["softest"][0]["position_m"].as_array().unwrap().len(), 3);
+    assert!(seen["advice"][0].as_str().unwrap().contains("1.26"), "{seen}");
+    let unsearched = inspected("spacing = 0.02", grid, &["--modes", "never"]);
+    assert_eq!(unsearched["zero_energy_modes"], Value::Null);
+    assert!(unsearched["advice"][0].as_str().unwrap().contains("hourglassing"), "{unsearched}");
 }
 
 #[test]

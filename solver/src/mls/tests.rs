@@ -36,7 +36,12 @@ const PLANE: Dimension = Dimension::PlaneStrain { thickness: 1.0, z: 0.0 };
 fn kinds() -> Vec<(Dimension, Basis, WeightFunction)> {
     let mut kinds = Vec::new();
     for dimension in [PLANE, Dimension::Three] {
-        for basis in [Basis::Linear, Basis::Quadratic] {
+        for basis in [
+            Basis::Linear,
+            Basis::Quadratic,
+            Basis::ModifiedQuadratic { regularisation: 1e-7 },
+            Basis::ModifiedQuadratic { regularisation: 1e-2 },
+        ] {
             for weight_function in WeightFunction::ALL {
                 kinds.push((dimension, basis, weight_function));
             }
@@ -64,7 +69,7 @@ proptest! {
             let s = a.evaluate(&X).unwrap();
             let sum: f64 = s.phi.iter().sum();
             prop_assert!((sum - 1.0).abs() < 1e-12);
-            let tolerance = if basis == Basis::Linear { 1e-12 } else { 1e-11 };
+            let tolerance = if basis == Basis::Quadratic { 1e-11 } else { 1e-12 };
             for k in 0..dimension.components() {
                 let value: f64 = s.nodes.iter().zip(&s.phi)
                     .map(|(&n, phi)| (a.nodes[n as usize][k] - X[k]) * phi).sum();
@@ -142,4 +147,57 @@ fn a_far_point_has_no_support() {
         Vector3::zeros(),
     );
     assert_eq!(a.evaluate(&Vector3::new(5.0, 0.0, 0.0)).unwrap_err().support_size, 0);
+}
+
+/// Σ φ_a (X_a − X)_i (X_a − X)_j /H² over the largest second moment: 0 where
+/// quadratic fields are reproduced.
+fn quadratic_error(a: &Approximation, X: &Vector3) -> f64 {
+    let support = a.evaluate(X).unwrap();
+    let mut sum = Vector3::zeros();
+    for (&node, phi) in support.nodes.iter().zip(&support.phi) {
+        let offset = (a.nodes[node as usize] - X) / H;
+        sum += offset.component_mul(&offset) * *phi;
+    }
+    sum.amax()
+}
+
+fn modified(regularisation: f64, dilation: f64, jitter: &[f64]) -> Approximation {
+    let basis = Basis::ModifiedQuadratic { regularisation };
+    let plain = approximation(
+        Dimension::Three,
+        Basis::Quadratic,
+        WeightFunction::QuarticSpline,
+        jitter,
+        Vector3::zeros(),
+    );
+    let radius = vec![dilation * H; plain.nodes.len()];
+    Approximation::new(plain.nodes, radius, basis, WeightFunction::QuarticSpline, &Dimension::Three)
+}
+
+#[test]
+fn the_regularised_quadratic_basis_needs_no_larger_radius_on_a_lattice_at_dilation_two() {
+    let mut poor = 0;
+    for index in 0..512 {
+        let at = Vector3::new((index % 8) as f64, (index / 8 % 8) as f64, (index / 64) as f64);
+        let X = (at + Vector3::new(0.13, 0.31, 0.22)) * (5.0 / 8.0 * H);
+        let mut basis = modified(1e-7, 2.0, &[0.0]);
+        let support = basis.evaluate(&X).unwrap();
+        assert!(support.enlargement == 1.0 && support.condition < 1e3, "{X} {support:?}");
+        basis.basis = Basis::Quadratic;
+        poor += basis.evaluate(&X).map_or(true, |support| support.enlargement > 1.0) as usize;
+    }
+    assert!(poor > 10, "the plain quadratic basis is poor at {poor} of 512 points only");
+}
+
+#[test]
+fn the_quadratic_error_of_the_regularised_basis_is_proportional_to_it() {
+    let jitter = [0.21, -0.13, 0.3, -0.27, 0.08, 0.17, -0.3, 0.02, -0.19, 0.25, 0.11];
+    let X = Vector3::new(0.23, 0.27, 0.24);
+    let error = |mu: f64| quadratic_error(&modified(mu, 2.7, &jitter), &X);
+    let errors = [1e-2, 1e-4, 1e-6].map(error);
+    assert!(errors[0] < 0.1, "{errors:?}");
+    for pair in errors.windows(2) {
+        let ratio = pair[0] / pair[1];
+        assert!((50.0..150.0).contains(&ratio), "{errors:?}");
+    }
 }

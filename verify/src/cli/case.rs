@@ -49,7 +49,7 @@ fn check(files: &[PathBuf]) -> anyhow::Result<u8> {
         match load(file) {
             Some(case) => {
                 // What only a discretisation can show: empty selections, poor supports.
-                match crate::run::prepare(&case.problem) {
+                match crate::run::prepare_to_run(&case.problem) {
                     Ok(prepared) => {
                         print_data(&format!("{}: no mistakes\n", file.display()))?;
                         for warning in prepared.discretisation.warnings() {
@@ -86,14 +86,14 @@ pub fn diagnose(case: &Case, error: &mtled::error::Error) -> Diagnostic {
         Error::EmptySelection { name } => format!("prescribe.{name}.where"),
         Error::EmptyTraction { name } => format!("traction.{name}.where"),
         Error::DependentConstraints { .. } => "discretisation.enforcement".to_string(),
-        Error::NoQuadraturePoints | Error::UncoveredNode { .. } => {
-            "discretisation.grid".to_string()
-        }
+        Error::NoQuadraturePoints
+        | Error::UncoveredNode { .. }
+        | Error::TooFewPoints { .. }
+        | Error::ZeroEnergyModes { .. } => "discretisation.grid".to_string(),
         Error::MasslessNode { .. } => "discretisation.mass".to_string(),
         Error::SmallSupport { .. } | Error::SingularMomentMatrix { .. } => {
             "discretisation.dilation".to_string()
         }
-        Error::IsolatedBoundaryNode { .. } => "discretisation.spacing".to_string(),
         Error::UnstableStep { .. } => "time.fixed_step".to_string(),
         Error::ProbeOutside { .. } => "probe".to_string(),
         Error::PointWithoutRegion { .. } => "region".to_string(),

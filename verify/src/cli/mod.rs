@@ -1,6 +1,8 @@
 //! The command line: parse, dispatch, exit code.
 
 mod case;
+mod inspect;
+mod inspect_text;
 mod python;
 mod reference;
 mod reference_solve;
@@ -30,6 +32,7 @@ const EXAMPLES: &str = "Examples:
   mtled verify                                  check the solver, write reports/verify/index.html
   mtled verify --only brain --out brain_report  one study
   mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON
+  mtled inspect my_case.toml                    are its nodes and supports sound?
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the cases that the program carries
   mtled reference check                         are the finite-element references sound?";
@@ -59,6 +62,9 @@ enum Format {
 enum Command {
     /// Solve a case file.
     Solve(solve::SolveArgs),
+    /// Tell before any run whether a case's nodes, supports and quadrature are
+    /// sound: points per node, conditions, masses, zero-energy modes, step.
+    Inspect(inspect::InspectArgs),
     /// Run the verification studies and write their report (the main job).
     Verify(verify::VerifyArgs),
     /// Check, list or describe case files.
@@ -106,6 +112,7 @@ pub fn run() -> ExitCode {
 fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
     match &cli.command {
         Command::Solve(arguments) => solve::solve(arguments, &cli.common),
+        Command::Inspect(arguments) => inspect::inspect(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
         Command::Case(command) => case::case(command),
         Command::Reference(command) => reference::reference(command, &cli.common),

@@ -3,7 +3,7 @@
 use super::case::{diagnose, load};
 use super::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
 use crate::run::{
-    Prepared, Record, Recorder, Solved, march_on, prepare, summary_text, write_outputs,
+    Prepared, Record, Recorder, Solved, march_on, prepare_to_run, summary_text, write_outputs,
     write_recorded,
 };
 use crate::scene::Case;
@@ -42,7 +42,7 @@ fn solve_to(
     out: &Path,
     common: &Common,
 ) -> Result<anyhow::Result<u8>, mtled::error::Error> {
-    let prepared = prepare(&case.problem)?;
+    let prepared = prepare_to_run(&case.problem)?;
     if !common.quiet {
         for warning in prepared.discretisation.warnings() {
             eprintln!("warning: {warning}");

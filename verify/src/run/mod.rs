@@ -19,6 +19,7 @@ use mtled::observe::Observer;
 use mtled::problem::Problem;
 use mtled::simulate::{Summary, simulate};
 use mtled::state::State;
+use mtled::zero_energy::refuse_zero_energy_modes;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -80,6 +81,13 @@ pub fn prepare(problem: &Problem) -> Result<Prepared, Error> {
     let discretisation = Discretisation::new(problem)?;
     let model = Model::new(problem, &discretisation)?;
     Ok(Prepared { discretisation, model, setup_seconds: start.elapsed().as_secs_f64() })
+}
+
+/// As [`prepare`]; a recipe that leaves zero-energy modes is refused.
+pub fn prepare_to_run(problem: &Problem) -> Result<Prepared, Error> {
+    let prepared = prepare(problem)?;
+    refuse_zero_energy_modes(problem, &prepared.discretisation, &prepared.model)?;
+    Ok(prepared)
 }
 
 /// Marches a prepared problem, which stays with the caller if the run fails.

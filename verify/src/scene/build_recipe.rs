@@ -22,15 +22,18 @@ pub mod defaults {
         match basis {
             Basis::Linear => 1.8,
             Basis::Quadratic => 2.6,
+            Basis::ModifiedQuadratic { .. } => 2.0,
         }
     }
     pub const BASIS: Basis = Basis::Linear;
+    /// Of the modified quadratic basis \[–\] (Joldes et al. 2015).
+    pub const REGULARISATION: f64 = 1e-7;
     pub const WEIGHT_FUNCTION: WeightFunction = WeightFunction::QuarticSpline;
     /// Row sums of quadratic functions are negative at some corners.
     pub fn mass(basis: Basis) -> MassRule {
         match basis {
             Basis::Linear => MassRule::RowSum,
-            Basis::Quadratic => MassRule::EvenSplit,
+            Basis::Quadratic | Basis::ModifiedQuadratic { .. } => MassRule::EvenSplit,
         }
     }
     pub const ENFORCEMENT: Enforcement = Enforcement::Collocation;
@@ -61,7 +64,7 @@ pub fn tolerance(format: &DiscretisationFormat) -> f64 {
 impl Builder<'_> {
     /// The recipe, or `None` and a mistake.
     pub fn recipe(&mut self, format: &DiscretisationFormat) -> Option<Recipe> {
-        let basis = format.basis.map_or(defaults::BASIS, Basis::from);
+        let basis = self.basis(format);
         let dilation = format.dilation.unwrap_or(defaults::dilation(basis));
         if dilation <= 1.0 {
             let message = format!(
@@ -88,6 +91,27 @@ impl Builder<'_> {
             gradients: self.gradients(format),
             dilatation: format.dilatation.map_or(defaults::DILATATION, Dilatation::from),
         })
+    }
+
+    fn basis(&mut self, format: &DiscretisationFormat) -> Basis {
+        let key = "discretisation.regularisation";
+        let regularisation = format.regularisation.unwrap_or(defaults::REGULARISATION);
+        if !(regularisation > 0.0 && regularisation <= 1.0) {
+            self.mistake(
+                key,
+                format!("is {regularisation}; it must lie in 0 < regularisation ≤ 1"),
+            );
+        }
+        let basis = match format.basis {
+            None => defaults::BASIS,
+            Some(BasisFormat::Linear) => Basis::Linear,
+            Some(BasisFormat::Quadratic) => Basis::Quadratic,
+            Some(BasisFormat::ModifiedQuadratic) => Basis::ModifiedQuadratic { regularisation },
+        };
+        if format.regularisation.is_some() && !matches!(basis, Basis::ModifiedQuadratic { .. }) {
+            self.mistake(key, "belongs to basis = \"modified_quadratic\"");
+        }
+        basis
     }
 
     fn gradients(&mut self, format: &DiscretisationFormat) -> Gradients {
@@ -262,15 +286,6 @@ impl Builder<'_> {
                 self.mistake(&format!("{key}.cell"), message);
                 None
             }
-        }
-    }
-}
-
-impl From<BasisFormat> for Basis {
-    fn from(format: BasisFormat) -> Basis {
-        match format {
-            BasisFormat::Linear => Basis::Linear,
-            BasisFormat::Quadratic => Basis::Quadratic,
         }
     }
 }

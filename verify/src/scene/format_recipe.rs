@@ -24,13 +24,16 @@ pub struct DiscretisationFormat {
     /// Largest growth of the spacing per length [–]; for "graded".
     pub growth: Option<f64>,
     /// Influence radius over nodal spacing [–], larger than 1; 1.8 by default,
-    /// 2.6 with the quadratic basis.
+    /// 2.6 with the quadratic basis, 2 with the modified one.
     pub dilation: Option<f64>,
     /// "linear" by default.
     pub basis: Option<BasisFormat>,
+    /// Weight of the second-order coefficients over that of the nodes [–], in
+    /// (0, 1]; for "modified_quadratic", 1e-7 if left out.
+    pub regularisation: Option<f64>,
     /// "quartic_spline" by default.
     pub weight_function: Option<WeightFunctionFormat>,
-    /// "row_sum" by default, "even_split" with the quadratic basis, whose row
+    /// "row_sum" by default, "even_split" with the quadratic bases, whose row
     /// sums are negative at some corners.
     pub mass: Option<MassFormat>,
     pub enforcement: Option<EnforcementFormat>,
@@ -75,6 +78,9 @@ pub struct RefineSpacingFormat {
 pub enum BasisFormat {
     Linear,
     Quadratic,
+    /// Quadratic with small second-order coefficients (modified moving least
+    /// squares): for supports too poor for the plain quadratic basis.
+    ModifiedQuadratic,
 }
 
 /// Weight function of the moving least squares.

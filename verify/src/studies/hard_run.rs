@@ -3,7 +3,7 @@
 
 use super::plain::larger;
 use super::relative_error;
-use crate::run::{Prepared, Solved, march, prepare};
+use crate::run::{Prepared, Solved, march, prepare, prepare_to_run};
 use crate::study::{Bound, Kind};
 use mtled::critical_time_step::critical_time_step;
 use mtled::energy::Energies;
@@ -135,7 +135,7 @@ pub fn name_of(error: &Error) -> String {
 
 /// Runs a case to its end or to its refusal.
 pub fn run(case: &HardCase) -> Outcome {
-    let prepared = match prepare(&case.problem) {
+    let prepared = match prepare_to_run(&case.problem) {
         Ok(prepared) => prepared,
         Err(error) => return Outcome::Refused { during: "set-up", error },
     };

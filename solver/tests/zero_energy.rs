@@ -1,0 +1,165 @@
+//! Zero-energy modes: counted, found and refused.
+
+mod common;
+
+use common::*;
+use mtled::discretisation::Discretisation;
+use mtled::error::Error;
+use mtled::geometry::Shape;
+use mtled::internal_force::{Workspace, internal_force};
+use mtled::model::Model;
+use mtled::problem::*;
+use mtled::tensor::Vector3;
+use mtled::zero_energy::{SEEN, ZeroEnergyModes, refuse_zero_energy_modes, zero_energy_modes};
+
+/// Cells per spacing, volume fractions, consistent gradients.
+fn with_cells(mut problem: Problem, cells: usize, ratio: f64) -> Problem {
+    problem.recipe.grid.cell = EDGE / cells as f64 / ratio;
+    problem.recipe.grid.inside = InsideRule::VolumeFraction;
+    problem.recipe.gradients = Gradients::Consistent { tolerance: 1e-3 };
+    problem.recipe.dilation = 1.8;
+    problem
+}
+
+fn modes(problem: &Problem) -> ZeroEnergyModes {
+    let (discretisation, model) = build(problem);
+    zero_energy_modes(problem, &discretisation, &model).unwrap()
+}
+
+fn refusal(problem: &Problem) -> Error {
+    let made = Discretisation::new(problem).and_then(|discretisation| {
+        let model = Model::new(problem, &discretisation)?;
+        refuse_zero_energy_modes(problem, &discretisation, &model)
+    });
+    made.expect_err("the recipe was not refused")
+}
+
+/// Eigenvalues of the tangent at rest by differences of the internal force,
+/// ascending.
+fn tangent_eigenvalues(problem: &Problem) -> Vec<f64> {
+    let (_, model) = build(problem);
+    let n = model.size();
+    let mut workspace = Workspace::new(&model);
+    let mut column = |j: usize| {
+        let side = |sign: f64, workspace: &mut Workspace| {
+            let (mut u, mut f) = (vec![0.0; n], vec![0.0; n]);
+            u[j] = sign * 1e-6 * EDGE;
+            internal_force(&model, &u, workspace, &mut f);
+            nalgebra::DVector::from_vec(f)
+        };
+        (side(1.0, &mut workspace) - side(-1.0, &mut workspace)) / (2e-6 * EDGE)
+    };
+    let columns: Vec<_> = (0..n).map(&mut column).collect();
+    let stiffness = nalgebra::DMatrix::from_columns(&columns);
+    let mut eigenvalues: Vec<f64> = (0.5 * (&stiffness + stiffness.transpose()))
+        .symmetric_eigenvalues()
+        .iter()
+        .copied()
+        .collect();
+    eigenvalues.sort_by(f64::total_cmp);
+    eigenvalues
+}
+
+#[test]
+fn the_default_recipe_has_no_zero_energy_modes_in_space_and_in_a_plane() {
+    for problem in [cube(4), jittered(cube(4), 0.3, 1), square(8), jittered(square(8), 0.3, 2)] {
+        let cells = if problem.dimension == Dimension::Three { 4 } else { 8 };
+        let found = modes(&with_cells(problem, cells, 1.26));
+        assert_eq!((found.count, found.at_least()), (Some(0), 0));
+        assert!(found.softest[0].share > 0.2, "{:?}", found.softest);
+    }
+}
+
+#[test]
+fn motions_that_the_tangent_does_not_resist_are_in_the_count() {
+    // A lattice with a point in the middle of each cell: enough strains, and
+    // yet motions that alternate from node to node are not seen.
+    for (problem, cells) in [(square(8), 8), (cube(4), 4)] {
+        let mut problem = with_cells(problem, cells, 1.0);
+        problem.recipe.gradients = Gradients::Plain;
+        let eigenvalues = tangent_eigenvalues(&problem);
+        let largest = eigenvalues[eigenvalues.len() - 1];
+        let vanishing = eigenvalues.iter().filter(|&&value| value < 1e-8 * largest).count();
+        let found = modes(&problem);
+        assert!(vanishing > found.rigid, "{vanishing} vanish");
+        assert!(found.count.unwrap() + found.rigid >= vanishing, "{found:?}, {vanishing}");
+    }
+}
+
+#[test]
+fn rigid_motions_are_counted_as_the_conditions_leave_them() {
+    let mut problem = with_cells(cube(4), 4, 1.26);
+    assert_eq!(modes(&problem).rigid, 6);
+    problem.conditions.push(condition("rollers", face(2, 0.0), [None, None, Some(0.0)]));
+    assert_eq!(modes(&problem).rigid, 3);
+    problem.conditions.push(condition("bonded", face(2, EDGE), [Some(0.0); 3]));
+    for problem in [problem.clone(), collocated(problem)] {
+        assert_eq!(modes(&problem).rigid, 0);
+    }
+    assert_eq!(modes(&with_cells(square(8), 8, 1.26)).rigid, 3);
+}
+
+#[test]
+fn fewer_strains_than_motions_are_refused_with_the_number_that_is_missing() {
+    let problem = with_cells(cube(5), 5, 0.7);
+    let Error::TooFewPoints { points, strains, nodes, held, modes } = refusal(&problem) else {
+        panic!()
+    };
+    assert_eq!((points, strains, nodes, held), (64, 6, 216, 0));
+    assert_eq!(modes, 3 * 216 - 6 - 6 * 64);
+}
+
+#[test]
+fn enough_strains_but_unseen_motions_are_refused_with_the_worst_place() {
+    let problem = with_cells(cube(5), 5, 1.0);
+    let Error::ZeroEnergyModes { points, nodes, modes, share, node, position } = refusal(&problem)
+    else {
+        panic!()
+    };
+    assert_eq!((points, nodes), (125, 216));
+    assert!(modes > 20 && share < SEEN, "{modes} modes, {share}");
+    assert_eq!(build(&problem).1.positions[node], position);
+}
+
+#[test]
+fn conditions_that_hold_the_unseen_motions_take_them_from_the_count() {
+    let free = with_cells(cube(5), 5, 1.0);
+    let mut held = free.clone();
+    let mut all = condition("all", face(0, 0.0), [Some(0.0); 3]);
+    all.part = mtled::selection::Selector::All;
+    held.conditions.push(all);
+    let (free, held, field) = (modes(&free), modes(&held), modes(&collocated(held.clone())));
+    assert!(held.count < free.count && field.count < free.count);
+    assert_eq!(held.count, Some(0));
+}
+
+#[test]
+fn the_search_in_a_block_finds_what_the_count_counts() {
+    for (ratio, jitter) in [(0.9, 0.3), (1.0, 0.0), (1.0, 0.3), (1.1, 0.3), (1.26, 0.3)] {
+        let mut problem = cube(5);
+        if jitter > 0.0 {
+            problem = jittered(problem, jitter, 1);
+        }
+        let found = modes(&with_cells(problem, 5, ratio));
+        let below = found.softest.iter().filter(|motion| motion.share < SEEN).count();
+        assert_eq!(below > 0, found.count.unwrap() > 0, "{found:?}");
+        assert!(below <= found.count.unwrap());
+    }
+}
+
+#[test]
+fn a_plate_one_spacing_thick_has_no_zero_energy_modes_and_sound_supports() {
+    for jitter in [0.0, 0.3] {
+        let mut problem = cube(6);
+        if jitter > 0.0 {
+            problem = jittered(problem, jitter, 4);
+        }
+        problem = with_cells(problem, 6, 1.26);
+        let top = Vector3::new(EDGE, EDGE, EDGE / 6.0);
+        problem.body = Shape::Box { min: Vector3::zeros(), max: top };
+        let (discretisation, _) = build(&problem);
+        assert!(discretisation.cloud.on_boundary.iter().all(|&on_boundary| on_boundary));
+        assert!(discretisation.worst_condition < 100.0, "{}", discretisation.worst_condition);
+        assert_eq!(modes(&problem).count, Some(0));
+    }
+}
