@@ -6,7 +6,9 @@ use crate::quadrature::Quadrature;
 use crate::tensor::Vector3;
 use std::ops::Range;
 
-/// Edge of a patch over the nodal spacing \[–\].
+/// Edge of a patch over the nodal spacing \[–\]. At 2.5 the bonded cube of 12
+/// spacings is 1.1 % too stiff instead of 0.7 %, and pressures are 10 % worse, for
+/// displacements that are 2 % better.
 const EDGE: f64 = 3.0;
 /// Lengths and volumes that differ by less than this share are the same: on a
 /// grid they tie, and round-off must not choose the patches \[–\].

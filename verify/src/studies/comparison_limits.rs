@@ -14,11 +14,12 @@ pub struct Limits {
 }
 
 const ALL_WELL: &str = "";
-const INDENTER: &str =
-    "an open case: nodes under the indenter are few, whether that is all is not known";
-const FOOT: &str = "the edge of the cap falls between nodes, and the ball is soft on its foot; \
-                    the difference falls with the spacing";
-const SMALL: &str = "the axial force is small, of second order in the twist";
+const INDENTER: &str = "the force is too low: only nodes inside the disc are held, so that the disc acts as if its \
+     radius were about half a spacing smaller. 11 % too low here, 7 % with half the spacing; holding \
+     nodes up to half a spacing outside makes it 11 % too high";
+const FOOT: &str = "the ball sags too much: the edge of the cap falls between nodes, so that the held foot is up to \
+     a spacing too small. The centre of mass is 19, 14 and 8 % too low with 1, 0.75 and 0.5 times the \
+     spacing; it also moves sideways on a lattice, which the reference does not";
 const RINGING: &str = "the reaction of an undamped body rings with the scheme";
 
 const TABLE: &[(&str, Limits)] = &[
@@ -86,7 +87,7 @@ const TABLE: &[(&str, Limits)] = &[
         "indented_block",
         Limits {
             why: INDENTER,
-            rows: &[("displacement", 0.03), ("force", 0.12), ("strain_energy", 0.115)],
+            rows: &[("displacement", WANTED), ("force", 0.11), ("strain_energy", 0.105)],
         },
     ),
     (
@@ -106,10 +107,10 @@ const TABLE: &[(&str, Limits)] = &[
         Limits {
             why: FOOT,
             rows: &[
-                ("displacement", 0.18),
-                ("centre_of_mass", 0.21),
+                ("displacement", 0.19),
+                ("centre_of_mass", 0.22),
                 ("force", WANTED),
-                ("strain_energy", 0.18),
+                ("strain_energy", 0.195),
             ],
         },
     ),
@@ -144,10 +145,10 @@ const TABLE: &[(&str, Limits)] = &[
     (
         "twisted_cylinder",
         Limits {
-            why: SMALL,
+            why: ALL_WELL,
             rows: &[
                 ("displacement", WANTED),
-                ("force", 0.035),
+                ("force", WANTED),
                 ("moment", WANTED),
                 ("strain_energy", WANTED),
             ],

@@ -19,6 +19,7 @@ mod hard_run;
 mod hard_thin;
 mod hard_twins;
 mod manufactured;
+mod manufactured_plain;
 mod manufactured_report;
 mod patch;
 mod patch_exact;
