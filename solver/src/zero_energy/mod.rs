@@ -86,7 +86,7 @@ pub fn zero_energy_modes(
 }
 
 /// Refuses a recipe with few points if that leaves zero-energy modes; nothing
-/// is computed for recipes with more than [`FEW`] points per node.
+/// is computed for recipes with more than 1.1 points per node.
 pub fn refuse_zero_energy_modes(
     problem: &Problem,
     discretisation: &Discretisation,

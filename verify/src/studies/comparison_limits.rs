@@ -14,10 +14,10 @@ pub struct Limits {
 }
 
 const ALL_WELL: &str = "";
-const INDENTER: &str = "the force is too low: only nodes inside the disc are held, so that the disc acts as if its \
-     radius were about half a spacing smaller. 11 % too low here, 7 % with half the spacing; holding \
+const INDENTER: &str = "the force is too low: only nodes inside the disc are held, which may act like a disc whose \
+     radius is half a spacing smaller. 11 % too low here, 7 % with half the spacing; holding \
      nodes up to half a spacing outside makes it 11 % too high";
-const FOOT: &str = "the ball sags too much: the edge of the cap falls between nodes, so that the held foot is up to \
+const FOOT: &str = "the ball sags too much: the edge of the cap falls between nodes, and the held foot may act as up to \
      a spacing too small. The centre of mass is 19, 14 and 8 % too low with 1, 0.75 and 0.5 times the \
      spacing; it also moves sideways on a lattice, which the reference does not";
 const RINGING: &str = "the reaction of an undamped body rings with the scheme";

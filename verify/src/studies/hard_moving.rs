@@ -14,13 +14,31 @@ use mtled::problem::{
 use mtled::tensor::Vector3;
 
 pub fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
-    for (id, words, safety_factor) in [
-        ("sudden_08", "half gravity all at once, no damping, 0.8 of the critical step", 0.8),
-        ("sudden_09", "half gravity all at once, no damping, 0.9 of the critical step", 0.9),
+    let resonates: &[&str] = &["finite", "Diverged", "Inverted"];
+    for (id, words, safety_factor, ends, remark) in [
+        (
+            "sudden_08",
+            "half gravity all at once, no damping, 0.8 of the critical step",
+            0.8,
+            ["finite"].as_slice(),
+            "",
+        ),
+        (
+            "sudden_09",
+            "half gravity all at once, no damping, 0.9 of the critical step",
+            0.9,
+            resonates,
+            "resonates with the step: it diverges after 39 558 of 100 000 steps",
+        ),
     ] {
         list.push(HardCase {
             steps: Some(bench.pick(4_000, 100_000)),
-            limit: measured(1e-2, "measured 3.2e-4 in 4000 steps; the issue asks for 1 %"),
+            limit: measured(
+                1e-2,
+                "measured 3.2e-4 in 4000 steps, 1.3e-3 in 100 000; 1 % is wanted",
+            ),
+            ends,
+            remark,
             ..case(id, words, sudden(safety_factor)?, Truth::Balance)
         });
     }

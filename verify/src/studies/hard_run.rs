@@ -66,8 +66,8 @@ pub struct HardCase {
     pub problem: Problem,
     pub truth: Truth,
     pub limit: Option<Limit>,
-    /// How it is known to end: "finite", or the name of an error.
-    pub ends: &'static str,
+    /// How it is known to end: "finite", or the names of errors.
+    pub ends: &'static [&'static str],
     /// What a reader should know of it.
     pub remark: &'static str,
     /// Steps of a motion, whose end is then set by the critical step at rest.

@@ -29,7 +29,7 @@ pub fn thin(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
         settings.max_steps = 3000;
     }
     list.push(HardCase {
-        ends: "TooFewPoints",
+        ends: &["TooFewPoints"],
         ..case("slice_cell", "the same, one cell thick: fewer points than nodes", problem, truth)
     });
     let words = "bridge two nodes wide between blocks, pulled";

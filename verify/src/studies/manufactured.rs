@@ -133,16 +133,15 @@ const NOTES: [&str; 3] = [
     "All of the boundary is prescribed, so near the incompressible limit the boundary alone says how \
      much volume the body gains, and the mean pressure is that gain times the bulk modulus. The solver \
      sees the boundary's displacement at the nodes: the volume is off by what their quadrature of \
-     ∮ u·N dA is off, a few 10⁻⁵ to 10⁻⁴ of the body, the same at ν = 0.49 and 0.499, and \
-     the bulk modulus makes of it 5 % of the pressure or half of it. In the limit no mean pressure is \
+     ∮ u·N dA is off, the same share of the body at ν = 0.49 and 0.499 (column \"gain of volume\"), and \
+     the bulk modulus makes a pressure of it that is ten times larger at 0.499. In the limit no mean pressure is \
      determined at all. What is determined, the pressure less its mean, has the same error at both. \
      A body with a free face has no such freedom. Gradients that are \
      consistent to 1e-10 change nothing.",
     "The plain scheme has the seed's gradients, cells, masses and conditions, on the same clouds with as \
      many points. Its cells fit the cube, so that it loses no volume: a kindness that no organ shows. \
-     The default recipe is wished to be 8 times better; at these sizes its displacements are about 3 \
-     times better, while its pressure is 11 times better at ν = 0.49, where that of the plain scheme \
-     is noise.",
+     The default recipe is wished to be 8 times better: the table says where it is. At ν = 0.49 the \
+     pressure of the plain scheme is noise.",
 ];
 
 pub fn manufactured(bench: &Workbench, study: &mut Study) -> Result<()> {
