@@ -91,6 +91,12 @@ pub enum Error {
         "the model was built for a static problem, its masses are fictitious: build it from a problem whose motion is dynamic"
     )]
     FictitiousMass,
+    #[error(
+        "a critical step {factor} times longer takes {:.1} % more mass, and more than {:.0} % would change the motion: \
+             scale less, or make the smallest spacings larger",
+        100.0 * share, 100.0 * most
+    )]
+    TooMuchAddedMass { factor: f64, share: f64, most: f64 },
 }
 
 /// Coordinates in metres for a message.

@@ -67,6 +67,7 @@ pub mod internal_force;
 pub mod tangent;
 
 pub mod critical_time_step;
+pub mod mass_scaling;
 pub mod state;
 
 pub mod step;

@@ -26,6 +26,8 @@ pub struct Model {
     /// The mass that moves \[node\] \[kg\]: the lumped one, or in a static
     /// problem a fictitious one of the same total (see [`RelaxationMass`]).
     pub inertia: Vec<f64>,
+    /// What `raise_masses` has added to it \[kg\].
+    pub added_mass: f64,
     /// Diagonal of K at rest, the mean over the components of a node
     /// \[node\] \[N/m\].
     pub stiffness: Vec<f64>,
@@ -72,6 +74,7 @@ impl Model {
             blocks,
             stiffness,
             inertia,
+            added_mass: 0.0,
             loads: load_patterns(problem, discretisation, &density)?,
             contact: ContactPlan::new(problem, discretisation, &constraints)?,
             initial_velocity: initial_velocity(problem, discretisation),

@@ -301,11 +301,14 @@ pub struct StepControl {
     /// A step \[s\] to be used instead; the run is refused if it is not stable
     /// in the reference configuration.
     pub fixed: Option<f64>,
+    /// Factor by which heavier nodes lengthen the critical step at rest of a
+    /// quasi-static motion \[–\]; 1 adds no mass.
+    pub mass_scaling: f64,
 }
 
 impl Default for StepControl {
     fn default() -> Self {
-        StepControl { safety_factor: 0.94, reevaluate_every: 1000, fixed: None }
+        StepControl { safety_factor: 0.94, reevaluate_every: 1000, fixed: None, mass_scaling: 1.0 }
     }
 }
 

@@ -22,7 +22,7 @@ pub fn simulate(
 ) -> Result<Summary, Error> {
     match motion {
         Motion::Dynamic { end, step, damping } => {
-            if model.inertia != model.lumped_mass {
+            if model.added_mass == 0.0 && model.inertia != model.lumped_mass {
                 return Err(Error::FictitiousMass);
             }
             march(model, *end, *step, *damping, state, observer)

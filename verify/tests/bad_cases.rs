@@ -63,6 +63,7 @@ const BAD_CASES: &[Expected] = &[
     ("missing_end", 23, "time.end", "is missing"),
     ("negative_end", 25, "time.end", "is -1; it must be positive"),
     ("large_safety_factor", 25, "time.safety_factor", "is 1.1; it must lie in (0, 1]"),
+    ("small_mass_scaling", 26, "time.mass_scaling", "is 0.5; it must be 1 or more"),
     ("negative_damping", 26, "time.damping", "must not be negative"),
     ("damping_elsewhere", 25, "time.damping", "belongs to method = \"dynamic\""),
     ("unknown_region", 28, "probe[0].centre_of_mass", "did you mean `body`?"),

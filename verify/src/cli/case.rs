@@ -95,6 +95,7 @@ pub fn diagnose(case: &Case, error: &mtled::error::Error) -> Diagnostic {
             "discretisation.dilation".to_string()
         }
         Error::UnstableStep { .. } => "time.fixed_step".to_string(),
+        Error::TooMuchAddedMass { .. } => "time.mass_scaling".to_string(),
         Error::ProbeOutside { .. } => "probe".to_string(),
         Error::PointWithoutRegion { .. } => "region".to_string(),
         Error::Geometry(_) => "discretisation".to_string(),

@@ -14,6 +14,7 @@ use crate::machine::cpu_seconds;
 use crate::scene::Case;
 use mtled::discretisation::Discretisation;
 use mtled::error::Error;
+use mtled::mass_scaling::raise_masses;
 use mtled::model::Model;
 use mtled::observe::Observer;
 use mtled::problem::Problem;
@@ -79,7 +80,7 @@ pub fn interrupted() -> bool {
 pub fn prepare(problem: &Problem) -> Result<Prepared, Error> {
     let start = Instant::now();
     let discretisation = Discretisation::new(problem)?;
-    let model = Model::new(problem, &discretisation)?;
+    let model = raise_masses(Model::new(problem, &discretisation)?, problem, &discretisation)?;
     Ok(Prepared { discretisation, model, setup_seconds: start.elapsed().as_secs_f64() })
 }
 

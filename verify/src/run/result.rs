@@ -32,6 +32,7 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
             "enlarged_supports": discretisation.enlarged,
             "volume_m3": quadrature.weights.iter().sum::<f64>(),
             "mass_kg": model.lumped_mass.iter().sum::<f64>(),
+            "added_mass_kg": model.added_mass,
         },
         "warnings": warnings(solved),
         "motion": motion_json(case, solved),
@@ -169,6 +170,7 @@ fn energies_json(record: &Record) -> Value {
 /// What a user wants to know at a glance, a line each.
 pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
     let (d, s) = (&solved.prepared.discretisation, &solved.summary);
+    let model = &solved.prepared.model;
     let mut lines = vec![
         format!("{}: {}", case.name, case.title),
         format!(
@@ -197,6 +199,10 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
             ),
         },
     ];
+    if model.added_mass > 0.0 {
+        let share = model.added_mass / model.lumped_mass.iter().sum::<f64>();
+        lines.push(format!("  nodes made heavier by {} % of the mass", four_digits(100.0 * share)));
+    }
     if let Some(convergence) = s.relaxation {
         lines.push(format!(
             "  converged: estimated error {} m, residual {} of the largest nodal force",

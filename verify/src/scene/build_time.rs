@@ -86,6 +86,7 @@ impl Builder<'_> {
         let keys = [
             ("end", format.end.is_some(), !is_static),
             ("damping", format.damping.is_some(), !is_static),
+            ("mass_scaling", format.mass_scaling.is_some(), !is_static),
             ("solver", format.solver.is_some(), is_static),
             ("load_end", format.load_end.is_some(), is_static),
             ("load_steps", format.load_steps.is_some(), is_static),
@@ -109,7 +110,12 @@ impl Builder<'_> {
             safety_factor: format.safety_factor.unwrap_or(safety_factor),
             reevaluate_every: format.reevaluate_every.unwrap_or(preset.reevaluate_every),
             fixed: format.fixed_step,
+            mass_scaling: format.mass_scaling.unwrap_or(preset.mass_scaling),
         };
+        if !(step.mass_scaling >= 1.0 && step.mass_scaling.is_finite()) {
+            let message = format!("is {}; it must be 1 or more", step.mass_scaling);
+            self.mistake("time.mass_scaling", message);
+        }
         if !(step.safety_factor > 0.0 && step.safety_factor <= 1.0) {
             let message = format!("is {}; it must lie in (0, 1]", step.safety_factor);
             self.mistake("time.safety_factor", message);

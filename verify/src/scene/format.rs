@@ -290,7 +290,7 @@ pub enum FrictionFormat {
     NoSlip,
 }
 
-/// How the body moves. `end` and `damping` belong to method "dynamic";
+/// How the body moves. `end`, `damping` and `mass_scaling` belong to method "dynamic";
 /// `solver`, `load_end`, `load_steps`, `tolerance` and `max_steps` to "static".
 /// Newton's method takes `load_end` and `tolerance` only.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -308,6 +308,9 @@ pub struct TimeFormat {
     pub safety_factor: Option<f64>,
     /// The critical step is found again after this many steps at the latest.
     pub reevaluate_every: Option<usize>,
+    /// Factor by which heavier nodes lengthen the critical step of a slow
+    /// dynamic run [–]; refused if it takes more than 10 % of the body's mass.
+    pub mass_scaling: Option<f64>,
     /// A step to be used instead [s]; refused if it is not stable.
     pub fixed_step: Option<f64>,
     /// Amplitudes run up to this time [s] in a static run; 1 if left out.

@@ -14,8 +14,12 @@ use mtled::problem::{Amplitude, BodyForce, Motion, Problem, StepControl};
 use mtled::tensor::Vector3;
 
 /// A fifth below the limit where nothing damps.
-const UNDAMPED: StepControl =
-    StepControl { safety_factor: 0.8, reevaluate_every: usize::MAX, fixed: None };
+const UNDAMPED: StepControl = StepControl {
+    safety_factor: 0.8,
+    reevaluate_every: usize::MAX,
+    fixed: None,
+    mass_scaling: 1.0,
+};
 
 /// Displacement of one place along x against time.
 struct History {
