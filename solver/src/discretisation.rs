@@ -109,16 +109,15 @@ impl Discretisation {
         check_coverage(&cloud, &supports)?;
         let finest = cloud.spacing.iter().copied().fold(f64::INFINITY, f64::min);
         let consistent = matches!(recipe.gradients, Gradients::Consistent { .. });
-        let panels = match consistent || !problem.loads.tractions.is_empty() {
-            true => problem.body.boundary_panels(PANEL * finest, &dimension)?,
-            false => Vec::new(),
+        let surface = match consistent || !problem.loads.tractions.is_empty() {
+            true => {
+                let panels = problem.body.boundary_panels(PANEL * finest, &dimension)?;
+                let held = held_nodes(problem, &cloud);
+                SurfaceRule::new(panels, &cloud, &approximation, &held, dimension.components())
+                    .map_err(|(position, poor)| outside(position, &poor))?
+            }
+            false => SurfaceRule::default(),
         };
-        let held: Vec<bool> = (0..cloud.positions.len())
-            .map(|node| problem.conditions.iter().any(|condition| holds(condition, &cloud, node)))
-            .collect();
-        let surface =
-            SurfaceRule::new(panels, &cloud, &approximation, &held, dimension.components())
-                .map_err(|(position, poor)| outside(position, &poor))?;
         let mut discretisation = Discretisation {
             dimension,
             cloud,
@@ -205,6 +204,12 @@ impl Discretisation {
     }
 }
 
+/// Which nodes some condition selects.
+fn held_nodes(problem: &Problem, cloud: &NodeCloud) -> Vec<bool> {
+    let held = |node| problem.conditions.iter().any(|condition| holds(condition, cloud, node));
+    (0..cloud.positions.len()).map(held).collect()
+}
+
 /// Whether a condition selects a node.
 pub fn holds(condition: &EssentialCondition, cloud: &NodeCloud, node: usize) -> bool {
     (condition.extent == Extent::Volume || cloud.on_boundary[node])
@@ -271,13 +276,7 @@ mod tests {
                 crate::problem::WeightFunction::QuarticSpline,
                 &Dimension::Three,
             ),
-            quadrature: Quadrature {
-                positions: vec![],
-                weights: vec![],
-                regions: vec![],
-                cells: 0,
-                cut_cells: 0,
-            },
+            quadrature: Quadrature::default(),
             supports: Rows::default(),
             surface: SurfaceRule::default(),
             patches: vec![0],

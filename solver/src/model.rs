@@ -32,6 +32,8 @@ pub struct Model {
     /// \[node\] \[N/m\].
     pub stiffness: Vec<f64>,
     pub blocks: Vec<Block>,
+    /// Largest component of a Grad φ \[1/m\].
+    pub steepest: f64,
     pub loads: Vec<LoadPattern>,
     pub constraints: Constraints,
     pub contact: ContactPlan,
@@ -71,6 +73,7 @@ impl Model {
         Ok(Model {
             components,
             positions: discretisation.cloud.positions.clone(),
+            steepest: blocks.iter().flat_map(|b| &b.grad_phi).fold(0.0f64, |a, g| a.max(g.abs())),
             blocks,
             stiffness,
             inertia,

@@ -44,9 +44,7 @@ impl<'a> Tangent<'a> {
         let root_mass =
             model.inertia.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
         // Small against the finest gradients: F changes by about 1e-7.
-        let steepest =
-            model.blocks.iter().flat_map(|b| &b.grad_phi).fold(0.0f64, |a, g| a.max(g.abs()));
-        let amplitude = 1e-7 / steepest;
+        let amplitude = 1e-7 / model.steepest;
         Tangent {
             model,
             u,
