@@ -3,6 +3,7 @@
 use crate::essential::ConstraintForces;
 use crate::internal_force::{SmallestJacobian, internal_force};
 use crate::model::Model;
+use crate::packed::{dot, largest};
 use crate::step::Buffers;
 
 /// Forces that do not balance at some displacements.
@@ -72,13 +73,4 @@ impl Imbalance {
     pub fn norm(&self, model: &Model) -> f64 {
         dot(&self.free(model), &self.acceleration).sqrt()
     }
-}
-
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-/// Largest size of an entry.
-pub(crate) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0f64, |a, x| a.max(x.abs()))
 }

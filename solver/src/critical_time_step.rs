@@ -3,6 +3,7 @@
 
 use crate::internal_force::Workspace;
 use crate::model::Model;
+use crate::packed::{axpy, dot, noise};
 use crate::tangent::Tangent;
 
 /// The critical step and what it cost.
@@ -141,13 +142,7 @@ fn level(model: &Model, field: &mut [f64], squares: &[f64]) {
 
 /// Noise, or the last mode and pattern in equal parts with a little of it.
 fn starting_vector(tangent: &mut Tangent, earlier: Option<&CriticalStep>) -> Vec<f64> {
-    let mut seed = 0x9E37_79B9_7F4A_7C15u64;
-    let mut noise = || {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
+    let mut noise = noise();
     let mut vector: Vec<f64> = tangent.root_mass.iter().map(|_| noise()).collect();
     normalise(&mut vector);
     if let Some(CriticalStep { mode, pattern, .. }) = earlier {
@@ -203,10 +198,6 @@ fn combine(basis: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
     sum
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
 fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
@@ -216,8 +207,4 @@ fn normalise(a: &mut [f64]) {
     if length > 0.0 {
         a.iter_mut().for_each(|x| *x /= length);
     }
-}
-
-fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
-    y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
 }

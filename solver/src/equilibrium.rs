@@ -1,13 +1,14 @@
 //! Newton's method towards a static solution, the tangent operator by products.
 #![allow(non_snake_case)]
 
-use crate::balance::{Imbalance, dot, largest};
+use crate::balance::Imbalance;
 use crate::error::Error;
 use crate::essential::ConstraintForces;
 use crate::internal_force::{SmallestJacobian, strain_energy};
 use crate::model::Model;
 use crate::observe::{Continue, Observer};
 use crate::pace::{NewtonCounts, Summary, watch};
+use crate::packed::{axpy, dot, largest};
 use crate::problem::Newton;
 use crate::state::State;
 use crate::step::{Buffers, external_force};
@@ -364,8 +365,4 @@ fn preconditioned(
 
 fn moved(u: &[f64], change: &[f64], length: f64) -> Vec<f64> {
     u.iter().zip(change).map(|(u, change)| u + length * change).collect()
-}
-
-fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
-    y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
 }

@@ -12,6 +12,7 @@
 
 // The floors of the house: a module uses only what stands above it.
 pub mod dimension;
+mod packed;
 pub mod tensor;
 
 pub mod material;

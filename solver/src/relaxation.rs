@@ -1,10 +1,11 @@
 //! Dynamic relaxation: damped motion towards a static solution.
 
-use crate::balance::{Imbalance, largest};
+use crate::balance::Imbalance;
 use crate::error::Error;
 use crate::model::Model;
 use crate::observe::{Continue, Observer};
 use crate::pace::{Convergence, Pace, Summary, check, watch};
+use crate::packed::largest;
 use crate::problem::Relaxation;
 use crate::state::State;
 use crate::step::{Buffers, Scheme, external_force, step};

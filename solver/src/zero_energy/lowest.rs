@@ -2,6 +2,7 @@
 
 use super::SoftMotion;
 use super::pencil::Pencil;
+use crate::packed::{self, axpy, dot};
 use nalgebra::DMatrix;
 
 /// Motions sought at once.
@@ -115,13 +116,9 @@ fn mix(vectors: &[Vec<f64>], weights: &DMatrix<f64>, column: usize, from: usize)
     let mut sum = vec![0.0; vectors[0].len()];
     for (i, vector) in vectors.iter().enumerate().skip(from) {
         let weight = weights[(i, column)];
-        sum.iter_mut().zip(vector).for_each(|(s, x)| *s += weight * x);
+        axpy(&mut sum, weight, vector);
     }
     sum
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn scaled(mut vector: Vec<f64>, factor: f64) -> Vec<f64> {
@@ -131,12 +128,6 @@ fn scaled(mut vector: Vec<f64>, factor: f64) -> Vec<f64> {
 
 /// Starting vectors that depend on nothing but the number of unknowns.
 fn noise(size: usize) -> Vec<Vec<f64>> {
-    let mut seed = 0x9E37_79B9_7F4A_7C15u64;
-    let mut next = || {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
+    let mut next = packed::noise();
     (0..SOUGHT).map(|_| (0..size).map(|_| next()).collect()).collect()
 }
