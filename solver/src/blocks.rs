@@ -1,6 +1,7 @@
 //! Quadrature points in blocks that the internal force runs over.
 
 use crate::discretisation::Discretisation;
+use crate::lanes::Four;
 use crate::material::Law;
 use crate::patches::orthonormal_basis;
 use crate::problem::{Dilatation, Problem};
@@ -24,6 +25,9 @@ pub struct Block {
     pub grad_phi: Vec<f64>,
     /// \[point\] \[m³\]
     pub quadrature_weights: Vec<f64>,
+    /// Points that are worked on together are `chunks[c]..chunks[c + 1]`: a
+    /// patch, or a few where nothing is projected.
+    pub chunks: Vec<u32>,
     /// Only where the material is nearly incompressible.
     pub projection: Option<Projection>,
 }
@@ -36,12 +40,15 @@ impl Block {
         (&self.supports[entries.clone()], &self.grad_phi.as_chunks::<D>().0[entries])
     }
 
-    /// Points of the largest patch; 0 without a projection.
-    pub fn largest_patch(&self) -> usize {
-        let patches = self.projection.iter().flat_map(|p| p.starts.windows(2));
-        patches.map(|ends| (ends[1] - ends[0]) as usize).max().unwrap_or(0)
+    /// Local points of each chunk.
+    pub fn chunks(&self) -> impl Iterator<Item = Range<usize>> {
+        self.chunks.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
     }
 }
+
+/// Points worked on together where nothing is projected: their gradients stay
+/// in the first cache.
+const CHUNK: usize = 16;
 
 /// A block holds at least and at most this many points.
 const BLOCK_POINTS: (usize, usize) = (1024, 8192);
@@ -72,10 +79,8 @@ fn block(problem: &Problem, patches: Range<usize>, discretisation: &Discretisati
     let points = starts[0]..starts[starts.len() - 1];
     let components = discretisation.dimension.components();
     let entries = rows.starts[points.start]..rows.starts[points.end];
-    let mut nodes: Vec<u32> = rows.nodes[entries.clone()].to_vec();
-    nodes.sort_unstable();
-    nodes.dedup();
-    let local = |node: &u32| nodes.binary_search(node).unwrap_or_default() as u32;
+    let (nodes, supports) =
+        number_by_appearance(&rows.nodes[entries.clone()], discretisation.cloud.positions.len());
     let offset = entries.start;
     let region = discretisation.quadrature.regions[points.start] as usize;
     let law = problem.regions[region].material.law;
@@ -89,16 +94,41 @@ fn block(problem: &Problem, patches: Range<usize>, discretisation: &Discretisati
             .iter()
             .map(|s| (s - offset) as u32)
             .collect(),
-        supports: rows.nodes[entries.clone()].iter().map(local).collect(),
+        supports,
         grad_phi: rows.grad_phi[entries]
             .iter()
             .flat_map(|gradient| gradient.iter().take(components).copied())
             .collect(),
         quadrature_weights: discretisation.quadrature.weights[points.clone()].to_vec(),
+        chunks: match share > 0.0 {
+            true => starts.iter().map(|start| (start - points.start) as u32).collect(),
+            false => {
+                let count = points.len();
+                (0..=count.div_ceil(CHUNK)).map(|c| (c * CHUNK).min(count) as u32).collect()
+            }
+        },
         projection: (share > 0.0).then(|| projection(share, starts, discretisation)),
         nodes,
         points,
     }
+}
+
+/// The nodes in the order in which they appear, which is that of the points in
+/// space, and the local number of each entry.
+fn number_by_appearance(entries: &[u32], nodes: usize) -> (Vec<u32>, Vec<u32>) {
+    const NONE: u32 = u32::MAX;
+    let mut numbers = vec![NONE; nodes];
+    let mut seen = Vec::new();
+    let mut local = Vec::with_capacity(entries.len());
+    for &node in entries {
+        let number = &mut numbers[node as usize];
+        if *number == NONE {
+            *number = seen.len() as u32;
+            seen.push(node);
+        }
+        local.push(*number);
+    }
+    (seen, local)
 }
 
 fn projection(share: f64, starts: &[usize], discretisation: &Discretisation) -> Projection {
@@ -108,9 +138,33 @@ fn projection(share: f64, starts: &[usize], discretisation: &Discretisation) -> 
         let points = patch[0]..patch[1];
         orthonormal_basis(&quadrature.positions, &quadrature.weights, points, components)
     };
-    Projection {
-        share,
-        starts: starts.iter().map(|start| (start - starts[0]) as u32).collect(),
-        basis: starts.windows(2).flat_map(basis).collect(),
+    Projection { share, basis: starts.windows(2).flat_map(basis).map(Four).collect() }
+}
+
+/// How the forces of the blocks are summed: by stretches of nodes that any
+/// thread may take, each node in the order of the blocks.
+#[derive(Debug, Clone)]
+pub struct Sums {
+    /// Nodes of a stretch.
+    pub stretch: usize,
+    /// The blocks that touch a stretch, in order, with their nodes in it and the
+    /// local numbers of these \[stretch\].
+    pub terms: Vec<Vec<(usize, Vec<(u32, u32)>)>>,
+}
+
+impl Sums {
+    pub fn new(blocks: &[Block], nodes: usize) -> Sums {
+        let stretch = nodes.div_ceil(16).max(1);
+        let mut terms = vec![Vec::new(); nodes.div_ceil(stretch)];
+        for (index, block) in blocks.iter().enumerate() {
+            let mut numbers: Vec<(u32, u32)> =
+                block.nodes.iter().zip(0..).map(|(&node, local)| (node, local)).collect();
+            numbers.sort_unstable();
+            for entries in numbers.chunk_by(|a, b| a.0 as usize / stretch == b.0 as usize / stretch)
+            {
+                terms[entries[0].0 as usize / stretch].push((index, entries.to_vec()));
+            }
+        }
+        Sums { stretch, terms }
     }
 }

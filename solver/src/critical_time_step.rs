@@ -86,8 +86,8 @@ pub fn critical_time_step(
 }
 
 /// The largest local growth \[1/s²\] of a product with the tangent at
-/// displacements `u` \[m\] with internal force `f_int` \[N\]: the largest, over
-/// all neighbourhoods, of the size of the image over the size of `pattern`. The
+/// displacements `u` \[m\]: the largest, over all neighbourhoods, of the size of
+/// the image over the size of `pattern`. The
 /// pattern is replaced by its image, brought to the same size everywhere: power
 /// iteration in all neighbourhoods at once, so that one product sees the body
 /// stiffen wherever it does.
@@ -95,11 +95,10 @@ pub fn local_growth(
     model: &Model,
     u: &[f64],
     t: f64,
-    f_int: &[f64],
     pattern: &mut Vec<f64>,
     workspace: &mut Workspace,
 ) -> f64 {
-    let mut tangent = Tangent::with_force(model, u, t, f_int.to_vec(), workspace);
+    let mut tangent = Tangent::new(model, u, t, workspace);
     let before = local_squares(model, pattern);
     let image = tangent.apply(pattern);
     let after = local_squares(model, &image);

@@ -231,9 +231,7 @@ impl<'a> Solver<'a> {
     ) -> Correction {
         let (model, t) = (self.model, self.path.time(share));
         self.counts.iterations += 1;
-        // The imbalance at u was the last to be evaluated: its f_int is at hand.
-        let Buffers { workspace, f_int, .. } = buffers;
-        let mut tangent = Tangent::with_force(model, u, t, f_int.clone(), workspace);
+        let mut tangent = Tangent::new(model, u, t, &mut buffers.workspace);
         let mut residual = imbalance.free(model);
         let mut descent = imbalance.acceleration.clone();
         if largest(&change) > 0.0 {

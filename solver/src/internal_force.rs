@@ -1,27 +1,23 @@
-//! The one hot loop: f_int,a = Σ_q w_q P(F_q) Grad φ_a(X_q).
+//! Internal forces f_int,a = Σ_q w_q P(F_q) Grad φ_a(X_q) of all blocks, and
+//! what is asked of the same points now and then.
 #![allow(non_snake_case)]
 
+use crate::kernel::{Scratch, block_force};
+use crate::lanes::{Four, Parts};
 use crate::material::{ConstitutiveLaw, with_law};
 use crate::model::{Block, Model};
 use crate::projection::Projection;
-use crate::tensor::{Matrix3, cofactor};
+use crate::real::Dual;
+use crate::tensor::Matrix3;
+use fearless_simd::{Level, Simd, dispatch, f64x4};
 use rayon::prelude::*;
 
 /// Scratch memory of a run; nothing in it outlives a step.
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    blocks: Vec<BlockScratch>,
-}
-
-#[derive(Debug, Clone)]
-struct BlockScratch {
-    u: Vec<f64>,
-    f: Vec<f64>,
-    smallest: SmallestJacobian,
-    /// F, J and projected pressure of one patch.
-    deformation: Vec<Matrix3>,
-    jacobians: Vec<f64>,
-    pressures: Vec<f64>,
+    /// The vector instructions of this processor.
+    pub level: Level,
+    blocks: Vec<Scratch>,
 }
 
 /// The smallest J of all quadrature points and where it is.
@@ -43,17 +39,14 @@ impl SmallestJacobian {
 
 impl Workspace {
     pub fn new(model: &Model) -> Workspace {
-        let scratch = |block: &Block| BlockScratch {
-            u: vec![0.0; model.components * block.nodes.len()],
-            f: vec![0.0; model.components * block.nodes.len()],
-            smallest: SmallestJacobian::NONE,
-            deformation: Vec::with_capacity(block.largest_patch()),
-            jacobians: Vec::with_capacity(block.largest_patch()),
-            pressures: Vec::with_capacity(block.largest_patch()),
-        };
-        Workspace { blocks: model.blocks.iter().map(scratch).collect() }
+        let scratch = |block: &Block| Scratch::new(block, model.components);
+        Workspace { level: Level::new(), blocks: model.blocks.iter().map(scratch).collect() }
     }
 }
+
+/// Models of fewer points run on one thread: to wake a second one costs more
+/// than it gains.
+const POINTS_FOR_THREADS: usize = 4096;
 
 /// Internal forces \[component of node\] \[N\] at displacements `u` \[m\].
 ///
@@ -66,122 +59,104 @@ pub fn internal_force(
     f: &mut [f64],
 ) -> SmallestJacobian {
     match model.components {
-        2 => internal_force_in::<2>(model, u, workspace, f),
-        _ => internal_force_in::<3>(model, u, workspace, f),
+        2 => internal_force_in::<2>(model, u, None, workspace, f),
+        _ => internal_force_in::<3>(model, u, None, workspace, f),
     }
+}
+
+/// K v \[N\] with the tangent operator K = ∂f_int/∂u at displacements `u` \[m\]:
+/// the exact derivative of [`internal_force`] along `v` \[m\].
+pub fn stiffness_times(
+    model: &Model,
+    u: &[f64],
+    v: &[f64],
+    workspace: &mut Workspace,
+    product: &mut [f64],
+) {
+    match model.components {
+        2 => internal_force_in::<2>(model, u, Some(v), workspace, product),
+        _ => internal_force_in::<3>(model, u, Some(v), workspace, product),
+    };
 }
 
 fn internal_force_in<const D: usize>(
     model: &Model,
     u: &[f64],
+    v: Option<&[f64]>,
     workspace: &mut Workspace,
     f: &mut [f64],
 ) -> SmallestJacobian {
-    let run = |(block, scratch): (&Block, &mut BlockScratch)| {
-        with_law!(&block.law, law => block_force::<D, _>(law, block, u, scratch));
+    let level = workspace.level;
+    let run = |(block, scratch): (&Block, &mut Scratch)| {
+        gather::<D>(block, u, &mut scratch.u);
+        match v {
+            None => dispatch!(level, simd => force::<_, D>(simd, block, scratch)),
+            Some(v) => {
+                scratch.v.resize(block.nodes.len(), Four::default());
+                gather::<D>(block, v, &mut scratch.v);
+                dispatch!(level, simd => derivative::<_, D>(simd, block, scratch));
+            }
+        }
     };
-    if model.blocks.len() == 1 {
-        run((&model.blocks[0], &mut workspace.blocks[0]));
+    let pairs = model.blocks.iter().zip(&mut workspace.blocks);
+    let nodes = f.as_chunks_mut::<D>().0;
+    if model.point_positions.len() < POINTS_FOR_THREADS || rayon::current_num_threads() == 1 {
+        nodes.fill([0.0; D]);
+        for (block, scratch) in pairs {
+            run((block, scratch));
+            block.nodes.iter().zip(&scratch.f).for_each(|(&node, force)| {
+                add(&mut nodes[node as usize], force);
+            });
+        }
     } else {
         model.blocks.par_iter().zip(&mut workspace.blocks).with_max_len(1).for_each(run);
+        sum_in_order(model, &workspace.blocks, nodes);
     }
-    f.fill(0.0);
-    let mut smallest = SmallestJacobian::NONE;
-    for (block, scratch) in model.blocks.iter().zip(&workspace.blocks) {
-        let global = f.as_chunks_mut::<D>().0;
-        for (&node, local) in block.nodes.iter().zip(scratch.f.as_chunks::<D>().0) {
-            for k in 0..D {
-                global[node as usize][k] += local[k];
-            }
-        }
-        smallest = smallest.or(scratch.smallest);
-    }
-    smallest
+    let smallest = model.blocks.iter().zip(&workspace.blocks).map(|(block, scratch)| {
+        let (jacobian, point) = scratch.smallest;
+        SmallestJacobian { jacobian, point: block.points.start + point }
+    });
+    smallest.fold(SmallestJacobian::NONE, SmallestJacobian::or)
 }
 
-fn block_force<const D: usize, L: ConstitutiveLaw>(
-    law: &L,
-    block: &Block,
-    u: &[f64],
-    scratch: &mut BlockScratch,
-) {
-    gather::<D>(block, u, &mut scratch.u);
-    scratch.f.fill(0.0);
-    scratch.smallest = SmallestJacobian::NONE;
-    match &block.projection {
-        None => pointwise_force::<D, L>(law, block, scratch),
-        Some(projection) => projected_force::<D, L>(law, block, projection, scratch),
-    }
-}
-
-fn pointwise_force<const D: usize, L: ConstitutiveLaw>(
-    law: &L,
-    block: &Block,
-    scratch: &mut BlockScratch,
-) {
-    let u = scratch.u.as_chunks::<D>().0;
-    let f = scratch.f.as_chunks_mut::<D>().0;
-    for (point, &weight) in block.quadrature_weights.iter().enumerate() {
-        let (nodes, gradients) = block.support::<D>(point);
-        let F = deformation_gradient::<D>(nodes, gradients, u);
-        let jacobian = F.determinant();
-        if jacobian < scratch.smallest.jacobian {
-            scratch.smallest = SmallestJacobian { jacobian, point: block.points.start + point };
-        }
-        scatter::<D>(&(law.first_piola_kirchhoff(&F) * weight), nodes, gradients, f);
-    }
-}
-
-/// As [`pointwise_force`], patch by patch with the projected pressure.
-fn projected_force<const D: usize, L: ConstitutiveLaw>(
-    law: &L,
-    block: &Block,
-    projection: &Projection,
-    scratch: &mut BlockScratch,
-) {
-    let BlockScratch { u, f, smallest, deformation, jacobians, pressures } = scratch;
-    let u = u.as_chunks::<D>().0;
-    let f = f.as_chunks_mut::<D>().0;
-    for ends in projection.starts.windows(2) {
-        let patch = ends[0] as usize..ends[1] as usize;
-        deformation.clear();
-        jacobians.clear();
-        for point in patch.clone() {
-            let (nodes, gradients) = block.support::<D>(point);
-            let F = deformation_gradient::<D>(nodes, gradients, u);
-            let jacobian = F.determinant();
-            if jacobian < smallest.jacobian {
-                *smallest = SmallestJacobian { jacobian, point: block.points.start + point };
-            }
-            deformation.push(F);
-            jacobians.push(jacobian);
-        }
-        let (weights, basis) =
-            (&block.quadrature_weights[patch.clone()], &projection.basis[patch.clone()]);
-        pressures.resize(patch.len(), 0.0);
-        projection.pressures(law, weights, basis, jacobians, pressures);
-        for ((point, weight), (F, pressure)) in
-            patch.zip(weights).zip(deformation.iter().zip(&*pressures))
-        {
-            let P = law.first_piola_kirchhoff(F) + cofactor(F) * *pressure;
-            let (nodes, gradients) = block.support::<D>(point);
-            scatter::<D>(&(P * *weight), nodes, gradients, f);
-        }
-    }
-}
-
-/// f_a += w P Grad φ_a.
 #[inline(always)]
-fn scatter<const D: usize>(P: &Matrix3, nodes: &[u32], gradients: &[[f64; D]], f: &mut [[f64; D]]) {
-    for (&node, gradient) in nodes.iter().zip(gradients) {
-        let force = &mut f[node as usize];
-        for i in 0..D {
-            let mut sum = 0.0;
-            for j in 0..D {
-                sum += P[(i, j)] * gradient[j];
+fn force<S: Simd, const D: usize>(simd: S, block: &Block, scratch: &mut Scratch) {
+    block_force::<S, f64x4<S>, D>(simd, block, scratch);
+}
+
+#[inline(always)]
+fn derivative<S: Simd, const D: usize>(simd: S, block: &Block, scratch: &mut Scratch) {
+    block_force::<S, Dual<f64x4<S>>, D>(simd, block, scratch);
+}
+
+/// The forces of all blocks, stretch by stretch of the nodes; each node gets its
+/// terms in the order of the blocks.
+fn sum_in_order<const D: usize>(model: &Model, blocks: &[Scratch], nodes: &mut [[f64; D]]) {
+    let length = model.sums.stretch;
+    nodes.par_chunks_mut(length).zip(&model.sums.terms).enumerate().for_each(
+        |(stretch, (nodes, terms))| {
+            nodes.fill([0.0; D]);
+            for (block, entries) in terms {
+                for (node, local) in entries {
+                    let node = *node as usize - stretch * length;
+                    add(&mut nodes[node], &blocks[*block].f[*local as usize]);
+                }
             }
-            force[i] += sum;
-        }
+        },
+    );
+}
+
+#[inline(always)]
+fn add<const D: usize>(node: &mut [f64; D], force: &Four) {
+    for k in 0..D {
+        node[k] += force.0[k];
+    }
+}
+
+fn gather<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) {
+    let global = u.as_chunks::<D>().0;
+    for (&node, value) in block.nodes.iter().zip(local) {
+        value.0[..D].copy_from_slice(&global[node as usize]);
     }
 }
 
@@ -190,11 +165,11 @@ fn scatter<const D: usize>(P: &Matrix3, nodes: &[u32], gradients: &[[f64; D]], f
 fn deformation_gradient<const D: usize>(
     nodes: &[u32],
     gradients: &[[f64; D]],
-    u: &[[f64; D]],
+    u: &[Four],
 ) -> Matrix3 {
     let mut sums = [[0.0; D]; D];
     for (&node, gradient) in nodes.iter().zip(gradients) {
-        let displacement = u[node as usize];
+        let displacement = u[node as usize].0;
         for i in 0..D {
             for j in 0..D {
                 sums[i][j] += displacement[i] * gradient[j];
@@ -210,44 +185,34 @@ fn deformation_gradient<const D: usize>(
     F
 }
 
-fn gather<const D: usize>(block: &Block, u: &[f64], local: &mut [f64]) {
-    let global = u.as_chunks::<D>().0;
-    for (&node, value) in block.nodes.iter().zip(local.as_chunks_mut::<D>().0) {
-        *value = global[node as usize];
-    }
-}
-
 /// Strain energy Σ_q w_q ψ(F_q) \[J\] at displacements `u` \[m\].
 pub fn strain_energy(model: &Model, u: &[f64], workspace: &mut Workspace) -> f64 {
-    model
-        .blocks
-        .iter()
-        .zip(&mut workspace.blocks)
-        .map(|(block, scratch)| match model.components {
-            2 => block_energy::<2>(block, u, &mut scratch.u),
-            _ => block_energy::<3>(block, u, &mut scratch.u),
-        })
-        .sum()
+    let level = workspace.level;
+    let blocks = model.blocks.iter().zip(&mut workspace.blocks);
+    let energy = |(block, scratch): (&Block, &mut Scratch)| match model.components {
+        2 => block_energy::<2>(level, block, u, &mut scratch.u),
+        _ => block_energy::<3>(level, block, u, &mut scratch.u),
+    };
+    blocks.map(energy).sum()
 }
 
-fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [f64]) -> f64 {
+fn block_energy<const D: usize>(level: Level, block: &Block, u: &[f64], local: &mut [Four]) -> f64 {
     gather::<D>(block, u, local);
-    let u = local.as_chunks::<D>().0;
     let mut energy = 0.0;
-    let mut jacobians = Vec::with_capacity(block.quadrature_weights.len());
-    for (point, &weight) in block.quadrature_weights.iter().enumerate() {
-        let (nodes, gradients) = block.support::<D>(point);
-        let F = deformation_gradient::<D>(nodes, gradients, u);
-        energy += weight * block.law.strain_energy(&F);
-        jacobians.push(F.determinant());
-    }
-    let Some(projection) = &block.projection else { return energy };
-    for ends in projection.starts.windows(2) {
-        let patch = ends[0] as usize..ends[1] as usize;
-        let (weights, basis) =
-            (&block.quadrature_weights[patch.clone()], &projection.basis[patch.clone()]);
-        let jacobians = &mut jacobians[patch];
-        energy += with_law!(&block.law, law => projection.energy(law, weights, basis, jacobians));
+    for chunk in block.chunks() {
+        let weights = &block.quadrature_weights[chunk.clone()];
+        let mut jacobians = vec![Four::default(); chunk.len().div_ceil(4)];
+        for (i, (point, weight)) in chunk.clone().zip(weights).enumerate() {
+            let (nodes, gradients) = block.support::<D>(point);
+            let F = deformation_gradient::<D>(nodes, gradients, local);
+            energy += weight * block.law.strain_energy(&F);
+            jacobians[i / 4].0[i % 4] = F.determinant();
+        }
+        let Some(projection) = &block.projection else { continue };
+        let rule = (weights, &projection.basis[chunk]);
+        energy += with_law!(&block.law, law => {
+            dispatch!(level, simd => projection.energy(simd, law, rule, &mut jacobians))
+        });
     }
     energy
 }
@@ -256,36 +221,44 @@ fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [f64]) -> 
 /// \[Pa\], at displacements `u` \[m\]; 0 without one. The pressure is
 /// −tr σ/3 less this.
 pub fn projected_mean_stress(model: &Model, u: &[f64]) -> Vec<f64> {
-    let mut all = Vec::with_capacity(model.point_positions.len());
-    for block in &model.blocks {
-        match model.components {
-            2 => all.extend(block_mean_stress::<2>(block, u)),
-            _ => all.extend(block_mean_stress::<3>(block, u)),
-        }
-    }
-    all
+    let stresses = |block: &Block| match model.components {
+        2 => block_mean_stress::<2>(block, u),
+        _ => block_mean_stress::<3>(block, u),
+    };
+    model.blocks.iter().flat_map(stresses).collect()
 }
 
 fn block_mean_stress<const D: usize>(block: &Block, u: &[f64]) -> Vec<f64> {
-    let count = block.quadrature_weights.len();
-    let mut stresses = vec![0.0; count];
+    let mut stresses = vec![0.0; block.quadrature_weights.len()];
     let Some(projection) = &block.projection else { return stresses };
-    let mut local = vec![0.0; D * block.nodes.len()];
+    let mut local = vec![Four::default(); block.nodes.len()];
     gather::<D>(block, u, &mut local);
-    let u = local.as_chunks::<D>().0;
-    let jacobian = |point: usize| {
-        let (nodes, gradients) = block.support::<D>(point);
-        deformation_gradient::<D>(nodes, gradients, u).determinant()
-    };
-    let jacobians: Vec<f64> = (0..count).map(jacobian).collect();
-    for ends in projection.starts.windows(2) {
-        let patch = ends[0] as usize..ends[1] as usize;
-        let (weights, basis) =
-            (&block.quadrature_weights[patch.clone()], &projection.basis[patch.clone()]);
-        let (jacobians, stresses) = (&jacobians[patch.clone()], &mut stresses[patch]);
-        with_law!(&block.law, law => {
-            projection.pressures(law, weights, basis, jacobians, stresses);
-        });
+    for chunk in block.chunks() {
+        let mut jacobians = Parts::new(chunk.len().div_ceil(4));
+        let mut pressures = jacobians.clone();
+        for (i, point) in chunk.clone().enumerate() {
+            let (nodes, gradients) = block.support::<D>(point);
+            let F = deformation_gradient::<D>(nodes, gradients, &local);
+            jacobians.values[i / 4].0[i % 4] = F.determinant();
+        }
+        let rule = (&block.quadrature_weights[chunk.clone()], &projection.basis[chunk.clone()]);
+        with_law!(&block.law, law => dispatch!(Level::new(), simd => {
+            plain_pressures(simd, projection, law, rule, &jacobians, &mut pressures)
+        }));
+        let pressures = pressures.values.iter().flat_map(|four| four.0);
+        stresses[chunk].iter_mut().zip(pressures).for_each(|(stress, p)| *stress = p);
     }
     stresses
+}
+
+#[inline(always)]
+fn plain_pressures<S: Simd, L: ConstitutiveLaw>(
+    simd: S,
+    projection: &Projection,
+    law: &L,
+    rule: (&[f64], &[Four]),
+    jacobians: &Parts,
+    pressures: &mut Parts,
+) {
+    projection.pressures::<S, f64x4<S>, L>(simd, law, rule, jacobians, pressures);
 }

@@ -13,6 +13,9 @@
 // The floors of the house: a module uses only what stands above it.
 pub mod dimension;
 mod packed;
+pub mod real;
+
+mod lanes;
 pub mod tensor;
 
 pub mod material;
@@ -62,6 +65,8 @@ pub mod contact;
 pub mod model;
 
 pub mod zero_energy;
+
+mod kernel;
 
 pub mod internal_force;
 

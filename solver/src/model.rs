@@ -1,7 +1,7 @@
 //! Everything that stays constant during a run, checked.
 
-pub use crate::blocks::Block;
 use crate::blocks::blocks;
+pub use crate::blocks::{Block, Sums};
 use crate::consistency::connected_bodies;
 use crate::contact::ContactPlan;
 use crate::discretisation::Discretisation;
@@ -32,8 +32,7 @@ pub struct Model {
     /// \[node\] \[N/m\].
     pub stiffness: Vec<f64>,
     pub blocks: Vec<Block>,
-    /// Largest component of a Grad φ \[1/m\].
-    pub steepest: f64,
+    pub sums: Sums,
     pub loads: Vec<LoadPattern>,
     pub constraints: Constraints,
     pub contact: ContactPlan,
@@ -73,7 +72,7 @@ impl Model {
         Ok(Model {
             components,
             positions: discretisation.cloud.positions.clone(),
-            steepest: blocks.iter().flat_map(|b| &b.grad_phi).fold(0.0f64, |a, g| a.max(g.abs())),
+            sums: Sums::new(&blocks, lumped_mass.len()),
             blocks,
             stiffness,
             inertia,

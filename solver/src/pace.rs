@@ -198,7 +198,7 @@ impl Pace {
                 time: 0.0,
                 time_steps: (f64::INFINITY, 0.0),
                 critical_time_step: critical.time_step,
-                lanczos_evaluations: critical.products + 1,
+                lanczos_evaluations: critical.products,
                 smallest_jacobian: SmallestJacobian::NONE,
                 relaxation: None,
                 newton: None,
@@ -220,7 +220,7 @@ impl Pace {
         self.critical =
             critical_time_step(model, u, t, Some(&self.critical), &mut buffers.workspace);
         self.time_step = self.control.safety_factor * self.critical.time_step;
-        self.summary.lanczos_evaluations += self.critical.products + 1;
+        self.summary.lanczos_evaluations += self.critical.products;
         self.growth = None;
         self.looks.1 = 1;
         self.changed = false;
@@ -252,13 +252,8 @@ impl Pace {
     }
 
     fn look(&mut self, model: &Model, state: &State, buffers: &mut Buffers) {
-        // f_int belongs to the displacements before the step.
-        let before: Vec<f64> = (state.displacement.iter().zip(&state.velocity))
-            .map(|(u, v)| u - state.time_step * v)
-            .collect();
-        let Buffers { workspace, f_int, .. } = buffers;
-        let pattern = &mut self.critical.pattern;
-        let growth = local_growth(model, &before, state.time, f_int, pattern, workspace);
+        let (u, pattern) = (&state.displacement, &mut self.critical.pattern);
+        let growth = local_growth(model, u, state.time, pattern, &mut buffers.workspace);
         self.summary.lanczos_evaluations += 1;
         let (first, last) = self.growth.unwrap_or((growth, growth));
         self.growth = Some((first, growth));

@@ -6,65 +6,87 @@
 //! pressure p_q = Σ_b B_b(X_q) Σ_r w_r B_b(X_r) U'(θ_r).
 #![allow(non_snake_case)]
 
+use crate::lanes::{Four, Lanes, Parts};
 use crate::material::ConstitutiveLaw;
+use fearless_simd::{Simd, f64x4, prelude::*};
 
-/// The patches of a block of points.
+/// How J is projected in a block of points.
 #[derive(Debug, Clone)]
 pub struct Projection {
     /// Share s of the bulk energy that sees θ \[–\].
     pub share: f64,
-    /// Local points of patch p: `starts[p]..starts[p + 1]`.
-    pub starts: Vec<u32>,
     /// B at each point \[m^−3/2\].
-    pub basis: Vec<[f64; 4]>,
+    pub basis: Vec<Four>,
 }
 
-/// Replaces values at the points of a patch by their projection.
-#[inline]
-pub fn project(weights: &[f64], basis: &[[f64; 4]], values: &mut [f64]) {
-    let mut moments = [0.0; 4];
-    for ((w, row), value) in weights.iter().zip(basis).zip(&*values) {
-        for b in 0..4 {
-            moments[b] += w * row[b] * value;
+/// Replaces values at the points of a patch, four to an entry, by their
+/// projection.
+#[inline(always)]
+pub fn project<S: Simd>(simd: S, weights: &[f64], basis: &[Four], values: &mut [Four]) {
+    let mut moments = f64x4::splat(simd, 0.0);
+    for ((weights, rows), values) in weights.chunks(4).zip(basis.chunks(4)).zip(&*values) {
+        for ((weight, row), value) in weights.iter().zip(rows).zip(values.0) {
+            let row: f64x4<S> = row.0.simd_into(simd);
+            moments = row.mul_add(f64x4::splat(simd, weight * value), moments);
         }
     }
-    for (row, value) in basis.iter().zip(values) {
-        *value = (0..4).map(|b| row[b] * moments[b]).sum();
+    for (rows, values) in basis.chunks(4).zip(values) {
+        for (row, value) in rows.iter().zip(&mut values.0) {
+            let row: f64x4<S> = row.0.simd_into(simd);
+            *value = (row * moments).reduce_sum();
+        }
     }
 }
 
 impl Projection {
     /// From J at the points of a patch: s (p_q − U'(J_q)) \[Pa\].
-    pub fn pressures<L: ConstitutiveLaw>(
+    #[inline(always)]
+    pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
         &self,
+        simd: S,
         law: &L,
-        weights: &[f64],
-        basis: &[[f64; 4]],
-        jacobians: &[f64],
-        pressures: &mut [f64],
+        (weights, basis): (&[f64], &[Four]),
+        jacobians: &Parts,
+        pressures: &mut Parts,
     ) {
-        pressures.copy_from_slice(jacobians);
-        project(weights, basis, pressures);
-        pressures.iter_mut().for_each(|theta| *theta = law.bulk_slope(*theta));
-        project(weights, basis, pressures);
-        for (p, J) in pressures.iter_mut().zip(jacobians) {
-            *p = self.share * (*p - law.bulk_slope(*J));
+        let groups = weights.len().div_ceil(4);
+        pressures.values[..groups].copy_from_slice(&jacobians.values[..groups]);
+        if R::SLOPES {
+            pressures.slopes[..groups].copy_from_slice(&jacobians.slopes[..groups]);
+        }
+        let project_both = |parts: &mut Parts| {
+            project(simd, weights, basis, &mut parts.values[..groups]);
+            if R::SLOPES {
+                project(simd, weights, basis, &mut parts.slopes[..groups]);
+            }
+        };
+        project_both(pressures);
+        for group in 0..groups {
+            law.bulk_slope(R::load(simd, pressures, group)).store(pressures, group);
+        }
+        project_both(pressures);
+        for group in 0..groups {
+            let pointwise = law.bulk_slope(R::load(simd, jacobians, group));
+            let pressure = R::load(simd, pressures, group);
+            ((pressure - pointwise) * self.share).store(pressures, group);
         }
     }
 
     /// Σ_q w_q s (U(θ_q) − U(J_q)) \[J\] of a patch; `jacobians` are lost.
-    pub fn energy<L: ConstitutiveLaw>(
+    #[inline(always)]
+    pub fn energy<S: Simd, L: ConstitutiveLaw>(
         &self,
+        simd: S,
         law: &L,
-        weights: &[f64],
-        basis: &[[f64; 4]],
-        jacobians: &mut [f64],
+        (weights, basis): (&[f64], &[Four]),
+        jacobians: &mut [Four],
     ) -> f64 {
-        let sum = |values: &[f64]| -> f64 {
-            weights.iter().zip(values).map(|(w, J)| w * law.bulk_energy(*J)).sum()
+        let sum = |values: &[Four]| -> f64 {
+            let values = values.iter().flat_map(|four| four.0);
+            weights.iter().zip(values).map(|(w, J)| w * law.bulk_energy(J)).sum()
         };
         let pointwise = sum(jacobians);
-        project(weights, basis, jacobians);
+        project(simd, weights, basis, jacobians);
         self.share * (sum(jacobians) - pointwise)
     }
 }
@@ -74,6 +96,17 @@ mod tests {
     use super::*;
     use crate::patches::orthonormal_basis;
     use crate::tensor::Vector3;
+    use fearless_simd::{Level, dispatch};
+
+    /// 27 points, so that the last entry is not full.
+    fn projected(weights: &[f64], basis: &[Four], values: &[f64]) -> Vec<f64> {
+        let mut fours: Vec<Four> = values
+            .chunks(4)
+            .map(|chunk| Four(std::array::from_fn(|l| chunk.get(l).copied().unwrap_or(f64::NAN))))
+            .collect();
+        dispatch!(Level::new(), simd => project(simd, weights, basis, &mut fours));
+        fours.iter().flat_map(|four| four.0).take(values.len()).collect()
+    }
 
     #[test]
     fn the_projection_keeps_linear_fields_and_the_mean_of_all() {
@@ -81,13 +114,12 @@ mod tests {
         let positions: Vec<Vector3> = (0..27).map(|n| at(n) + at(n * n % 27) * 0.1).collect();
         let weights: Vec<f64> = (0..27).map(|n| 1.0 + 0.1 * (n % 5) as f64).collect();
         let basis = orthonormal_basis(&positions, &weights, 0..27, 3);
+        let basis: Vec<Four> = basis.into_iter().map(Four).collect();
         let linear: Vec<f64> = positions.iter().map(|X| 1.0 + 0.2 * X.x - 0.3 * X.z).collect();
-        let mut projected = linear.clone();
-        project(&weights, &basis, &mut projected);
-        linear.iter().zip(&projected).for_each(|(a, b)| assert!((a - b).abs() < 1e-13));
+        let kept = projected(&weights, &basis, &linear);
+        linear.iter().zip(&kept).for_each(|(a, b)| assert!((a - b).abs() < 1e-13));
         let rough: Vec<f64> = (0..27).map(|n| (n * 7 % 11) as f64).collect();
-        let mut smooth = rough.clone();
-        project(&weights, &basis, &mut smooth);
+        let smooth = projected(&weights, &basis, &rough);
         let mean =
             |values: &[f64]| -> f64 { values.iter().zip(&weights).map(|(v, w)| v * w).sum() };
         assert!((mean(&rough) - mean(&smooth)).abs() < 1e-12);

@@ -43,13 +43,12 @@ fn block_diagonal<const D: usize>(block: &Block) -> Vec<f64> {
 fn add_projected<const D: usize>(block: &Block, modulus: f64, diagonal: &mut [f64]) {
     let Some(projection) = &block.projection else { return };
     let mut moments = vec![[[0.0; D]; 4]; diagonal.len()];
-    for ends in projection.starts.windows(2) {
-        let patch = ends[0] as usize..ends[1] as usize;
+    for patch in block.chunks() {
         for point in patch.clone() {
             let (nodes, gradients) = block.support::<D>(point);
             for (&node, gradient) in nodes.iter().zip(gradients) {
                 for (moment, basis) in
-                    moments[node as usize].iter_mut().zip(projection.basis[point])
+                    moments[node as usize].iter_mut().zip(projection.basis[point].0)
                 {
                     let factor = block.quadrature_weights[point] * basis;
                     moment.iter_mut().zip(gradient).for_each(|(m, g)| *m += factor * g);

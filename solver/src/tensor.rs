@@ -1,4 +1,7 @@
 //! Small vectors and matrices, and the few names the formulas need.
+#![allow(non_snake_case)]
+
+use crate::real::Real;
 
 /// A vector in space, in the unit that its context states.
 pub type Vector3 = nalgebra::Vector3<f64>;
@@ -17,6 +20,67 @@ pub fn cofactor(a: &Matrix3) -> Matrix3 {
         r0.transpose().cross(&r1.transpose()),
     );
     Matrix3::from_rows(&[c0.transpose(), c1.transpose(), c2.transpose()])
+}
+
+/// A second-order tensor of any [`Real`], row by row.
+pub type Tensor<R> = [[R; 3]; 3];
+
+/// The same entries as a [`Tensor`].
+pub fn tensor(a: &Matrix3) -> Tensor<f64> {
+    std::array::from_fn(|i| std::array::from_fn(|j| a[(i, j)]))
+}
+
+/// As [`cofactor`], of any [`Real`].
+#[inline(always)]
+pub fn tensor_cofactor<R: Real>(a: &Tensor<R>) -> Tensor<R> {
+    map(
+        #[inline(always)]
+        |i, j| {
+            let (k, l, m, n) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
+            a[k][m].times_plus(a[l][n], -(a[k][n] * a[l][m]))
+        },
+    )
+}
+
+/// A : B = Σ A_ij B_ij.
+#[inline(always)]
+pub fn contract<R: Real>(a: &Tensor<R>, b: &Tensor<R>) -> R {
+    dot(&a[0], &b[0]) + dot(&a[1], &b[1]) + dot(&a[2], &b[2])
+}
+
+/// a · b.
+#[inline(always)]
+pub fn dot<R: Real>(a: &[R; 3], b: &[R; 3]) -> R {
+    a[0].times_plus(b[0], a[1].times_plus(b[1], a[2] * b[2]))
+}
+
+/// C = FᵀF.
+#[inline(always)]
+pub fn right_cauchy_green<R: Real>(F: &Tensor<R>) -> Tensor<R> {
+    let turned = map(
+        #[inline(always)]
+        |i, j| F[j][i],
+    );
+    times_symmetric(&turned, &turned)
+}
+
+/// A Bᵀ, which is A B for a symmetric B.
+#[inline(always)]
+pub fn times_symmetric<R: Real>(a: &Tensor<R>, b: &Tensor<R>) -> Tensor<R> {
+    map(
+        #[inline(always)]
+        |i, j| dot(&a[i], &b[j]),
+    )
+}
+
+/// The tensor of the entries `entry(i, j)`.
+#[inline(always)]
+pub fn map<R: Real>(entry: impl Fn(usize, usize) -> R) -> Tensor<R> {
+    [
+        [entry(0, 0), entry(0, 1), entry(0, 2)],
+        [entry(1, 0), entry(1, 1), entry(1, 2)],
+        [entry(2, 0), entry(2, 1), entry(2, 2)],
+    ]
 }
 
 /// Rotation by `angle` \[rad\] about the unit vector `axis`

@@ -4,9 +4,10 @@
 mod common;
 
 use common::*;
-use mtled::internal_force::{Workspace, internal_force, strain_energy};
+use mtled::internal_force::{Workspace, internal_force, stiffness_times, strain_energy};
+use mtled::material::Law;
 use mtled::model::Model;
-use mtled::problem::Problem;
+use mtled::problem::{Dilatation, Problem};
 use mtled::tensor::{Matrix3, Vector3, rotation};
 use proptest::prelude::*;
 
@@ -97,6 +98,77 @@ fn the_internal_force_is_the_gradient_of_the_strain_energy() {
             let exact: f64 = f.iter().zip(&v).map(|(f, v)| f * v).sum();
             let size: f64 = f.iter().zip(&v).map(|(f, v)| (f * v).abs()).sum();
             assert!((slope - exact).abs() < 1e-6 * size, "{law:?}: {slope:e} {exact:e}");
+        }
+    }
+}
+
+/// K v at `u`.
+fn product(model: &Model, u: &[f64], v: &[f64]) -> Vec<f64> {
+    let mut product = vec![0.0; model.size()];
+    stiffness_times(model, u, v, &mut Workspace::new(model), &mut product);
+    product
+}
+
+/// With and without projected J: the last law asks for it.
+fn laws_of_the_tangent() -> Vec<Law> {
+    [objective_laws(), vec![neo_hookean(3000.0, 0.49)]].concat()
+}
+
+#[test]
+fn the_tangent_is_the_derivative_of_the_internal_force() {
+    for law in laws_of_the_tangent() {
+        for mut problem in [with_stiff_half(cube(3), law), with_stiff_half(square(5), law)] {
+            problem.recipe.dilatation = Dilatation::Projected;
+            let (_, model) = build(&problem);
+            let (u, v) = (noise(&model, 2e-3, 1), noise(&model, 1.0, 2));
+            let moved = |sign: f64| -> Vec<f64> {
+                forces(
+                    &model,
+                    &u.iter().zip(&v).map(|(u, v)| u + sign * 1e-6 * v).collect::<Vec<_>>(),
+                )
+            };
+            let exact = product(&model, &u, &v);
+            for ((plus, minus), exact) in moved(1.0).iter().zip(moved(-1.0)).zip(&exact) {
+                let error = ((plus - minus) / 2e-6 - exact).abs();
+                assert!(error < 1e-6 * largest(&product(&model, &u, &v)), "{law:?}: {error:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_tangent_is_symmetric_to_round_off() {
+    for law in laws_of_the_tangent() {
+        for mut problem in bodies() {
+            problem = with_stiff_half(problem, law);
+            problem.recipe.dilatation = Dilatation::Projected;
+            let (_, model) = build(&problem);
+            let (u, v, w) = (noise(&model, 1e-3, 1), noise(&model, 1.0, 2), noise(&model, 1.0, 3));
+            let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+            let (Kv, Kw) = (product(&model, &u, &v), product(&model, &u, &w));
+            let size = (dot(&Kv, &Kv) * dot(&w, &w)).sqrt();
+            let difference = (dot(&Kv, &w) - dot(&Kw, &v)).abs() / size;
+            assert!(difference < 1e-13, "{law:?}: {difference:e}");
+        }
+    }
+}
+
+#[test]
+fn every_set_of_vector_instructions_gives_the_same_forces_up_to_round_off() {
+    for problem in bodies() {
+        for law in laws_of_the_tangent() {
+            let mut problem = with_stiff_half(problem.clone(), law);
+            problem.recipe.dilatation = Dilatation::Projected;
+            let (_, model) = build(&problem);
+            let u = noise(&model, 1e-3, 4);
+            let mut workspace = Workspace::new(&model);
+            workspace.level = fearless_simd::Level::baseline();
+            let mut plain = vec![0.0; model.size()];
+            internal_force(&model, &u, &mut workspace, &mut plain);
+            let fast = forces(&model, &u);
+            for (a, b) in plain.iter().zip(&fast) {
+                assert!((a - b).abs() < 1e-13 * largest(&fast), "{law:?}: {a:e} {b:e}");
+            }
         }
     }
 }

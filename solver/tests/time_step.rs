@@ -126,11 +126,8 @@ fn local_growth_follows_the_largest_eigenvalue_wherever_the_body_stiffens() {
     let first = critical_time_step(&model, &rest, 0.0, None, &mut workspace);
     // The corner far from the origin is pressed, wherever the stiffest mode is at rest.
     let squeezed = field(&model, |x| -0.1 * x * (x.norm() / (1.42 * EDGE)).powi(4));
-    let mut growth = |u: &[f64], pattern: &mut Vec<f64>| {
-        let mut f = vec![0.0; model.size()];
-        internal_force(&model, u, &mut workspace, &mut f);
-        local_growth(&model, u, 0.0, &f, pattern, &mut workspace)
-    };
+    let mut growth =
+        |u: &[f64], pattern: &mut Vec<f64>| local_growth(&model, u, 0.0, pattern, &mut workspace);
     let mut pattern = first.pattern.clone();
     let before = growth(&rest, &mut pattern);
     // A few looks, as in a run.

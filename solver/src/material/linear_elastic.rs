@@ -1,8 +1,9 @@
 //! Hooke's law for small displacements.
 #![allow(non_snake_case)]
 
-use super::{ConstitutiveLaw, ElasticConstants};
-use crate::tensor::Matrix3;
+use super::{ConstitutiveLaw, Deformation, ElasticConstants};
+use crate::real::Real;
+use crate::tensor::{Matrix3, Tensor, map};
 
 /// ψ = λ/2 (tr ε)² + μ ε:ε, ε = sym(F) − I \[Pa\]. Not objective: for small
 /// rotations only.
@@ -25,10 +26,17 @@ impl ConstitutiveLaw for LinearElastic {
     }
 
     /// P = λ tr ε I + 2μ ε.
-    #[inline]
-    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
-        let strain = (F + F.transpose()) * 0.5 - Matrix3::identity();
-        strain * (2.0 * self.mu) + Matrix3::from_diagonal_element(self.lambda * strain.trace())
+    #[inline(always)]
+    fn first_piola_kirchhoff<R: Real>(&self, state: &Deformation<R>) -> Tensor<R> {
+        let F = &state.F;
+        let trace = F[0][0] + F[1][1] + F[2][2] - 3.0;
+        map(
+            #[inline(always)]
+            |i, j| match i == j {
+                true => (F[i][i] - 1.0) * (2.0 * self.mu) + trace * self.lambda,
+                false => (F[i][j] + F[j][i]) * self.mu,
+            },
+        )
     }
 
     fn constants(&self) -> ElasticConstants {

@@ -16,15 +16,35 @@ pub use neo_hookean_isochoric::{NeoHookeanIsochoric, VolumetricTerm};
 pub use neo_hookean_log_j::NeoHookeanLogJ;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 
-use crate::tensor::Matrix3;
+use crate::real::Real;
+use crate::tensor::{Matrix3, Tensor, dot, tensor, tensor_cofactor};
+
+/// F with what every law makes of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Deformation<R> {
+    /// \[–\]
+    pub F: Tensor<R>,
+    /// cof F = J F⁻ᵀ \[–\]
+    pub cof: Tensor<R>,
+    /// det F \[–\]
+    pub J: R,
+}
+
+impl<R: Real> Deformation<R> {
+    #[inline(always)]
+    pub fn new(F: Tensor<R>) -> Deformation<R> {
+        let cof = tensor_cofactor(&F);
+        Deformation { F, cof, J: dot(&F[0], &cof[0]) }
+    }
+}
 
 /// What the internal force needs of a law. Implemented by the laws of this
-/// module only; the force loop is compiled once per law.
+/// module only; the loops over the stresses are compiled once per law.
 pub trait ConstitutiveLaw: Copy + Send + Sync {
     /// Strain energy per reference volume ψ \[Pa\].
     fn strain_energy(&self, F: &Matrix3) -> f64;
     /// First Piola–Kirchhoff stress P \[Pa\].
-    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3;
+    fn first_piola_kirchhoff<R: Real>(&self, state: &Deformation<R>) -> Tensor<R>;
     /// Shear and bulk modulus at rest.
     fn constants(&self) -> ElasticConstants;
 
@@ -35,8 +55,9 @@ pub trait ConstitutiveLaw: Copy + Send + Sync {
     }
 
     /// U'(J) \[Pa\].
-    fn bulk_slope(&self, J: f64) -> f64 {
-        self.constants().lame_modulus() * (J - 1.0)
+    #[inline(always)]
+    fn bulk_slope<R: Real>(&self, J: R) -> R {
+        (J - 1.0) * self.constants().lame_modulus()
     }
 }
 
@@ -73,7 +94,9 @@ impl Law {
 
     /// First Piola–Kirchhoff stress P = ∂ψ/∂F \[Pa\].
     pub fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
-        with_law!(self, law => law.first_piola_kirchhoff(F))
+        let state = Deformation::new(tensor(F));
+        let P = with_law!(self, law => law.first_piola_kirchhoff(&state));
+        Matrix3::from_fn(|i, j| P[i][j])
     }
 
     /// Shear and bulk modulus at rest.

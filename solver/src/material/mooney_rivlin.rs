@@ -2,8 +2,9 @@
 #![allow(non_snake_case)]
 
 use super::constants::positive;
-use super::{ConstitutiveLaw, ElasticConstants, MaterialError};
-use crate::tensor::{Matrix3, cofactor};
+use super::{ConstitutiveLaw, Deformation, ElasticConstants, MaterialError};
+use crate::real::Real;
+use crate::tensor::{Matrix3, Tensor, map, right_cauchy_green, times_symmetric};
 
 /// ψ = A(I − 3) + B(II − 3) + C(III⁻² − 1) + D(III − 1)² \[Pa\] with the
 /// invariants of C = FᵀF (seed, section 3.3).
@@ -52,18 +53,24 @@ impl ConstitutiveLaw for MooneyRivlin {
     }
 
     /// P = 2A F + 2B (I F − F C) + [−4C J⁻⁵ + 4D J(J² − 1)] cof F.
-    #[inline]
-    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
-        let cof = cofactor(F);
-        let J = F.row(0).dot(&cof.row(0));
-        let J2 = J * J;
-        let volumetric = -4.0 * self.c / (J2 * J2 * J) + 4.0 * self.d * J * (J2 - 1.0);
-        let mut P = F * (2.0 * self.a) + cof * volumetric;
-        if self.b != 0.0 {
-            let C = F.transpose() * F;
-            P += (F * C.trace() - F * C) * (2.0 * self.b);
+    #[inline(always)]
+    fn first_piola_kirchhoff<R: Real>(&self, state: &Deformation<R>) -> Tensor<R> {
+        let Deformation { F, cof, J } = state;
+        let J2 = *J * *J;
+        let volumetric = (J2 - 1.0) * *J * (4.0 * self.d) - *J / (J2 * J2 * J2) * (4.0 * self.c);
+        let P = map(
+            #[inline(always)]
+            |i, j| cof[i][j].times_plus(volumetric, F[i][j] * (2.0 * self.a)),
+        );
+        if self.b == 0.0 {
+            return P;
         }
-        P
+        let C = right_cauchy_green(F);
+        let (trace, FC) = (C[0][0] + C[1][1] + C[2][2], times_symmetric(F, &C));
+        map(
+            #[inline(always)]
+            |i, j| P[i][j] + (F[i][j] * trace - FC[i][j]) * (2.0 * self.b),
+        )
     }
 
     /// U = C(J⁻⁴ − 1) + D(J² − 1)² + 4C ln J: the last term takes out the slope
@@ -73,10 +80,10 @@ impl ConstitutiveLaw for MooneyRivlin {
         self.c * (1.0 / (J2 * J2) - 1.0 + 4.0 * J.ln()) + self.d * (J2 - 1.0).powi(2)
     }
 
-    #[inline]
-    fn bulk_slope(&self, J: f64) -> f64 {
+    #[inline(always)]
+    fn bulk_slope<R: Real>(&self, J: R) -> R {
         let J2 = J * J;
-        4.0 * self.c / J * (1.0 - 1.0 / (J2 * J2)) + 4.0 * self.d * J * (J2 - 1.0)
+        (J2 * J2 - 1.0) / (J2 * J2 * J) * (4.0 * self.c) + (J2 - 1.0) * J * (4.0 * self.d)
     }
 
     fn constants(&self) -> ElasticConstants {

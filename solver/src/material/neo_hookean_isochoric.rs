@@ -1,8 +1,9 @@
 //! Neo-Hookean law with the isochoric split, two volumetric terms.
 #![allow(non_snake_case)]
 
-use super::{ConstitutiveLaw, ElasticConstants};
-use crate::tensor::{Matrix3, cofactor};
+use super::{ConstitutiveLaw, Deformation, ElasticConstants};
+use crate::real::Real;
+use crate::tensor::{Matrix3, Tensor, contract, map};
 
 /// The volumetric energy U(J) of [`NeoHookeanIsochoric`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,14 +35,15 @@ impl ConstitutiveLaw for NeoHookeanIsochoric {
     }
 
     /// P = μ J^(−2/3) (F − I₁/3 F⁻ᵀ) + U'(J) cof F.
-    #[inline]
-    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
-        let mu = self.constants.shear_modulus;
-        let cof = cofactor(F);
-        let J = F.row(0).dot(&cof.row(0));
-        let dU = self.bulk_slope(J);
-        let factor = mu / J.cbrt().powi(2);
-        F * factor + cof * (dU - factor * F.dot(F) / (3.0 * J))
+    #[inline(always)]
+    fn first_piola_kirchhoff<R: Real>(&self, state: &Deformation<R>) -> Tensor<R> {
+        let Deformation { F, cof, J } = state;
+        let factor = J.power_minus_two_thirds() * self.constants.shear_modulus;
+        let share = self.bulk_slope(*J) - factor * contract(F, F) / (*J * 3.0);
+        map(
+            #[inline(always)]
+            |i, j| cof[i][j].times_plus(share, F[i][j] * factor),
+        )
     }
 
     fn bulk_energy(&self, J: f64) -> f64 {
@@ -52,12 +54,12 @@ impl ConstitutiveLaw for NeoHookeanIsochoric {
         }
     }
 
-    #[inline]
-    fn bulk_slope(&self, J: f64) -> f64 {
+    #[inline(always)]
+    fn bulk_slope<R: Real>(&self, J: R) -> R {
         let K = self.constants.bulk_modulus;
         match self.volumetric {
-            VolumetricTerm::Quadratic => K * (J - 1.0),
-            VolumetricTerm::SimoTaylor => 0.5 * K * (J - 1.0 / J),
+            VolumetricTerm::Quadratic => (J - 1.0) * K,
+            VolumetricTerm::SimoTaylor => (J * J - 1.0) / J * (0.5 * K),
         }
     }
 

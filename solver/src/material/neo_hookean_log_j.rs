@@ -1,8 +1,9 @@
 //! Compressible neo-Hookean law in the log-J form.
 #![allow(non_snake_case)]
 
-use super::{ConstitutiveLaw, ElasticConstants};
-use crate::tensor::{Matrix3, cofactor};
+use super::{ConstitutiveLaw, Deformation, ElasticConstants};
+use crate::real::Real;
+use crate::tensor::{Matrix3, Tensor, map};
 
 /// ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 (ln J)² \[Pa\] (Bonet and Wood 2008,
 /// eq. 6.27): volumetric term in ln J.
@@ -25,11 +26,14 @@ impl ConstitutiveLaw for NeoHookeanLogJ {
     }
 
     /// P = μ F + (λ ln J − μ) F⁻ᵀ.
-    #[inline]
-    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
-        let cof = cofactor(F);
-        let J = F.row(0).dot(&cof.row(0));
-        F * self.mu + cof * ((self.lambda * J.ln() - self.mu) / J)
+    #[inline(always)]
+    fn first_piola_kirchhoff<R: Real>(&self, state: &Deformation<R>) -> Tensor<R> {
+        let Deformation { F, cof, J } = state;
+        let factor = (J.ln() * self.lambda - self.mu) / *J;
+        map(
+            #[inline(always)]
+            |i, j| cof[i][j].times_plus(factor, F[i][j] * self.mu),
+        )
     }
 
     /// U = λ/2 (ln J)².
@@ -37,9 +41,9 @@ impl ConstitutiveLaw for NeoHookeanLogJ {
         0.5 * self.lambda * J.ln().powi(2)
     }
 
-    #[inline]
-    fn bulk_slope(&self, J: f64) -> f64 {
-        self.lambda * J.ln() / J
+    #[inline(always)]
+    fn bulk_slope<R: Real>(&self, J: R) -> R {
+        J.ln() * self.lambda / J
     }
 
     fn constants(&self) -> ElasticConstants {

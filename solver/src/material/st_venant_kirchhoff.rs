@@ -1,8 +1,9 @@
 //! St Venant–Kirchhoff law.
 #![allow(non_snake_case)]
 
-use super::{ConstitutiveLaw, ElasticConstants};
-use crate::tensor::Matrix3;
+use super::{ConstitutiveLaw, Deformation, ElasticConstants};
+use crate::real::Real;
+use crate::tensor::{Matrix3, Tensor, map, right_cauchy_green, times_symmetric};
 
 /// ψ = λ/2 (tr E)² + μ E:E, E = (FᵀF − I)/2 \[Pa\]. Fails in strong compression.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,11 +25,18 @@ impl ConstitutiveLaw for StVenantKirchhoff {
     }
 
     /// P = F (λ tr E I + 2μ E).
-    #[inline]
-    fn first_piola_kirchhoff(&self, F: &Matrix3) -> Matrix3 {
-        let E = (F.transpose() * F - Matrix3::identity()) * 0.5;
-        let S = E * (2.0 * self.mu) + Matrix3::from_diagonal_element(self.lambda * E.trace());
-        F * S
+    #[inline(always)]
+    fn first_piola_kirchhoff<R: Real>(&self, state: &Deformation<R>) -> Tensor<R> {
+        let C = right_cauchy_green(&state.F);
+        let spherical = (C[0][0] + C[1][1] + C[2][2] - 3.0) * (0.5 * self.lambda);
+        let S = map(
+            #[inline(always)]
+            |i, j| match i == j {
+                true => (C[i][i] - 1.0) * self.mu + spherical,
+                false => C[i][j] * self.mu,
+            },
+        );
+        times_symmetric(&state.F, &S)
     }
 
     fn constants(&self) -> ElasticConstants {
