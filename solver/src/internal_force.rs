@@ -3,14 +3,13 @@
 #![allow(non_snake_case)]
 
 use crate::kernel::{Scratch, block_force};
-use crate::lanes::{Four, Parts};
-use crate::material::{ConstitutiveLaw, with_law};
+use crate::lanes::{Four, with_vectors};
 use crate::model::{Block, Model};
-use crate::projection::Projection;
 use crate::real::Dual;
 use crate::tensor::Matrix3;
-use fearless_simd::{Level, Simd, dispatch, f64x4};
+use fearless_simd::{Level, Simd, f64x4};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Scratch memory of a run; nothing in it outlives a step.
 #[derive(Debug, Clone)]
@@ -90,11 +89,11 @@ fn internal_force_in<const D: usize>(
     let run = |(block, scratch): (&Block, &mut Scratch)| {
         gather::<D>(block, u, &mut scratch.u);
         match v {
-            None => dispatch!(level, simd => force::<_, D>(simd, block, scratch)),
+            None => with_vectors!(level, simd => force::<_, D>(simd, block, scratch)),
             Some(v) => {
                 scratch.v.resize(block.nodes.len(), Four::default());
                 gather::<D>(block, v, &mut scratch.v);
-                dispatch!(level, simd => derivative::<_, D>(simd, block, scratch));
+                with_vectors!(level, simd => derivative::<_, D>(simd, block, scratch));
             }
         }
     };
@@ -163,8 +162,7 @@ fn gather<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) {
 /// F = I + Σ_a u_a ⊗ Grad φ_a; in a plane F₃₃ = 1.
 #[inline(always)]
 fn deformation_gradient<const D: usize>(
-    nodes: &[u32],
-    gradients: &[[f64; D]],
+    (nodes, gradients): (&[u32], &[[f64; D]]),
     u: &[Four],
 ) -> Matrix3 {
     let mut sums = [[0.0; D]; D];
@@ -187,32 +185,30 @@ fn deformation_gradient<const D: usize>(
 
 /// Strain energy Σ_q w_q ψ(F_q) \[J\] at displacements `u` \[m\].
 pub fn strain_energy(model: &Model, u: &[f64], workspace: &mut Workspace) -> f64 {
-    let level = workspace.level;
     let blocks = model.blocks.iter().zip(&mut workspace.blocks);
     let energy = |(block, scratch): (&Block, &mut Scratch)| match model.components {
-        2 => block_energy::<2>(level, block, u, &mut scratch.u),
-        _ => block_energy::<3>(level, block, u, &mut scratch.u),
+        2 => block_energy::<2>(block, u, &mut scratch.u),
+        _ => block_energy::<3>(block, u, &mut scratch.u),
     };
     blocks.map(energy).sum()
 }
 
-fn block_energy<const D: usize>(level: Level, block: &Block, u: &[f64], local: &mut [Four]) -> f64 {
+fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) -> f64 {
     gather::<D>(block, u, local);
     let mut energy = 0.0;
+    let mut jacobians = Vec::new();
     for chunk in block.chunks() {
         let weights = &block.quadrature_weights[chunk.clone()];
-        let mut jacobians = vec![Four::default(); chunk.len().div_ceil(4)];
-        for (i, (point, weight)) in chunk.clone().zip(weights).enumerate() {
-            let (nodes, gradients) = block.support::<D>(point);
-            let F = deformation_gradient::<D>(nodes, gradients, local);
+        jacobians.clear();
+        for (point, weight) in chunk.clone().zip(weights) {
+            let F = deformation_gradient::<D>(block.support(point), local);
             energy += weight * block.law.strain_energy(&F);
-            jacobians[i / 4].0[i % 4] = F.determinant();
+            jacobians.push(F.determinant());
         }
-        let Some(projection) = &block.projection else { continue };
-        let rule = (weights, &projection.basis[chunk]);
-        energy += with_law!(&block.law, law => {
-            dispatch!(level, simd => projection.energy(simd, law, rule, &mut jacobians))
-        });
+        if let Some(projection) = &block.projection {
+            let rule = (weights, &projection.basis[chunk]);
+            energy += projection.energy(&block.law, rule, &jacobians);
+        }
     }
     energy
 }
@@ -229,36 +225,17 @@ pub fn projected_mean_stress(model: &Model, u: &[f64]) -> Vec<f64> {
 }
 
 fn block_mean_stress<const D: usize>(block: &Block, u: &[f64]) -> Vec<f64> {
-    let mut stresses = vec![0.0; block.quadrature_weights.len()];
-    let Some(projection) = &block.projection else { return stresses };
+    let Some(projection) = &block.projection else {
+        return vec![0.0; block.quadrature_weights.len()];
+    };
     let mut local = vec![Four::default(); block.nodes.len()];
     gather::<D>(block, u, &mut local);
-    for chunk in block.chunks() {
-        let mut jacobians = Parts::new(chunk.len().div_ceil(4));
-        let mut pressures = jacobians.clone();
-        for (i, point) in chunk.clone().enumerate() {
-            let (nodes, gradients) = block.support::<D>(point);
-            let F = deformation_gradient::<D>(nodes, gradients, &local);
-            jacobians.values[i / 4].0[i % 4] = F.determinant();
-        }
+    let jacobian =
+        |point: usize| deformation_gradient::<D>(block.support(point), &local).determinant();
+    let pressures = |chunk: Range<usize>| {
         let rule = (&block.quadrature_weights[chunk.clone()], &projection.basis[chunk.clone()]);
-        with_law!(&block.law, law => dispatch!(Level::new(), simd => {
-            plain_pressures(simd, projection, law, rule, &jacobians, &mut pressures)
-        }));
-        let pressures = pressures.values.iter().flat_map(|four| four.0);
-        stresses[chunk].iter_mut().zip(pressures).for_each(|(stress, p)| *stress = p);
-    }
-    stresses
-}
-
-#[inline(always)]
-fn plain_pressures<S: Simd, L: ConstitutiveLaw>(
-    simd: S,
-    projection: &Projection,
-    law: &L,
-    rule: (&[f64], &[Four]),
-    jacobians: &Parts,
-    pressures: &mut Parts,
-) {
-    projection.pressures::<S, f64x4<S>, L>(simd, law, rule, jacobians, pressures);
+        let jacobians: Vec<f64> = chunk.map(jacobian).collect();
+        projection.plain_pressures(&block.law, rule, &jacobians)
+    };
+    block.chunks().flat_map(pressures).collect()
 }

@@ -9,6 +9,27 @@ use fearless_simd::{Simd, f64x4, prelude::*};
 #[repr(C, align(32))]
 pub struct Four(pub [f64; 4]);
 
+/// Runs `$body` with `$simd` bound to the vector instructions of `$level`. On
+/// x86-64 these are AVX2 with fused products, on processors with AVX-512 too
+/// (four numbers are four numbers), or what every such processor has.
+macro_rules! with_vectors {
+    ($level:expr, $simd:ident => $body:expr) => {{
+        #[cfg(target_arch = "x86_64")]
+        match ($level.as_avx2(), $level.as_sse2()) {
+            (Some($simd), _) => fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            ),
+            (None, Some($simd)) => $body,
+            (None, None) => unreachable!("x86-64 has SSE2"),
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        fearless_simd::dispatch!($level, $simd => $body)
+    }};
+}
+pub(crate) use with_vectors;
+
 /// Numbers at points, four to an entry, and their derivatives in one direction
 /// where these are wanted.
 #[derive(Debug, Clone, Default)]

@@ -148,6 +148,10 @@ const WANTED_CHANGE: f64 = 0.02;
 /// made \[–\]. Below it the step follows the growth by itself.
 const CHANGE: f64 = 0.15;
 
+/// Fall of the smallest J since the last look that has the next one taken at
+/// once \[–\]: J is known after every step, and what is crushed stiffens.
+const WANTED_JACOBIAN: f64 = 0.9;
+
 /// Follows the critical step as the body deforms and counts what is done.
 ///
 /// Between two Lanczos runs one product with the tangent now and then tells
@@ -165,6 +169,8 @@ pub(crate) struct Pace {
     growth: Option<(f64, f64)>,
     /// Steps from one look to the next, and until the next.
     looks: (usize, usize),
+    /// The smallest J at the last look.
+    jacobian: f64,
     changed: bool,
     stage: usize,
     since: usize,
@@ -190,6 +196,7 @@ impl Pace {
             time_step: control.fixed.unwrap_or(control.safety_factor * critical.time_step),
             growth: None,
             looks: (LOOKS.0, 1),
+            jacobian: 1.0,
             changed: false,
             stage: model.constraints.stage(state.time),
             since: 0,
@@ -243,7 +250,9 @@ impl Pace {
         self.summary.time_steps = (low.min(state.time_step), high.max(state.time_step));
         self.see(report.smallest_jacobian);
         self.looks.1 -= 1;
-        if self.looks.1 == 0 {
+        let jacobian = report.smallest_jacobian.jacobian;
+        if self.looks.1 == 0 || jacobian < WANTED_JACOBIAN * self.jacobian {
+            self.jacobian = jacobian;
             if self.control.fixed.is_none() {
                 self.look(model, state, buffers);
             }
@@ -252,8 +261,12 @@ impl Pace {
     }
 
     fn look(&mut self, model: &Model, state: &State, buffers: &mut Buffers) {
-        let (u, pattern) = (&state.displacement, &mut self.critical.pattern);
-        let growth = local_growth(model, u, state.time, pattern, &mut buffers.workspace);
+        // Where the last Lanczos run was, if it was just now.
+        let before: Vec<f64> = (state.displacement.iter().zip(&state.velocity))
+            .map(|(u, v)| u - state.time_step * v)
+            .collect();
+        let pattern = &mut self.critical.pattern;
+        let growth = local_growth(model, &before, state.time, pattern, &mut buffers.workspace);
         self.summary.lanczos_evaluations += 1;
         let (first, last) = self.growth.unwrap_or((growth, growth));
         self.growth = Some((first, growth));

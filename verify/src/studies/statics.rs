@@ -1,5 +1,6 @@
 //! Dynamic relaxation against Newton's method on the same discretisation: what
 //! is left between them is the error in time, without that in space.
+#![allow(non_snake_case)]
 
 use super::plain::{axis, line, number, text};
 use super::{Workbench, respaced, spacing_of};
@@ -7,6 +8,7 @@ use crate::run::{Solved, internal_forces, march, prepare};
 use crate::scene::Case;
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, Study, Table};
 use anyhow::{Context, Result, bail};
+use mtled::internal_force::{Workspace, stiffness_times};
 use mtled::observe::{Continue, Observer, Unobserved, View};
 use mtled::problem::{Cloud, Motion, Newton, Problem, RelaxationMass};
 use mtled::tensor::Vector3;
@@ -25,6 +27,8 @@ const CASES: [(&str, &str); 6] = [
 const TOLERANCE: f64 = 1e-5;
 /// Wanted relative residual of Newton's method \[–\].
 const RESIDUAL: f64 = 1e-10;
+/// Asymmetry of the tangent, which round-off leaves \[–\].
+const SYMMETRY: f64 = 1e-12;
 /// Errors to which steps are counted, relative to the largest displacement \[–\].
 const LEVELS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const LOOK_EVERY: usize = 10;
@@ -150,6 +154,24 @@ fn reaction_difference(a: &Solved, b: &Solved) -> f64 {
     apart / b.iter().fold(0.0f64, |most, b| most.max(b.norm()))
 }
 
+/// |v·Kw − w·Kv|/(|v||Kw|) of two directions that are noise.
+fn asymmetry(solved: &Solved) -> f64 {
+    let (model, u) = (&solved.prepared.model, &solved.state.displacement);
+    let noise = |salt: f64| -> Vec<f64> {
+        // Fractional parts of multiples of an irrational number are spread evenly.
+        (1..=u.len()).map(|i| (i as f64 * salt).fract() - 0.5).collect()
+    };
+    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let times = |v: &[f64]| {
+        let mut product = vec![0.0; u.len()];
+        stiffness_times(model, u, v, &mut Workspace::new(model), &mut product);
+        product
+    };
+    let (v, w) = (noise(std::f64::consts::SQRT_2), noise(std::f64::consts::E));
+    let (Kv, Kw) = (times(&v), times(&w));
+    (dot(&v, &Kw) - dot(&w, &Kv)).abs() / (dot(&v, &v) * dot(&Kw, &Kw)).sqrt()
+}
+
 fn add_checks(study: &mut Study, one: &Compared) {
     let u = &one.newton.state.displacement;
     let error = |relaxed: &Relaxed| difference(&relaxed.solved.state.displacement, u);
@@ -179,6 +201,13 @@ fn add_checks(study: &mut Study, one: &Compared) {
             reaction_difference(&one.relaxed.solved, &one.newton),
             10.0 * TOLERANCE,
             "one discretisation has one static solution; the residual that relaxation may leave",
+        ),
+        (
+            "symmetry",
+            "|v·Kw − w·Kv| over |v||Kw| at the solution, v and w random",
+            asymmetry(&one.newton),
+            SYMMETRY,
+            "K is a second derivative of the strain energy; what is left is round-off",
         ),
     ] {
         study.checks.push(Check::new(
