@@ -150,6 +150,7 @@ impl Discretisation {
             }
         }
         let targets = self.surface.spread(nodes, &areas);
+        self.surface.keep(areas);
         let layout = Layout {
             nodes: &self.cloud.positions,
             spacing: &self.cloud.spacing,

@@ -4,8 +4,13 @@
 use crate::collocation::{Collocation, Scratch};
 use crate::discretisation::{Discretisation, holds};
 use crate::error::Error;
-use crate::problem::{Enforcement, EssentialCondition, Prescribed, Problem};
+use crate::moments::homogeneous;
+use crate::problem::{Enforcement, EssentialCondition, Field, Prescribed, Problem};
 use crate::tensor::{Matrix3, Vector3, rotation, vector_at};
+use nalgebra::{Matrix4, Vector4};
+
+/// Directions with less than this share of all moments are empty \[–\].
+const EMPTY: f64 = 1e-12;
 
 /// The conditions of a problem, resolved to nodes and components.
 #[derive(Debug, Clone)]
@@ -36,7 +41,7 @@ pub struct ConstraintSet {
 impl ConstraintSet {
     fn new(
         component: usize,
-        rows: Vec<ConstraintRow>,
+        mut rows: Vec<ConstraintRow>,
         problem: &Problem,
         discretisation: &Discretisation,
         mass: &[f64],
@@ -44,6 +49,7 @@ impl ConstraintSet {
         let collocation = match problem.recipe.enforcement {
             Enforcement::Direct => None,
             Enforcement::Collocation => {
+                fit_mean_gradient(&mut rows, component, &problem.conditions, discretisation);
                 let nodes: Vec<u32> = rows.iter().map(|row| row.node).collect();
                 let dependent = Error::DependentConstraints {
                     component: ['x', 'y', 'z'][component],
@@ -307,4 +313,72 @@ fn claim(
         Some(ConstraintRow { node: node as u32, condition, displacement })
     };
     owner.into_iter().enumerate().filter_map(row).collect()
+}
+
+/// Where one field ū is prescribed all around a body, the mean gradient that nodes
+/// with vector areas a_c see, Σ_c ū_c a_c/V, is made the field's own, ∮ ū N dA/V, by
+/// the smallest changes of the form a_c·β. A nearly incompressible body that has no
+/// free face to move would be squeezed by what the nodes miss of its change of
+/// volume. Nodes see affine fields exactly: these are taken out first.
+fn fit_mean_gradient(
+    rows: &mut [ConstraintRow],
+    component: usize,
+    conditions: &[EssentialCondition],
+    discretisation: &Discretisation,
+) {
+    let surface = &discretisation.surface;
+    let Some(field) = field_all_around(rows, conditions, &surface.held_areas) else { return };
+    let areas: Vec<Vector3> = rows.iter().map(|row| area_at(row, &surface.held_areas)).collect();
+    let positions = &discretisation.cloud.positions;
+    let at = |row: &ConstraintRow| positions[row.node as usize];
+    let samples =
+        |(row, area): (&ConstraintRow, &Vector3)| (at(row), area.norm(), row.displacement);
+    let Some(affine) = affine_fit(rows.iter().zip(&areas).map(samples).collect()) else { return };
+    let mut gap = Vector3::zeros();
+    for panel in &surface.panels {
+        let rest = field.at(&panel.centre)[component] - affine(&panel.centre);
+        gap += panel.area * rest * panel.normal;
+    }
+    let mut gram = Matrix3::zeros();
+    for (row, area) in rows.iter().zip(&areas) {
+        gap -= (row.displacement - affine(&at(row))) * area;
+        gram += area * area.transpose();
+    }
+    if let Ok(inverse) = gram.pseudo_inverse(EMPTY * gram.trace()) {
+        let beta = inverse * gap;
+        rows.iter_mut().zip(&areas).for_each(|(row, area)| row.displacement += beta.dot(area));
+    }
+}
+
+/// The field that alone prescribes all `rows`, if these are at all nodes with areas.
+fn field_all_around<'a>(
+    rows: &[ConstraintRow],
+    conditions: &'a [EssentialCondition],
+    areas: &[(u32, Vector3)],
+) -> Option<&'a Field> {
+    let condition = rows.first()?.condition;
+    let Prescribed::Field(field) = &conditions[condition as usize].prescribed else { return None };
+    let one = rows.iter().all(|row| row.condition == condition);
+    let held = |(node, _): &(u32, Vector3)| rows.binary_search_by_key(node, |row| row.node).is_ok();
+    (one && !areas.is_empty() && areas.iter().all(held)).then_some(field)
+}
+
+fn area_at(row: &ConstraintRow, areas: &[(u32, Vector3)]) -> Vector3 {
+    let index = areas.binary_search_by_key(&row.node, |(node, _)| *node);
+    index.map_or(Vector3::zeros(), |index| areas[index].1)
+}
+
+/// The affine function nearest to samples (X, size, value), by least squares.
+fn affine_fit(samples: Vec<(Vector3, f64, f64)>) -> Option<impl Fn(&Vector3) -> f64> {
+    let origin = samples.first()?.0;
+    let distance = |(X, ..): &(Vector3, f64, f64)| (X - origin).norm();
+    let length = samples.iter().map(distance).fold(f64::MIN_POSITIVE, f64::max);
+    let p = move |X: &Vector3| homogeneous(&((X - origin) / length));
+    let (mut gram, mut moments) = (Matrix4::zeros(), Vector4::zeros());
+    for (X, size, value) in &samples {
+        gram += *size * p(X) * p(X).transpose();
+        moments += *size * *value * p(X);
+    }
+    let coefficients = gram.pseudo_inverse(EMPTY * gram.trace()).ok()? * moments;
+    Some(move |X: &Vector3| coefficients.dot(&p(X)))
 }

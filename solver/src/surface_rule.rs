@@ -30,9 +30,11 @@ pub struct SurfaceRule {
     shares: Vec<f64>,
     /// The points: `held` nodes first, then free panels \[m\].
     positions: Vec<Vector3>,
-    held: usize,
+    held: Vec<u32>,
     /// φ at the points.
     rows: Rows,
+    /// Node and closed vector area \[m²\] of each point, if all of them are held.
+    pub held_areas: Vec<(u32, Vector3)>,
 }
 
 /// Nodes farther than this from a panel take no share of it \[spacing\]. Larger
@@ -79,12 +81,12 @@ impl SurfaceRule {
             panel_rows,
             starts: vec![0],
             positions: held.iter().map(at).collect(),
-            held: held.len(),
+            held,
             ..SurfaceRule::default()
         };
         for (p, panel) in rule.panels.iter().enumerate() {
             let shares = near.shares(panel, components);
-            let point = |(node, _): &(u32, f64)| held.binary_search(node).ok();
+            let point = |(node, _): &(u32, f64)| rule.held.binary_search(node).ok();
             match shares.iter().map(point).collect::<Option<Vec<usize>>>() {
                 Some(points) if !points.is_empty() => {
                     rule.points.extend(points.iter().map(|&point| point as u32));
@@ -106,12 +108,13 @@ impl SurfaceRule {
     /// moments, linear in g.
     pub fn strengths(&self, nodes: usize, g: impl Fn(&Panel) -> Vector3) -> Vec<Vector3> {
         let mut strengths = vec![Vector3::zeros(); self.positions.len()];
-        let mut sizes = vec![0.0; self.held];
+        let held = self.held.len();
+        let mut sizes = vec![0.0; held];
         let mut wanted = vec![Vector3::zeros(); nodes];
         for (p, panel) in self.panels.iter().enumerate() {
             let strength = panel.area * g(panel);
             let entries = self.starts[p]..self.starts[p + 1];
-            let shared = (self.points[entries.start] as usize) < self.held;
+            let shared = (self.points[entries.start] as usize) < held;
             for entry in entries {
                 let point = self.points[entry] as usize;
                 strengths[point] += self.shares[entry] * strength;
@@ -123,19 +126,26 @@ impl SurfaceRule {
                 add(&self.panel_rows, p, &strength, &mut wanted);
             }
         }
-        let own: Vec<usize> = (0..self.held).collect();
+        let own: Vec<usize> = (0..held).collect();
         for _ in 0..SWEEPS {
             let mut rest = wanted.clone();
-            for (c, strength) in strengths[..self.held].iter().enumerate() {
+            for (c, strength) in strengths[..held].iter().enumerate() {
                 add(&self.rows, c, &-strength, &mut rest);
             }
             let value = |entry: usize| self.rows.phi[entry] * rest[self.rows.nodes[entry] as usize];
             let mut change: Vec<Vector3> =
-                (0..self.held).map(|c| self.rows.row(c).map(value).sum()).collect();
+                (0..held).map(|c| self.rows.row(c).map(value).sum()).collect();
             take_moments(&mut change, &sizes, &self.positions, &own, |moments, _| moments);
             strengths.iter_mut().zip(&change).for_each(|(strength, change)| *strength += change);
         }
         strengths
+    }
+
+    /// Keeps the closed areas where no point of the boundary is free.
+    pub fn keep(&mut self, areas: Vec<Vector3>) {
+        if self.held.len() == areas.len() {
+            self.held_areas = self.held.iter().copied().zip(areas).collect();
+        }
     }
 
     /// Σ_i φ_a(X_i) g_i at each of `nodes` nodes.

@@ -5,10 +5,12 @@ mod common;
 
 use common::*;
 use mtled::discretisation::Discretisation;
-use mtled::geometry::Shape;
+use mtled::essential::ConstraintForces;
+use mtled::geometry::{Panel, Shape};
 use mtled::internal_force::{Workspace, internal_force, strain_energy};
 use mtled::model::Model;
 use mtled::problem::*;
+use mtled::selection::Selector;
 use mtled::tensor::{Matrix3, Vector3};
 
 fn consistent(mut problem: Problem, tolerance: f64) -> Discretisation {
@@ -128,4 +130,31 @@ fn a_material_that_changes_its_volume_is_not_projected() {
     };
     assert!(!projected(&problem));
     assert!(projected(&with_law(problem, neo_hookean(3000.0, 0.49))));
+}
+
+#[test]
+fn a_field_prescribed_all_around_a_body_gives_it_the_mean_gradient_of_the_field() {
+    for problem in [collocated(jittered(cube(5), 0.3, 4)), collocated(jittered(square(6), 0.3, 4))]
+    {
+        let d = problem.dimension.components();
+        let bent = |X: &Vector3| Vector3::new(X.x * X.y * X.y, X.x * X.x * X.y, 0.0) / EDGE.powi(2);
+        let mut problem = problem;
+        let mut boundary = condition("boundary", Selector::All, [None; 3]);
+        boundary.prescribed = Prescribed::Field(Field::of(bent));
+        problem.conditions.push(boundary);
+        let discretisation = consistent(problem.clone(), 1e-12);
+        let model = Model::new(&problem, &discretisation).unwrap();
+        let mut u = vec![0.0; model.size()];
+        let (inertia, mut forces) = (&model.inertia, ConstraintForces::default());
+        model.constraints.enforce(0.0, &model.positions, inertia, &mut u, &mut forces, |_, _| ());
+        let mut found = Matrix3::zeros();
+        for (q, weight) in discretisation.quadrature.weights.iter().enumerate() {
+            let F = discretisation.supports.deformation_gradient(q, &u, d);
+            found += (F - Matrix3::identity()) * *weight;
+        }
+        let around = |panel: &Panel| bent(&panel.centre) * (panel.area * panel.normal).transpose();
+        let wanted: Matrix3 = discretisation.surface.panels.iter().map(around).sum();
+        let error = (found - wanted).norm() / wanted.norm();
+        assert!(error < 1e-9, "{error} in {d} dimensions");
+    }
 }

@@ -20,6 +20,7 @@ mod hard_thin;
 mod hard_twins;
 mod manufactured;
 mod manufactured_plain;
+mod manufactured_pose;
 mod manufactured_report;
 mod patch;
 mod patch_exact;
