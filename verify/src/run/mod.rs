@@ -4,11 +4,13 @@ mod output;
 mod probes;
 mod record;
 mod result;
+mod work;
 
 pub use output::{write_outputs, write_recorded};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Record, Recorder, Sample};
-pub use result::{internal_forces, neighbour_visits, result_json, summary_text};
+pub use result::{result_json, summary_text};
+pub use work::Work;
 
 use crate::machine::cpu_seconds;
 use crate::scene::Case;
