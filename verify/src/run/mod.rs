@@ -1,11 +1,13 @@
 //! One case from its problem to its result.
 
+mod memory;
 mod output;
 mod probes;
 mod record;
 mod result;
 mod work;
 
+pub use memory::{Footprint, MemoryShortage, refuse_beyond_memory};
 pub use output::{write_outputs, write_recorded};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Record, Recorder, Sample};

@@ -1,6 +1,6 @@
 //! The result of a run as JSON and as a screen of text.
 
-use super::{Record, Solved, Work};
+use super::{Footprint, Record, Solved, Work};
 use crate::machine::{peak_memory, provenance};
 use crate::report::four_digits;
 use crate::scene::{Case, ProbeKind};
@@ -45,6 +45,7 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
             "solve_wall_s": solved.solve_seconds,
             "solve_cpu_s": solved.cpu_seconds,
             "peak_memory_bytes": peak_memory(),
+            "estimated_memory_bytes": Footprint::of(&case.problem).ok().map(|f| f.bytes.round()),
             "provenance": provenance(),
         },
     })
@@ -219,11 +220,29 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
         four_digits(work.bytes_streamed as f64 / 1e9),
         work.correction_iterations
     ));
+    lines.extend(memory_text(case, solved));
     lines.push(format!(
         "  set-up {:.2} s, march {:.2} s wall ({:.2} s CPU)",
         solved.prepared.setup_seconds, solved.solve_seconds, solved.cpu_seconds
     ));
     lines.join("\n")
+}
+
+/// Memory at its peak, per point and per node, and what had been estimated.
+fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
+    let peak = peak_memory()? as f64;
+    let (d, model) = (&solved.prepared.discretisation, &solved.prepared.model);
+    let (nodes, points) = (model.positions.len() as f64, d.supports.len() as f64);
+    let estimate = Footprint::of(&case.problem).ok()?.bytes;
+    Some(format!(
+        "  {:.0} MB of memory at the peak ({:.0} estimated): {:.0} bytes per point, {:.0} per node; {:.0} bytes \
+         per point are read in each step",
+        peak / 1e6,
+        estimate / 1e6,
+        peak / points,
+        peak / nodes,
+        model.bytes_per_step() as f64 / points
+    ))
 }
 
 fn triple(v: &Vector3) -> String {

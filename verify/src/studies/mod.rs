@@ -24,7 +24,7 @@ mod manufactured_report;
 mod patch;
 mod patch_exact;
 mod plain;
-mod problems;
+pub(crate) mod problems;
 mod references;
 mod set_up;
 mod specimens;
