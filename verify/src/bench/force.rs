@@ -31,6 +31,17 @@ pub struct ForceRow {
     pub share_of_triad: Option<f64>,
 }
 
+/// Operations per point and neighbour: nine multiply-adds for F and nine for
+/// the force. What the law takes per point is not counted.
+const OPERATIONS: f64 = 36.0;
+
+impl ForceRow {
+    /// Share of a rate of multiply-adds \[flop/s\] that is used.
+    pub fn share_of(&self, multiply_adds: f64) -> f64 {
+        1e9 * OPERATIONS / self.nanoseconds_per_neighbour / multiply_adds
+    }
+}
+
 /// Two ways of one evaluation against each other.
 #[derive(Debug, Clone, Serialize)]
 pub struct RatioRow {

@@ -101,11 +101,11 @@ impl<'a> PlainLoop<'a> {
     fn projection(&self, values: &[f64], start: usize) -> Vec<f64> {
         let mut moments = [0.0; 4];
         for (i, value) in values.iter().enumerate() {
-            for b in 0..4 {
-                moments[b] += self.weights[start + i] * self.basis[start + i][b] * value;
+            for (moment, b) in moments.iter_mut().zip(self.basis[start + i]) {
+                *moment += self.weights[start + i] * b * value;
             }
         }
-        let value = |i: usize| (0..4).map(|b| self.basis[start + i][b] * moments[b]).sum();
+        let value = |i: usize| self.basis[start + i].iter().zip(moments).map(|(b, m)| b * m).sum();
         (0..values.len()).map(value).collect()
     }
 }

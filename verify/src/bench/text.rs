@@ -42,7 +42,8 @@ fn header(figures: &Figures) -> String {
     let (second, last) = figures.caches;
     format!(
         "### mtled bench{}\n\n{}, {} threads, features: {}, L2 {} KiB, L3 {} MiB; load average at the start \
-         {load}; mtled {} ({}), {}, {}. Medians of {} rounds, in turns with what they are compared with.\n",
+         {load}; mtled {} ({}), {}, {}. Medians of {} rounds, in turns with what they are compared with: \
+         processor time on one thread, wall time on several.\n",
         if figures.quick { " --quick" } else { "" },
         p.processor,
         p.threads,
@@ -78,6 +79,7 @@ fn force(figures: &Figures) -> String {
         "plain over solver",
         "GB/s",
         "of the triad",
+        "of the multiply-adds",
     ]);
     for row in &figures.force {
         let projection = if row.projected { "" } else { ", no projection" };
@@ -91,6 +93,7 @@ fn force(figures: &Figures) -> String {
             format!("{:.2}", row.plain_over_solver),
             format!("{:.1}", row.bytes_per_second / 1e9),
             row.share_of_triad.map_or("–".into(), |share| format!("{share:.2}")),
+            format!("{:.2}", row.share_of(figures.limits.multiply_adds)),
         ]);
     }
     table.text
