@@ -1,6 +1,7 @@
 //! The table of benchmarks from Criterion's files.
 
 use anyhow::{Context, Result, ensure};
+use mtled_benches::{Limit, Size, Unit};
 use mtled_verify::machine::provenance;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -31,23 +32,18 @@ struct Interval {
     upper_bound: f64,
 }
 
-/// `size.json`, which the benchmark itself leaves.
-#[derive(Deserialize)]
-struct Size {
-    nodes: usize,
-    points: usize,
-    /// Mean number of nodes per support.
-    neighbours: f64,
-}
-
 /// A Markdown table of every benchmark under `criterion`.
 pub fn table(criterion: &Path) -> Result<String> {
     let mut sizes = Vec::new();
-    find_sizes(criterion, &mut sizes)?;
+    find("size.json", criterion, &mut sizes)?;
     sizes.sort();
+    let triad = match criterion.join("limits/triad/limit.json") {
+        limit if limit.with_file_name("new").exists() => Some(rate(&limit)?),
+        _ => None,
+    };
     let mut text = String::from(
-        "| bench | nodes | points | neighbours | median | points per second | ns per point and neighbour |\n\
-         |---|--:|--:|--:|--:|--:|--:|\n",
+        "| bench | nodes | points | neighbours | median | points per second | ns per point and neighbour | of the triad |\n\
+         |---|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     let mut rows = 0;
     for size in sizes {
@@ -58,11 +54,13 @@ pub fn table(criterion: &Path) -> Result<String> {
                 &read(&dir.join("benchmark.json"))?,
                 &read(&size)?,
                 &read(&dir.join("estimates.json"))?,
+                triad,
             ));
             rows += 1;
         }
     }
     ensure!(rows > 0, "no measurement under {}; run `cargo bench`", criterion.display());
+    text.push_str(&limits(criterion)?);
     let p = provenance();
     let _ = writeln!(
         text,
@@ -72,13 +70,41 @@ pub fn table(criterion: &Path) -> Result<String> {
     Ok(text)
 }
 
-fn row(benchmark: &Benchmark, size: &Size, estimates: &Estimates) -> String {
+/// The limits of the machine in the same run.
+fn limits(criterion: &Path) -> Result<String> {
+    let mut found = Vec::new();
+    find("limit.json", criterion, &mut found)?;
+    found.sort();
+    let mut text = String::new();
+    for file in found.iter().filter(|file| file.with_file_name("new").exists()) {
+        let unit = match read::<Limit>(file)?.unit {
+            Unit::Bytes => "GB/s",
+            Unit::Operations => "Gflop/s",
+        };
+        let name = read::<Benchmark>(&file.with_file_name("new").join("benchmark.json"))?.full_id;
+        let _ = writeln!(text, "\n{name}: {:.1} {unit}.", rate(file)?);
+    }
+    Ok(text)
+}
+
+/// What a limit comes to, in 10⁹ per second.
+fn rate(limit: &Path) -> Result<f64> {
+    let estimates: Estimates = read(&limit.with_file_name("new").join("estimates.json"))?;
+    Ok(read::<Limit>(limit)?.amount / estimates.median.point_estimate)
+}
+
+/// `triad` in GB/s.
+fn row(benchmark: &Benchmark, size: &Size, estimates: &Estimates, triad: Option<f64>) -> String {
     let median = estimates.median.point_estimate;
     let interval = &estimates.median.confidence_interval;
     let half = 50.0 * (interval.upper_bound - interval.lower_bound) / median;
     let visits = size.points as f64 * size.neighbours;
+    let share = match (size.bytes, triad) {
+        (Some(bytes), Some(triad)) => format!("{:.2}", bytes as f64 / median / triad),
+        _ => "–".into(),
+    };
     format!(
-        "| {} | {} | {} | {:.1} | {} ± {half:.1} % | {:.2} M | {:.2} |\n",
+        "| {} | {} | {} | {:.1} | {} ± {half:.1} % | {:.2} M | {:.2} | {share} |\n",
         benchmark.full_id,
         size.nodes,
         size.points,
@@ -99,14 +125,15 @@ fn time(ns: f64) -> String {
     }
 }
 
-fn find_sizes(dir: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
+/// All files of a name under a folder.
+fn find(file: &str, dir: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
     let entries = std::fs::read_dir(dir)
         .with_context(|| format!("cannot read {}; run `cargo bench` first", dir.display()))?;
     for entry in entries {
         let path = entry?.path();
         if path.is_dir() {
-            find_sizes(&path, found)?;
-        } else if path.file_name().is_some_and(|name| name == "size.json") {
+            find(file, &path, found)?;
+        } else if path.file_name().is_some_and(|name| name == file) {
             found.push(path);
         }
     }
@@ -126,12 +153,11 @@ mod tests {
     #[test]
     fn a_row_states_rates_per_point_and_per_neighbour() {
         let benchmark = Benchmark { full_id: "internal_force/cube".into() };
-        let size = Size { nodes: 700, points: 1000, neighbours: 20.0 };
+        let size = Size { nodes: 700, points: 1000, neighbours: 20.0, bytes: Some(500_000) };
         let interval = Interval { lower_bound: 99e3, upper_bound: 101e3 };
         let median = Estimate { point_estimate: 100e3, confidence_interval: interval };
-        let row = row(&benchmark, &size, &Estimates { median });
-        let wanted =
-            "| internal_force/cube | 700 | 1000 | 20.0 | 100.0 µs ± 1.0 % | 10.00 M | 5.00 |\n";
+        let row = row(&benchmark, &size, &Estimates { median }, Some(10.0));
+        let wanted = "| internal_force/cube | 700 | 1000 | 20.0 | 100.0 µs ± 1.0 % | 10.00 M | 5.00 | 0.50 |\n";
         assert_eq!(row, wanted);
     }
 

@@ -334,6 +334,7 @@ impl<'a> Solver<'a> {
             time: state.time,
             time_steps: (0.0, 0.0),
             critical_time_step: 0.0,
+            force_evaluations: self.counts.evaluations,
             lanczos_evaluations: 0,
             smallest_jacobian: self.smallest_jacobian,
             relaxation: None,

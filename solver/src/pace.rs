@@ -22,7 +22,9 @@ pub struct Summary {
     pub time_steps: (f64, f64),
     /// Critical step in the reference configuration \[s\].
     pub critical_time_step: f64,
-    /// Evaluations of the internal force spent on finding critical steps.
+    /// Evaluations of the internal force, all together.
+    pub force_evaluations: usize,
+    /// Those of them that were spent on finding critical steps.
     pub lanczos_evaluations: usize,
     /// Smallest J seen at any point and step \[–\].
     pub smallest_jacobian: SmallestJacobian,
@@ -205,6 +207,7 @@ impl Pace {
                 time: 0.0,
                 time_steps: (f64::INFINITY, 0.0),
                 critical_time_step: critical.time_step,
+                force_evaluations: 0,
                 lanczos_evaluations: critical.products,
                 smallest_jacobian: SmallestJacobian::NONE,
                 relaxation: None,
@@ -285,7 +288,10 @@ impl Pace {
         self.summary.smallest_jacobian = self.summary.smallest_jacobian.or(smallest);
     }
 
-    pub fn summary(&self, state: &State, stopped: bool) -> Summary {
-        Summary { steps: state.step, time: state.time, stopped, ..self.summary.clone() }
+    /// Sums up; `further` evaluations of the internal force were outside steps.
+    pub fn summary(&self, state: &State, further: usize, stopped: bool) -> Summary {
+        let (steps, lanczos) = (state.step, self.summary.lanczos_evaluations);
+        let force_evaluations = steps + lanczos + further;
+        Summary { steps, force_evaluations, time: state.time, stopped, ..self.summary.clone() }
     }
 }

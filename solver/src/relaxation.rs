@@ -34,6 +34,7 @@ pub(crate) fn relax(
     // At a turning point a single increment says nothing: take the largest
     // since the last look.
     let (mut increment, mut increment_before) = (0.0f64, f64::INFINITY);
+    let mut residuals = 0;
     for count in 1..=settings.max_steps {
         if pace.reevaluate(model, state, &mut buffers) {
             damping.forget();
@@ -54,6 +55,7 @@ pub(crate) fn relax(
             let rate = rate(damping.c, increment / increment_before);
             // One window may lie at a turning point, two do not.
             let moved = if held { increment.max(increment_before) } else { increment };
+            residuals += 1;
             convergence = assess(model, state, &mut buffers, rate, moved);
         }
         if count.is_multiple_of(LOOK_EVERY) {
@@ -68,7 +70,7 @@ pub(crate) fn relax(
         let stop =
             watch(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
         if converged || stop {
-            let summary = pace.summary(state, stop);
+            let summary = pace.summary(state, residuals, stop);
             // Stopped early, it may never have looked.
             let relaxation = convergence.residual.is_finite().then_some(convergence);
             return Ok(Summary { relaxation, ..summary });

@@ -63,5 +63,5 @@ fn march(
         internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
     pace.see(smallest_jacobian);
     check(model, state, &StepReport { smallest_jacobian, largest_increment: 0.0 })?;
-    Ok(pace.summary(state, stopped))
+    Ok(pace.summary(state, 1, stopped))
 }

@@ -18,4 +18,6 @@ pub mod machine;
 pub mod run;
 pub mod studies;
 
+pub mod bench;
+
 pub mod cli;

@@ -30,6 +30,48 @@ pub fn peak_memory() -> Option<u64> {
     Some(1024 * kibibytes)
 }
 
+/// Memory that a run may take \[bytes\]: what the system has to give, or what
+/// is left of the limit of this process's group if that is less. None where
+/// the system does not tell.
+pub fn available_memory() -> Option<u64> {
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    let free = Some(system.available_memory()).filter(|bytes| *bytes > 0)?;
+    let group = system.cgroup_limits().map(|limits| limits.total_memory.saturating_sub(limits.rss));
+    Some(group.map_or(free, |group| group.min(free)))
+}
+
+/// Mean number of processes that ran or waited in the last minute; None where
+/// the system does not count them.
+pub fn load_average() -> Option<f64> {
+    let load = sysinfo::System::load_average();
+    // Windows has no such figure, and all three are 0 there.
+    (load.one + load.five + load.fifteen > 0.0).then_some(load.one)
+}
+
+/// Sizes of the second cache of a core and of the last cache \[bytes\]; of a
+/// common processor where the system does not tell.
+pub fn caches() -> (usize, usize) {
+    let second = cache(2).unwrap_or(1 << 20);
+    (second, cache(3).unwrap_or(32 << 20).max(second))
+}
+
+/// Size \[bytes\] of the first processor's data cache of a level.
+fn cache(level: u8) -> Option<usize> {
+    let folder = std::path::Path::new("/sys/devices/system/cpu/cpu0/cache");
+    let read = |index: usize, name: &str| {
+        let file = folder.join(format!("index{index}")).join(name);
+        std::fs::read_to_string(file).ok().map(|text| text.trim().to_string())
+    };
+    let holds_data = |index: &usize| {
+        read(*index, "level").as_deref() == Some(&level.to_string())
+            && read(*index, "type").is_some_and(|kind| kind != "Instruction")
+    };
+    let size = read((0..8).find(holds_data)?, "size")?;
+    let number: usize = size.trim_end_matches(['K', 'M']).parse().ok()?;
+    Some(number << if size.ends_with('M') { 20 } else { 10 })
+}
+
 fn processor_field(key: &str) -> Option<String> {
     let info = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = info.lines().find(|line| line.starts_with(key))?;

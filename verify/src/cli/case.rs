@@ -2,6 +2,7 @@
 
 use super::{COULD_NOT_RUN, print_data};
 use crate::cases::CASES;
+use crate::run::refuse_beyond_memory;
 use crate::scene::{Case, Diagnostic, read_case, schema};
 use anyhow::bail;
 use clap::Subcommand;
@@ -47,6 +48,7 @@ fn check(files: &[PathBuf]) -> anyhow::Result<u8> {
     let mut code = 0;
     for file in files {
         match load(file) {
+            Some(case) if !fits(&case) => code = COULD_NOT_RUN,
             Some(case) => {
                 // What only a discretisation can show: empty selections, poor supports.
                 match crate::run::prepare_to_run(&case.problem) {
@@ -77,6 +79,15 @@ pub fn load(file: &Path) -> Option<Case> {
             None
         }
     }
+}
+
+/// Whether the machine has the memory for a case; says so if not.
+pub fn fits(case: &Case) -> bool {
+    let refused = refuse_beyond_memory(&case.problem).err();
+    if let Some(shortage) = &refused {
+        eprintln!("{}", case.diagnostic("discretisation", shortage.to_string()));
+    }
+    refused.is_none()
 }
 
 /// A solver error at the key of the case file that causes it.

@@ -1,7 +1,7 @@
 //! `mtled inspect`.
 #![allow(non_snake_case)]
 
-use super::case::{diagnose, load};
+use super::case::{diagnose, fits, load};
 use super::inspect_text::{advice, to_json, to_text};
 use super::{COULD_NOT_RUN, Common, Format, print_data};
 use crate::run::{Prepared, prepare};
@@ -70,6 +70,9 @@ pub struct Inspection<'a> {
 
 pub fn inspect(arguments: &InspectArgs, common: &Common) -> anyhow::Result<u8> {
     let Some(case) = load(&arguments.case) else { return Ok(COULD_NOT_RUN) };
+    if !fits(&case) {
+        return Ok(COULD_NOT_RUN);
+    }
     let shown = prepare(&case.problem).and_then(|prepared| {
         let inspection = examine(&case, &prepared, arguments.modes)?;
         Ok(match common.format {

@@ -1,7 +1,9 @@
 //! What an inspection says, to people and to programs.
 
 use super::inspect::{Inspection, LARGEST_SEARCH, Place};
+use crate::machine::peak_memory;
 use crate::report::four_digits;
+use crate::run::Footprint;
 use mtled::discretisation::Warning;
 use mtled::problem::{Dimension, Motion};
 use mtled::tensor::Vector3;
@@ -61,13 +63,30 @@ pub fn to_text(inspection: &Inspection) -> String {
         show(&inspection.weakest.position)
     ));
     lines.push(format!(
-        "memory              {} MB are read in each step",
-        four_digits(model.bytes_per_step() as f64 / 1e6)
+        "memory              {} MB are read in each step, {:.0} bytes per point",
+        four_digits(model.bytes_per_step() as f64 / 1e6),
+        model.bytes_per_step() as f64 / points as f64
     ));
+    lines.extend(memory_text(inspection));
     lines.extend(modes_text(inspection.modes.as_ref()));
     lines.push("advice".into());
     lines.extend(advice(inspection).into_iter().map(|line| format!("  {line}")));
     lines.join("\n") + "\n"
+}
+
+/// Memory of the set-up at its peak, and what was estimated before.
+fn memory_text(inspection: &Inspection) -> Option<String> {
+    let (peak, model) = (peak_memory()? as f64, &inspection.prepared.model);
+    let (nodes, points) = (model.positions.len() as f64, model.point_positions.len() as f64);
+    let estimate = Footprint::of(&inspection.case.problem).ok()?.bytes;
+    Some(format!(
+        "                    {:.0} MB at the peak of the set-up ({:.0} estimated): {:.0} bytes per point, {:.0} per \
+         node",
+        peak / 1e6,
+        estimate / 1e6,
+        peak / points,
+        peak / nodes
+    ))
 }
 
 fn modes_text(modes: Option<&ZeroEnergyModes>) -> Vec<String> {
@@ -188,6 +207,8 @@ pub fn to_json(inspection: &Inspection) -> Value {
             "position_m": array(&inspection.weakest.position),
         },
         "bytes_per_step": model.bytes_per_step(),
+        "estimated_memory_bytes": Footprint::of(&case.problem).ok().map(|f| f.bytes.round()),
+        "peak_memory_bytes": peak_memory(),
         "zero_energy_modes": inspection.modes.as_ref().map(|modes| json!({
             "count": modes.count,
             "at_least": modes.at_least(),

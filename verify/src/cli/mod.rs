@@ -1,5 +1,6 @@
 //! The command line: parse, dispatch, exit code.
 
+mod bench;
 mod case;
 mod inspect;
 mod inspect_text;
@@ -35,6 +36,7 @@ const EXAMPLES: &str = "Examples:
   mtled inspect my_case.toml                    are its nodes and supports sound?
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the cases that the program carries
+  mtled bench --quick                           how fast is the solver here?
   mtled reference check                         are the finite-element references sound?";
 
 #[derive(Debug, Args)]
@@ -73,6 +75,9 @@ enum Command {
     /// Check, show or solve again the finite-element references.
     #[command(subcommand)]
     Reference(reference::ReferenceCommand),
+    /// Measure how fast the solver is on this machine, beside the machine's own
+    /// limits: tables to be pasted into an issue.
+    Bench(bench::BenchArgs),
     /// Print a completion script for a shell.
     Completions { shell: clap_complete::Shell },
 }
@@ -116,6 +121,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
         Command::Case(command) => case::case(command),
         Command::Reference(command) => reference::reference(command, &cli.common),
+        Command::Bench(arguments) => bench::bench(arguments, &cli.common),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Cli::command(), "mtled", &mut script);

@@ -1,6 +1,6 @@
 //! `mtled solve`.
 
-use super::case::{diagnose, load};
+use super::case::{diagnose, fits, load};
 use super::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
 use crate::run::{
     Prepared, Record, Recorder, Solved, march_on, prepare_to_run, summary_text, write_outputs,
@@ -24,6 +24,9 @@ pub struct SolveArgs {
 
 pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
     let Some(case) = load(&arguments.case) else { return Ok(COULD_NOT_RUN) };
+    if !fits(&case) {
+        return Ok(COULD_NOT_RUN);
+    }
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(&case.name));
     // A folder that cannot be written must not cost a whole run.
     std::fs::create_dir_all(&out)

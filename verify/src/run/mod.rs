@@ -1,14 +1,18 @@
 //! One case from its problem to its result.
 
+mod memory;
 mod output;
 mod probes;
 mod record;
 mod result;
+mod work;
 
+pub use memory::{Footprint, MemoryShortage, refuse_beyond_memory};
 pub use output::{write_outputs, write_recorded};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Record, Recorder, Sample};
-pub use result::{internal_forces, neighbour_visits, result_json, summary_text};
+pub use result::{result_json, summary_text};
+pub use work::Work;
 
 use crate::machine::cpu_seconds;
 use crate::scene::Case;

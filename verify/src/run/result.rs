@@ -1,6 +1,6 @@
 //! The result of a run as JSON and as a screen of text.
 
-use super::{Record, Solved};
+use super::{Footprint, Record, Solved, Work};
 use crate::machine::{peak_memory, provenance};
 use crate::report::four_digits;
 use crate::scene::{Case, ProbeKind};
@@ -36,13 +36,7 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
         },
         "warnings": warnings(solved),
         "motion": motion_json(case, solved),
-        "work_counters": {
-            "steps": solved.summary.steps,
-            "lanczos_evaluations": solved.summary.lanczos_evaluations,
-            "point_evaluations": point_evaluations(solved),
-            "neighbour_visits": neighbour_visits(solved),
-            "bytes_streamed": internal_forces(solved) * model.bytes_per_step(),
-        },
+        "work_counters": Work::of(solved),
         "probes": probes_json(case, record),
         "reactions": reactions_json(case, record),
         "energies": energies_json(record),
@@ -51,6 +45,7 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
             "solve_wall_s": solved.solve_seconds,
             "solve_cpu_s": solved.cpu_seconds,
             "peak_memory_bytes": peak_memory(),
+            "estimated_memory_bytes": Footprint::of(&case.problem).ok().map(|f| f.bytes.round()),
             "provenance": provenance(),
         },
     })
@@ -63,25 +58,6 @@ fn warnings(solved: &Solved) -> Vec<String> {
         prepared.discretisation.warnings().iter().map(Warning::to_string).collect();
     all.extend(summary.crushed(&prepared.model).map(|crushed| crushed.to_string()));
     all
-}
-
-/// Evaluations of the internal force.
-pub fn internal_forces(solved: &Solved) -> usize {
-    let summary = &solved.summary;
-    match summary.newton {
-        Some(newton) => newton.evaluations,
-        None => summary.steps + summary.lanczos_evaluations,
-    }
-}
-
-fn point_evaluations(solved: &Solved) -> usize {
-    internal_forces(solved) * solved.prepared.discretisation.supports.len()
-}
-
-/// Support entries visited by all evaluations of the internal force: a measure
-/// of work that does not depend on the machine.
-pub fn neighbour_visits(solved: &Solved) -> usize {
-    internal_forces(solved) * solved.prepared.discretisation.supports.nodes.len()
 }
 
 fn motion_json(case: &Case, solved: &Solved) -> Value {
@@ -233,11 +209,40 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
             ));
         }
     }
+    let work = Work::of(solved);
+    lines.push(format!(
+        "  {} evaluations of the internal force ({} for the critical step), {:.2e} points and {:.2e} \
+         neighbours visited, {} GB read; {} iterations for the gradients",
+        work.force_evaluations,
+        work.lanczos_evaluations,
+        work.point_evaluations as f64,
+        work.neighbour_visits as f64,
+        four_digits(work.bytes_streamed as f64 / 1e9),
+        work.correction_iterations
+    ));
+    lines.extend(memory_text(case, solved));
     lines.push(format!(
         "  set-up {:.2} s, march {:.2} s wall ({:.2} s CPU)",
         solved.prepared.setup_seconds, solved.solve_seconds, solved.cpu_seconds
     ));
     lines.join("\n")
+}
+
+/// Memory at its peak, per point and per node, and what had been estimated.
+fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
+    let peak = peak_memory()? as f64;
+    let (d, model) = (&solved.prepared.discretisation, &solved.prepared.model);
+    let (nodes, points) = (model.positions.len() as f64, d.supports.len() as f64);
+    let estimate = Footprint::of(&case.problem).ok()?.bytes;
+    Some(format!(
+        "  {:.0} MB of memory at the peak ({:.0} estimated): {:.0} bytes per point, {:.0} per node; {:.0} bytes \
+         per point are read in each step",
+        peak / 1e6,
+        estimate / 1e6,
+        peak / points,
+        peak / nodes,
+        model.bytes_per_step() as f64 / points
+    ))
 }
 
 fn triple(v: &Vector3) -> String {

@@ -2,7 +2,7 @@
 
 use super::{Workbench, relative_error, respaced, solve_ladder};
 use crate::exact::{Published, cook, turek_hron};
-use crate::run::{Record, neighbour_visits, solve_case};
+use crate::run::{Record, Work, solve_case};
 use crate::scene::Case;
 use crate::study::{
     Axis, Bound, Cell, Check, Column, Figure, Kind, Plot, Series, SeriesStyle, Study, Table,
@@ -61,7 +61,7 @@ fn tip(
             Cell::Number(computed),
             Cell::Number(published.value),
             Cell::Number(difference),
-            Cell::Number(neighbour_visits(&solved) as f64),
+            Cell::Number(Work::of(&solved).neighbour_visits as f64),
         ]);
         if Some(&spacing) == spacings.last() {
             study.checks.push(Check::new(

@@ -3,7 +3,7 @@
 use super::{Workbench, relative_error, respaced, spacing_of};
 use crate::exact::{cook, torsion, turek_hron};
 use crate::measure::log_log_fit;
-use crate::run::{neighbour_visits, solve_case};
+use crate::run::{Work, solve_case};
 use crate::scene::Case;
 use crate::study::{
     Axis, Bound, Cell, Check, Column, Figure, Kind, Plot, Series, SeriesStyle, Study, Table,
@@ -149,7 +149,7 @@ fn rung(ladder: &Ladder, case: &Case) -> Result<Rung> {
         points_per_node: discretisation.supports.len() as f64
             / discretisation.cloud.positions.len() as f64,
         error: relative_error(computed, ladder.truth),
-        neighbour_visits: neighbour_visits(&solved) as f64,
+        neighbour_visits: Work::of(&solved).neighbour_visits as f64,
     })
 }
 

@@ -25,7 +25,7 @@ mod manufactured_report;
 mod patch;
 mod patch_exact;
 mod plain;
-mod problems;
+pub(crate) mod problems;
 mod references;
 mod set_up;
 mod specimens;
@@ -34,6 +34,7 @@ mod time_step;
 mod time_step_clouds;
 mod time_step_runs;
 mod vibration;
+mod work;
 
 use crate::reference::{ReferenceError, ReferenceFile, read_reference};
 use crate::run::{Record, Solved, solve_case};
@@ -164,6 +165,13 @@ pub const STUDIES: &[Definition] = &[
                 and on any shape, and all that comes before the first step costs as much as some \
                 hundred steps.",
         body: set_up::set_up,
+    },
+    Definition {
+        id: "work",
+        title: "Work",
+        claim: "Carried cases take no more evaluations of the internal force, points, neighbours and \
+                bytes than they did: counts that do not depend on the machine.",
+        body: work::work,
     },
     Definition {
         id: "references",

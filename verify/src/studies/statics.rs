@@ -4,7 +4,7 @@
 
 use super::plain::{axis, line, number, text};
 use super::{Workbench, respaced, spacing_of};
-use crate::run::{Solved, internal_forces, march, prepare};
+use crate::run::{Solved, Work, march, prepare};
 use crate::scene::Case;
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, Study, Table};
 use anyhow::{Context, Result, bail};
@@ -238,7 +238,7 @@ fn steps_table(compared: &[Compared]) -> Table {
         let mut row = vec![Cell::Text(one.words.into()), Cell::Text(mass.into())];
         row.extend(LEVELS.map(|level| steps_to(&relaxed.history, level)));
         row.push(Cell::Number(relaxed.solved.summary.steps as f64));
-        row.push(Cell::Number(internal_forces(&relaxed.solved) as f64));
+        row.push(Cell::Number(Work::of(&relaxed.solved).force_evaluations as f64));
         row.push(Cell::Number(difference(&relaxed.solved.state.displacement, u) / TOLERANCE));
         row
     };
@@ -266,7 +266,7 @@ fn steps_table(compared: &[Compared]) -> Table {
 fn newton_table(compared: &[Compared]) -> Table {
     let row = |one: &Compared| {
         let counts = one.newton.summary.newton.unwrap_or_default();
-        let relaxed = internal_forces(&one.relaxed.solved) as f64;
+        let relaxed = Work::of(&one.relaxed.solved).force_evaluations as f64;
         vec![
             Cell::Text(one.words.into()),
             Cell::Number(one.newton.prepared.model.positions.len() as f64),

@@ -1,0 +1,47 @@
+//! Memory as users meet it: estimated before a run, and refused where there is
+//! too little.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// A block between a held face and a free one, with its spacing to be put in.
+const CASE: &str = concat!(
+    "\n",
+    include_str!("common/pulled_block.toml"),
+    "[time]\nmethod = \"dynamic\"\nend = 1e-4\n"
+);
+const SPACING: &str = "spacing = 0.02";
+
+fn solve(spacing: f64) -> (i32, String, String) {
+    assert!(CASE.contains(SPACING), "the spacing of the block has changed");
+    let dir = TempDir::new().unwrap();
+    let case = dir.path().join("case.toml");
+    std::fs::write(&case, CASE.replace(SPACING, &format!("spacing = {spacing}"))).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
+    command.args(["solve", "--format", "json", "--quiet", "--out"]).arg(dir.path().join("out"));
+    let output = command.arg(&case).timeout(Duration::from_secs(120)).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+}
+
+#[test]
+fn a_body_larger_than_the_memory_is_refused_at_its_discretisation() {
+    let (code, _, said) = solve(1e-5);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("discretisation: about ") && said.contains("are available"), "{said}");
+    assert!(said.contains("use a larger spacing"), "{said}");
+}
+
+#[test]
+fn the_memory_of_a_run_is_estimated_within_half_of_what_it_takes() {
+    let (code, result, said) = solve(0.005);
+    assert_eq!(code, 0, "{said}");
+    let result: Value = serde_json::from_str(&result).unwrap();
+    // Systems that do not tell the peak have nothing to compare with.
+    let Some(peak) = result["timings"]["peak_memory_bytes"].as_f64() else { return };
+    let estimate = result["timings"]["estimated_memory_bytes"].as_f64().unwrap();
+    let ratio = estimate / peak;
+    assert!((1.0 / 1.5..1.5).contains(&ratio), "{estimate} bytes estimated, {peak} taken");
+}
