@@ -2,7 +2,7 @@
 
 use super::turns::{Clock, seconds_of};
 use crate::measure::median;
-use pulp::{Arch, Simd, WithSimd};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use rayon::prelude::*;
 use std::hint::black_box;
 
@@ -43,43 +43,38 @@ impl Triad {
 
 fn triad(a: &mut [f64], b: &[f64], c: &[f64]) {
     let factor = black_box(3.0);
-    Arch::new().dispatch(|| {
-        for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
-            *a = b + factor * c;
-        }
-    });
+    dispatch!(Level::new(), simd => triad_with(simd, a, b, c, factor));
     black_box(a);
+}
+
+#[inline(always)]
+fn triad_with<S: Simd>(_: S, a: &mut [f64], b: &[f64], c: &[f64], factor: f64) {
+    for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+        *a = b + factor * c;
+    }
 }
 
 /// Chains of multiply-adds that do not wait for each other: as many as hide
 /// the latency and fit the registers.
 const CHAINS: usize = 12;
 
-struct MultiplyAdds {
-    rounds: usize,
-}
-
-impl WithSimd for MultiplyAdds {
-    /// Sum of the chains, and numbers per vector.
-    type Output = (f64, usize);
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> (f64, usize) {
-        let factor = simd.splat_f64s(black_box(0.999));
-        let shift = simd.splat_f64s(black_box(0.001));
-        let mut chains = [simd.splat_f64s(black_box(2.0)); CHAINS];
-        for _ in 0..self.rounds {
-            for chain in &mut chains {
-                *chain = simd.mul_add_f64s(*chain, factor, shift);
-            }
+/// Sum of the chains, and numbers per vector.
+#[inline(always)]
+fn chains<S: Simd>(simd: S, rounds: usize) -> (f64, usize) {
+    let factor = S::f64s::splat(simd, black_box(0.999));
+    let shift = S::f64s::splat(simd, black_box(0.001));
+    let mut chains = [S::f64s::splat(simd, black_box(2.0)); CHAINS];
+    for _ in 0..rounds {
+        for chain in &mut chains {
+            *chain = chain.mul_add(factor, shift);
         }
-        (chains.iter().map(|chain| simd.reduce_sum_f64s(*chain)).sum(), S::F64_LANES)
     }
+    (chains.iter().map(|chain| chain.reduce_sum()).sum(), S::f64s::LEN)
 }
 
 /// So many multiply-adds in a row per chain, and returns the numbers per vector.
 pub fn multiply_adds(rounds: usize) -> usize {
-    let (sum, lanes) = Arch::new().dispatch(MultiplyAdds { rounds });
+    let (sum, lanes) = dispatch!(Level::new(), simd => chains(simd, rounds));
     black_box(sum);
     lanes
 }
