@@ -1,6 +1,6 @@
 //! Verification harness of the meshless solver `mtled`: case files
 //! ([`scene`]) become problems, runs ([`run`]) become results, studies
-//! ([`studies`]) become plain data ([`study`]), and [`report`] turns those into
+//! ([`studies`], [`race`]) become plain data ([`study`]), and [`report`] turns those into
 //! pages and files.
 
 pub mod exact;
@@ -17,5 +17,7 @@ pub mod cases;
 pub mod machine;
 pub mod run;
 pub mod studies;
+
+pub mod race;
 
 pub mod cli;
