@@ -53,6 +53,16 @@ fn families(field: &Field, code: Code) -> Vec<(&str, Vec<&Run>)> {
     found
 }
 
+/// Whether the runs of a code are from another day.
+fn stored(field: &Field, code: Code) -> bool {
+    field.runs.iter().any(|run| run.code == code && run.stored)
+}
+
+fn title(field: &Field, code: Code) -> String {
+    let mark = if stored(field, code) { " (stored)" } else { "" };
+    format!("{}{mark}", code.title())
+}
+
 /// The cheapest family of a code at an error.
 fn cheapest(field: &Field, code: Code, error: f64, cost: fn(&Run) -> f64) -> Option<(&str, Cost)> {
     let priced = families(field, code)
@@ -115,7 +125,8 @@ fn aim_rows(field: &Field, error: f64, wanted: f64) -> Vec<Vec<Cell>> {
             let (quantity, ratio) =
                 (format!("{} over mtled at {error} mm", code.title()), rival.value / cost);
             let met = ratio >= WANTED_RATIO;
-            let best = format!("its best, {element}");
+            let best =
+                format!("its best, {element}{}", if stored(field, code) { ", stored" } else { "" });
             rows.push(row(quantity, &best, ratio, format!("≥ {WANTED_RATIO}"), met));
         }
     }
@@ -156,7 +167,7 @@ fn rows_at(field: &Field, error: f64) -> Vec<Vec<Cell>> {
             rows.push(vec![
                 text(field.challenge.title()),
                 text(format!("{} {}", four_digits(error), field.challenge.unit())),
-                text(code.title()),
+                text(title(field, code)),
                 text(name),
                 cost_text(cpu),
                 ratio(cpu),
@@ -171,9 +182,8 @@ fn rows_at(field: &Field, error: f64) -> Vec<Vec<Cell>> {
 fn runs_table(field: &Field) -> Table {
     let number = |value: Option<f64>| value.map_or(text("–"), Cell::Number);
     let row = |run: &Run| {
-        let code = run.code.title();
         vec![
-            text(if run.stored { format!("{code} (stored)") } else { code.into() }),
+            text(title(field, run.code)),
             text(&run.family),
             Cell::Number(run.per_edge as f64),
             Cell::Number(run.unknowns as f64),
@@ -211,14 +221,26 @@ fn runs_table(field: &Field) -> Table {
     }
 }
 
+/// Families of a code that a figure shows, which can tell eight curves apart: the
+/// first of its ladders and those with the smallest products of error and cost.
+fn drawn(field: &Field, code: Code, cost: fn(&Run) -> f64) -> Vec<(&str, Vec<&Run>)> {
+    let room = if code == Code::ScikitFem { 2 } else { 3 };
+    let mut all = families(field, code);
+    let product =
+        |runs: &[&Run]| runs.iter().map(|run| run.error * cost(run)).fold(f64::INFINITY, f64::min);
+    let others = all.get_mut(1..).unwrap_or_default();
+    others.sort_by(|a, b| product(&a.1).total_cmp(&product(&b.1)));
+    all.truncate(room);
+    all
+}
+
 /// Error against a cost, a curve per family.
 fn figure(field: &Field, label: &str, unit: &str, cost: fn(&Run) -> f64) -> Figure {
     let mut series = Vec::new();
     for code in [Code::Mtled, Code::Fenicsx, Code::ScikitFem] {
-        for (name, runs) in families(field, code) {
-            let stored = if runs.iter().any(|run| run.stored) { " (stored)" } else { "" };
+        for (name, runs) in drawn(field, code, cost) {
             series.push(Series {
-                name: format!("{} {name}{stored}", code.title()),
+                name: format!("{} {name}", title(field, code)),
                 points: runs.iter().map(|run| (cost(run), run.error)).collect(),
                 error_bars: Vec::new(),
                 style: SeriesStyle::LineAndPoints,
@@ -237,7 +259,7 @@ fn figure(field: &Field, label: &str, unit: &str, cost: fn(&Run) -> f64) -> Figu
         title: format!("{}: error against {label}", field.challenge.title()),
         caption: format!(
             "rms error of the displacement on a lattice over {label}, one thread; left and below is \
-             better. {known}"
+             better. Of each code the first family and the best ones; all are in the table. {known}"
         ),
         x: Axis { label: label.into(), unit: unit.into(), log: true },
         y: Axis { label: "rms error".into(), unit: field.challenge.unit().into(), log: true },
