@@ -4,21 +4,19 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cost {
     pub value: f64,
-    /// Whether the cheapest run is already better, so that the true cost is lower.
+    /// Whether the coarsest run is already better, so that the true cost is lower.
     pub at_most: bool,
 }
 
-/// The lowest cost at which (error, cost) `runs` reach `error`: along the polyline
-/// through the runs in the order of their costs, log-log between two of them. None
-/// where no run is that good; nothing is extrapolated.
+/// The cost at which (error, cost) `runs`, from coarse to fine, first reach `error`:
+/// log-log between two neighbours. None where no run is that good; nothing is
+/// extrapolated.
 pub fn cost_at(runs: &[(f64, f64)], error: f64) -> Option<Cost> {
-    let mut sorted = runs.to_vec();
-    sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let &(first_error, first_cost) = sorted.first()?;
+    let &(first_error, first_cost) = runs.first()?;
     if first_error <= error {
         return Some(Cost { value: first_cost, at_most: true });
     }
-    let crossing = sorted.windows(2).find(|pair| pair[0].0 > error && pair[1].0 <= error)?;
+    let crossing = runs.windows(2).find(|pair| pair[0].0 > error && pair[1].0 <= error)?;
     let [(worse, cheap), (better, dear)] = [crossing[0], crossing[1]];
     let share = (worse / error).ln() / (worse / better).ln();
     Some(Cost { value: cheap * (dear / cheap).powf(share), at_most: false })
@@ -42,14 +40,14 @@ mod tests {
 
     #[test]
     fn nothing_is_extrapolated() {
-        let runs = [(0.5, 2.0), (1.0, 1.0)];
+        let runs = [(1.0, 1.0), (0.5, 2.0)];
         assert_eq!(cost_at(&runs, 0.4), None);
         assert_eq!(cost_at(&runs, 2.0), Some(Cost { value: 1.0, at_most: true }));
         assert_eq!(cost_at(&[], 2.0), None);
     }
 
     #[test]
-    fn a_dearer_run_that_is_worse_again_does_not_matter() {
+    fn a_finer_run_that_is_worse_again_does_not_matter() {
         let runs = [(1.0, 1.0), (0.25, 4.0), (0.3, 8.0)];
         assert_relative_eq!(cost_at(&runs, 0.5).unwrap().value, 2.0, epsilon = 1e-12);
     }

@@ -16,9 +16,9 @@ const FAIRNESS: &str = "All codes mesh the whole body evenly and use no symmetry
     tetrahedra and hexahedra of an order; Q1/P0 and Q2/P1 have pressure and dilatation as discontinuous \
     fields of their own.";
 
-const INTERPOLATION: &str = "Costs at equal error are interpolated, log-log, between neighbouring runs of a \
-    family in the order of their cost; \"<\" marks an error that the cheapest run of the ladder already \
-    undercuts. Nothing is extrapolated.";
+const INTERPOLATION: &str = "Costs at equal error are interpolated, log-log, between neighbours of a \
+    family where it first gets that good from coarse to fine; \"<\" marks an error that the coarsest run \
+    already undercuts. Nothing is extrapolated.";
 
 pub fn notes(race: &Race, rivals: &Rivals, fields: &[Field]) -> Vec<String> {
     let here = provenance();

@@ -35,21 +35,21 @@ const DEFAULT: Family = Family {
     dilation: None,
     cells_per_spacing: None,
     quadratic: false,
-    ladder: &[4, 6, 8, 12],
+    ladder: &[4, 5, 6, 8, 12],
 };
 
 /// No further than the discretisation is good.
 const RELAXED: Family = Family {
     name: "relaxation to 1e-2",
     solver: Solver::Relaxation { tolerance: 1e-2, load_steps: 200 },
-    ladder: &[4, 6, 8, 12],
+    ladder: &[4, 5, 6, 8, 12],
     ..DEFAULT
 };
 
 const NEWTON: Family = Family {
     name: "Newton to 1e-2",
     solver: Solver::Newton { tolerance: 1e-2 },
-    ladder: &[4, 6, 7, 8, 9, 12, 16],
+    ladder: &[4, 5, 6, 7, 8, 9, 12, 16],
     ..DEFAULT
 };
 
