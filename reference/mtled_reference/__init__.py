@@ -10,3 +10,7 @@ CODES = {"scikit-fem": "scikit_fem", "fenicsx": "fenicsx"}
 
 LEVELS = (0, 1, 2)
 """Meshes of a case from coarse to fine."""
+
+FINEST = 3
+"""A fourth mesh, of the bonded block with FEniCSx alone: the field that the race is
+measured against."""

@@ -5,7 +5,7 @@ import signal
 import sys
 from pathlib import Path
 
-from . import CODES, LEVELS
+from . import CODES, FINEST, LEVELS
 from .case import read_case
 from .reference_file import merge_into
 
@@ -39,9 +39,25 @@ def _parser() -> argparse.ArgumentParser:
     one = commands.add_parser("solve-mesh", help="solve one mesh in this process")
     one.add_argument("case", type=Path)
     one.add_argument("--code", choices=sorted(CODES), required=True)
-    one.add_argument("--mesh", type=int, choices=LEVELS, required=True)
+    one.add_argument("--mesh", type=int, choices=(*LEVELS, FINEST), required=True)
     one.add_argument("--out", type=Path, required=True)
     one.set_defaults(run=_solve_mesh)
+
+    race = commands.add_parser("race", help="one run of the race, in this process")
+    race.add_argument("problem")
+    race.add_argument("--cases", type=Path, required=True, help="folder of the case files")
+    race.add_argument("--code", choices=sorted(CODES), required=True)
+    race.add_argument("--element", required=True, help="such as P2 or Q1/P0")
+    race.add_argument("--cells", type=int, required=True, help="along an edge of the body")
+    race.add_argument("--out", type=Path, required=True)
+    race.set_defaults(run=_race)
+
+    truth = commands.add_parser("race-truth", help="the field of the block for the race")
+    truth.add_argument("case", type=Path)
+    truth.add_argument("--solved", type=Path, required=True, help=f"by solve-mesh --mesh {FINEST}")
+    truth.add_argument("--refinement", type=float, default=1.5)
+    truth.add_argument("--out", type=Path, required=True)
+    truth.set_defaults(run=_race_truth)
 
     merge = commands.add_parser("merge", help="write DIR/CASE.json from solutions")
     merge.add_argument("case", type=Path)
@@ -72,6 +88,25 @@ def _solve_mesh(options) -> None:
     from .solve import solve_mesh_here
 
     solve_mesh_here(options.case, options.code, options.mesh, options.out)
+
+
+def _race(options) -> None:
+    from .race import race
+
+    race(
+        options.problem,
+        options.cases,
+        options.code,
+        options.element,
+        options.cells,
+        options.out,
+    )
+
+
+def _race_truth(options) -> None:
+    from .race import write_truth
+
+    write_truth(options.case, options.solved, options.refinement, options.out)
 
 
 def _merge(options) -> None:

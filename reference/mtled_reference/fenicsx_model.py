@@ -35,6 +35,13 @@ class Recipe:
     mirrors: tuple[Mirror, ...] = ()
     load_steps: int = 4
     time_step: float = 0.0
+    degree: int = 2
+    """Of u."""
+    three_fields: bool | None = None
+    """Whether p and θ are fields of their own; None leaves it to the materials."""
+    quadrature_degree: int | None = None
+    """None leaves it to the kinematics."""
+    compiler_flags: tuple[str, ...] = ()
 
 
 class Model:
@@ -45,20 +52,23 @@ class Model:
         self.case, self.recipe = case, recipe
         self.kinematics = recipe.kinematics
         self.domain = versions.create_mesh(recipe.cell, recipe.order, recipe.points, recipe.cells)
-        self.three_fields = any(r.material.is_nearly_incompressible for r in case.regions)
+        self.three_fields = recipe.three_fields
+        if self.three_fields is None:
+            self.three_fields = any(r.material.is_nearly_incompressible for r in case.regions)
         self._make_spaces()
         self._make_materials()
         self._make_forms()
 
     def _make_spaces(self) -> None:
-        u_element = versions.vector_element(self.recipe.cell, 2, self.kinematics.components)
+        cell, degree = self.recipe.cell, self.recipe.degree
+        u_element = versions.vector_element(cell, degree, self.kinematics.components)
         if not self.three_fields:
             self.space = versions.function_space(self.domain, u_element)
             self.unknown = fem.Function(self.space)
             self.u_space, places = self.space, np.arange(len(self.unknown.x.array))
         else:
-            linear = versions.discontinuous_linear_element(self.recipe.cell)
-            element = versions.mixed_element([u_element, linear, linear])
+            inside = versions.discontinuous_element(cell, degree - 1)
+            element = versions.mixed_element([u_element, inside, inside])
             self.space = versions.function_space(self.domain, element)
             self.unknown = fem.Function(self.space)
             self.u_space, places = self.space.sub(0).collapse()
@@ -94,8 +104,8 @@ class Model:
 
     def _make_forms(self) -> None:
         weight = self.kinematics.weight(self.domain)
-        degree = {"quadrature_degree": self.kinematics.quadrature_degree}
-        dx = ufl.Measure("dx", self.domain, metadata=degree)
+        degree = self.recipe.quadrature_degree or self.kinematics.quadrature_degree
+        dx = ufl.Measure("dx", self.domain, metadata={"quadrature_degree": degree})
         parts = ufl.split(self.unknown) if self.three_fields else [self.unknown]
         F = self.kinematics.gradient(parts[0], self.domain)
         C, J = F.T * F, ufl.det(F)
@@ -108,10 +118,13 @@ class Model:
             psi = strain_energy(self.material, first, second, J, ufl.ln)
             energy = psi * weight * dx
         residual = ufl.derivative(energy, self.unknown)
-        self.residual_form = fem.form(residual)
-        self.jacobian_form = fem.form(ufl.derivative(residual, self.unknown))
-        self.energy_form = fem.form(psi * weight * dx)
+        self.residual_form = self._form(residual)
+        self.jacobian_form = self._form(ufl.derivative(residual, self.unknown))
+        self.energy_form = self._form(psi * weight * dx)
         self._make_load_forms(weight, dx)
+
+    def _form(self, expression):
+        return versions.form(expression, self.recipe.compiler_flags)
 
     def _make_load_forms(self, weight, dx) -> None:
         """∫ χ ρ a·v dV with χ = 1 in chosen cells and a a constant vector."""
@@ -119,12 +132,12 @@ class Model:
         self.chosen = fem.Function(self.cell_space)
         self.direction = fem.Constant(self.domain, np.zeros(self.kinematics.components))
         density = self.constants["density"]
-        self.mass_force_form = fem.form(
+        self.mass_force_form = self._form(
             self.chosen * density * ufl.inner(self.direction, v) * weight * dx
         )
         if not self.case.is_static:
             w = ufl.TrialFunction(self.u_space)
-            self.mass_form = fem.form(density * ufl.inner(w, v) * weight * dx)
+            self.mass_form = self._form(density * ufl.inner(w, v) * weight * dx)
 
     def mass_force(self, direction: np.ndarray, regions: list[int] | None = None) -> np.ndarray:
         """Nodal forces (nodes, components) [N] of an acceleration [m/s²] on regions."""

@@ -21,8 +21,8 @@ class NotConverged(RuntimeError):
 class Newton:
     """Solves residual(w) + extra(w) = load with w prescribed at some places."""
 
-    def __init__(self, model):
-        self.model = model
+    def __init__(self, model, residual: float = RESIDUAL, correction: float = CORRECTION):
+        self.model, self.residual, self.correction = model, residual, correction
         self.matrix = versions.new_matrix(model.jacobian_form)
         self.rhs = self.matrix.createVecRight()
         self.step = self.rhs.duplicate()
@@ -57,8 +57,8 @@ class Newton:
             scale = max(np.linalg.norm(residual[~free]), np.linalg.norm(load))
             held = np.abs(unknown[places] - values).max(initial=0.0)
             largest = np.abs(unknown[self.model.fields]).max()
-            if held <= 1e-12 * largest and error <= RESIDUAL * scale:
-                if correction <= CORRECTION * largest:
+            if held <= 1e-12 * largest and error <= self.residual * scale:
+                if correction <= self.correction * largest:
                     return residual[self.model.fields]
             self._factorise(places, values - unknown[places], -residual)
             self.solver.solve(self.rhs, self.step)

@@ -208,7 +208,7 @@ def _turek_hron(case: Case, level: int) -> Recipe:
 TETRAHEDRA = "tetrahedra, six to a brick, graded towards the bonded edges"
 RECIPES = {
     "bonded_block": _eighth_of_cube(
-        "hexahedron", (2, 4, 8), 1.0, "hexahedra, uniform; an eighth of the cube"
+        "hexahedron", (2, 4, 8, 12), 1.0, "hexahedra, uniform; an eighth of the cube"
     ),
     "brain_cube_compression": _eighth_of_cube(
         "hexahedron", (2, 4, 8), 1.0, "hexahedra, uniform; an eighth of the cube"

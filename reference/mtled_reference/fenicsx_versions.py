@@ -1,6 +1,8 @@
 """Names of DOLFINx that changed between releases (0.5 to 0.10), in one place."""
 
 import inspect
+import resource
+import time
 
 import dolfinx
 import numpy as np
@@ -15,6 +17,30 @@ HAS_UFL_ELEMENTS = hasattr(ufl, "VectorElement")
 """Up to DOLFINx 0.6, elements come from UFL; later from Basix."""
 
 
+_compile_seconds = 0.0
+
+
+def form(expression, flags: tuple[str, ...] = ()):
+    """The compiled form of an expression, with flags for the C compiler."""
+    global _compile_seconds
+    start = _cpu_seconds()
+    options = {"cffi_extra_compile_args": list(flags)} if flags else {}
+    name = "jit_params" if "jit_params" in inspect.signature(fem.form).parameters else "jit_options"
+    compiled = fem.form(expression, **{name: options})
+    _compile_seconds += _cpu_seconds() - start
+    return compiled
+
+
+def compile_seconds() -> float:
+    """Processor time [s] that forms have taken so far, compilers included."""
+    return _compile_seconds
+
+
+def _cpu_seconds() -> float:
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + children.ru_utime + children.ru_stime
+
+
 def vector_element(cell: str, degree: int, size: int):
     """Lagrange element of the degree with `size` components."""
     if HAS_UFL_ELEMENTS:
@@ -24,14 +50,14 @@ def vector_element(cell: str, degree: int, size: int):
     return basix.ufl.element("Lagrange", cell, degree, shape=(size,))
 
 
-def discontinuous_linear_element(cell: str):
-    """Complete polynomials of degree 1 inside each cell."""
+def discontinuous_element(cell: str, degree: int = 1):
+    """Complete polynomials of the degree inside each cell."""
     family = "DPC" if cell in ("quadrilateral", "hexahedron") else "DG"
     if HAS_UFL_ELEMENTS:
-        return ufl.FiniteElement(family, cell, 1)
+        return ufl.FiniteElement(family, cell, degree)
     import basix.ufl
 
-    return basix.ufl.element(family, cell, 1)
+    return basix.ufl.element(family, cell, degree)
 
 
 def mixed_element(elements: list):

@@ -28,7 +28,7 @@ class Observer:
                 self.centres[probe.name] = weight / weight.sum()
             else:
                 here, signs = folded(model.symmetry, probe.positions[:, : model.d])
-                self.points[probe.name] = (*_located(model, here), signs)
+                self.points[probe.name] = (*located(model, here), signs)
 
     @staticmethod
     def _region(probe) -> str:
@@ -70,7 +70,7 @@ class Observer:
         return resultant(positions, np.zeros_like(positions), forces, model.case.moment_about)
 
 
-def _located(model: Model, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def located(model: Model, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (p, a) and shape functions (p, a) of the elements around points (p, d)."""
     dofs = model.basis.element_dofs.T
     centres = model.nodes[dofs].mean(axis=1)

@@ -4,10 +4,18 @@ import numpy as np
 import scipy.sparse as sparse
 import skfem
 
-from .case import Case, Prescription
+from .case import Case, Prescription, Region
 from .scikit_fem_kernel import Elements, evaluate
 from .scikit_fem_symmetry import Plane
 from .selection import selected
+
+ELEMENTS = {
+    (2, 1): skfem.ElementQuad1,
+    (2, 2): skfem.ElementQuad2,
+    (3, 1): skfem.ElementHex1,
+    (3, 2): skfem.ElementHex2,
+}
+"""By dimension and degree."""
 
 BATCH = 128
 """Elements evaluated at a time."""
@@ -19,15 +27,23 @@ ON_BOUNDARY = 1e-6
 class Model:
     """Nodes, elements by material, supports and loads of a case on a mesh.
 
-    In plane strain volumes and forces belong to the whole thickness.
+    In plane strain volumes and forces belong to the whole thickness. `degree` is that
+    of u; `three_fields` says whether p and θ are fields of their own, None leaves it
+    to the materials.
     """
 
-    def __init__(self, case: Case, mesh: skfem.Mesh, symmetry: list[Plane]):
+    def __init__(
+        self,
+        case: Case,
+        mesh: skfem.Mesh,
+        symmetry: list[Plane],
+        degree: int = 2,
+        three_fields: bool | None = None,
+    ):
         self.case, self.mesh, self.symmetry = case, mesh, symmetry
-        self.d = mesh.dim()
-        element = {2: skfem.ElementQuad2, 3: skfem.ElementHex2}[self.d]()
-        # Three Gauss points along each direction.
-        self.basis = skfem.CellBasis(mesh, element, intorder=4)
+        self.d, self.degree, self.three_fields = mesh.dim(), degree, three_fields
+        # One more Gauss point along each direction than the degree.
+        self.basis = skfem.CellBasis(mesh, ELEMENTS[self.d, degree](), intorder=2 * degree)
         self.nodes = self.basis.doflocs.T.copy()
         self.tolerance = ON_BOUNDARY * np.ptp(self.nodes, axis=0).max()
         self.elements = self._elements()
@@ -54,7 +70,7 @@ class Model:
         groups = []
         for n, region in enumerate(self.case.regions):
             mine = np.flatnonzero(self.owners == n)
-            mixed = region.material.is_nearly_incompressible
+            mixed = self._is_mixed(region)
             groups.append(
                 Elements(
                     region.material,
@@ -69,11 +85,19 @@ class Model:
     @property
     def is_mixed(self) -> bool:
         """Whether u, p, θ are used in some region."""
-        return any(r.material.is_nearly_incompressible for r in self.case.regions)
+        return any(map(self._is_mixed, self.case.regions))
+
+    def _is_mixed(self, region: Region) -> bool:
+        if self.three_fields is not None:
+            return self.three_fields
+        return region.material.is_nearly_incompressible
 
     def _pressure_functions(self) -> np.ndarray:
-        """1 and the scaled coordinates from the element's centre, (e, q, 1 + d)."""
+        """1 and the scaled coordinates from the element's centre, (e, q, 1 + d); 1 alone,
+        (e, q, 1), where u is linear."""
         points = np.asarray(self.basis.global_coordinates()).transpose(1, 2, 0)
+        if self.degree == 1:
+            return np.ones_like(points[..., :1])
         arms = points - points.mean(axis=1, keepdims=True)
         arms /= np.abs(arms).max(axis=(1, 2), keepdims=True)
         return np.concatenate([np.ones_like(arms[..., :1]), arms], axis=2)
@@ -102,8 +126,10 @@ class Model:
         mesh, basis = self.mesh, self.basis
         facets = mesh.boundary_facets()
         corners = basis.nodal_dofs[0, mesh.facets[:, facets]].T
-        nodes = [corners, basis.facet_dofs[0, facets][:, None]]
-        if self.d == 3:
+        nodes = [corners]
+        if self.degree == 2:
+            nodes.append(basis.facet_dofs[0, facets][:, None])
+        if self.degree == 2 and self.d == 3:
             nodes.append(basis.edge_dofs[0, mesh.f2e[:, facets]].T)
         nodes = np.concatenate(nodes, axis=1)
         cut = np.zeros(len(facets), dtype=bool)
@@ -178,19 +204,19 @@ class Model:
                 part = group.part(start, start + BATCH)
                 state = evaluate(part, u, with_tangent)
                 energy += state.energy.sum()
-                _scatter(forces, part.nodes, state.residual)
+                scatter(forces, part.nodes, state.residual)
                 if with_tangent:
                     blocks.append(self.pattern.upper(state.tangent))
                     if along is not None:
                         moved = along[part.nodes].reshape(len(part.nodes), -1, 1)
                         change = np.matmul(state.tangent, moved).reshape(state.residual.shape)
-                        _scatter(product, part.nodes, change)
+                        scatter(product, part.nodes, change)
         if not with_tangent:
             return energy, forces
         return energy, forces, self.pattern.assemble(np.concatenate(blocks)), product
 
 
-def _scatter(total: np.ndarray, nodes: np.ndarray, shares: np.ndarray) -> None:
+def scatter(total: np.ndarray, nodes: np.ndarray, shares: np.ndarray) -> None:
     """Adds shares (e, a, d) of elements to the nodes."""
     for component in range(total.shape[1]):
         total[:, component] += np.bincount(

@@ -85,6 +85,8 @@ def solve_static(
     progress: Callable[[float, str], None],
     factors: Factorisation,
     guess: np.ndarray | None = None,
+    residual: float = RESIDUAL,
+    smallest_step: float = SMALLEST_STEP,
 ) -> StaticSolution:
     """Equilibrium at the end of loading: from a guess (n, d) [m] if that leads to
     it, otherwise in proportional load steps. A step starts in the direction of the
@@ -98,7 +100,7 @@ def solve_static(
         progress(0.0, "from the solution of a coarser mesh")
         try:
             start = np.where(model.fixed, full, guess)
-            u, iterations = _equilibrium(model, start, full, loads, factors)
+            u, iterations = _equilibrium(model, start, full, loads, factors, residual)
             load, taken = 1.0, 1
         except (NotConverged, FloatingPointError):
             progress(0.0, "with load steps, since the coarser mesh is no help")
@@ -108,13 +110,15 @@ def solve_static(
         progress(load, f"load {target:.3f}")
         foreseen = u + (target - load) * rate
         try:
-            found, used = _equilibrium(model, foreseen, target * full, target * loads, factors)
+            found, used = _equilibrium(
+                model, foreseen, target * full, target * loads, factors, residual
+            )
         except (NotConverged, FloatingPointError):
             if np.any(rate):
                 rate = np.zeros_like(full)
                 continue
             step *= 0.5
-            if step < SMALLEST_STEP:
+            if step < smallest_step:
                 raise NotConverged(f"no equilibrium beyond {load:.4f} of the load") from None
             continue
         rate = (found - u) / (target - load)
@@ -124,7 +128,9 @@ def solve_static(
     return StaticSolution(u, internal - loads, energy, taken, iterations)
 
 
-def _equilibrium(model, start, prescribed, loads, factors) -> tuple[np.ndarray, int]:
+def _equilibrium(
+    model, start, prescribed, loads, factors, wanted: float
+) -> tuple[np.ndarray, int]:
     """Newton from `start`; the first iteration carries the change of the supports.
 
     Near the end the matrix is kept: solving again is cheaper than a new one.
@@ -141,7 +147,7 @@ def _equilibrium(model, start, prescribed, loads, factors) -> tuple[np.ndarray, 
         norm = float(np.linalg.norm(residual.ravel()[free]))
         if not np.isfinite(norm):
             raise NotConverged("the residual is not finite")
-        if is_converged(norm, previous, float(np.linalg.norm(internal))):
+        if is_converged(norm, previous, float(np.linalg.norm(internal)), wanted):
             return u, iteration
         if norm > KEEP * np.linalg.norm(internal) or norm > 0.1 * previous:
             factors.factorise(model.internal(u, True)[2])
@@ -157,7 +163,7 @@ def _solved(model: Model, factors: Factorisation, forces: np.ndarray) -> np.ndar
     return change.reshape(forces.shape)
 
 
-def is_converged(norm: float, previous: float, size: float) -> bool:
+def is_converged(norm: float, previous: float, size: float, wanted: float = RESIDUAL) -> bool:
     """Whether the residual of the free unknowns is small beside the forces inside,
     or small and as low as round-off lets it fall."""
-    return norm <= RESIDUAL * size or (norm <= ROUND_OFF * size and norm > 0.3 * previous)
+    return norm <= wanted * size or (norm <= ROUND_OFF * size and norm > 0.3 * previous)

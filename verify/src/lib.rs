@@ -1,6 +1,6 @@
 //! Verification harness of the meshless solver `mtled`: case files
 //! ([`scene`]) become problems, runs ([`run`]) become results, studies
-//! ([`studies`]) become plain data ([`study`]), and [`report`] turns those into
+//! ([`studies`], [`race`]) become plain data ([`study`]), and [`report`] turns those into
 //! pages and files.
 
 pub mod exact;
@@ -19,5 +19,6 @@ pub mod run;
 pub mod studies;
 
 pub mod bench;
+pub mod race;
 
 pub mod cli;

@@ -9,6 +9,7 @@ mod reference;
 mod reference_solve;
 mod reference_table;
 mod solve;
+mod study;
 mod verify;
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -69,6 +70,9 @@ enum Command {
     Inspect(inspect::InspectArgs),
     /// Run the verification studies and write their report (the main job).
     Verify(verify::VerifyArgs),
+    /// Compare at length what depends on the machine.
+    #[command(subcommand)]
+    Study(study::StudyCommand),
     /// Check, list or describe case files.
     #[command(subcommand)]
     Case(case::CaseCommand),
@@ -119,6 +123,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Solve(arguments) => solve::solve(arguments, &cli.common),
         Command::Inspect(arguments) => inspect::inspect(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
+        Command::Study(command) => study::study(command, &cli.common),
         Command::Case(command) => case::case(command),
         Command::Reference(command) => reference::reference(command, &cli.common),
         Command::Bench(arguments) => bench::bench(arguments, &cli.common),

@@ -35,6 +35,12 @@ impl Python {
         command
     }
 
+    /// Program and flags.
+    pub fn words(&self) -> Vec<String> {
+        let program = self.program.display().to_string();
+        std::iter::once(program).chain(self.flags.iter().map(|flag| flag.to_string())).collect()
+    }
+
     fn imports(&self, module: &str) -> bool {
         let mut command = self.command();
         command.args(["-c", &format!("import {module}")]);
@@ -49,6 +55,19 @@ pub fn python_for(code: &str, reference: &Path, say: &dyn Fn(&str)) -> Result<Py
         "fenicsx" => fenicsx(),
         _ => scikit_fem(reference, say),
     }
+}
+
+/// The Python that runs `code` as things are; nothing is installed.
+pub fn installed(code: &str, reference: &Path) -> Option<Python> {
+    match code {
+        "fenicsx" => fenicsx().ok(),
+        _ => Some(virtual_environment(reference)).filter(|python| python.imports("skfem")),
+    }
+}
+
+fn virtual_environment(reference: &Path) -> Python {
+    let program = if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" };
+    Python { program: reference.join(".venv").join(program), flags: &[] }
 }
 
 /// Debian's own first: `-s` keeps packages of the user out, which break petsc4py.
@@ -66,8 +85,7 @@ fn fenicsx() -> Result<Python> {
 /// The virtual environment `reference/.venv`, made where it is missing.
 fn scikit_fem(reference: &Path, say: &dyn Fn(&str)) -> Result<Python> {
     let folder = reference.join(".venv");
-    let program = if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" };
-    let python = Python { program: folder.join(program), flags: &[] };
+    let python = virtual_environment(reference);
     if python.imports("skfem") {
         return Ok(python);
     }

@@ -90,7 +90,7 @@ pub fn solve(arguments: &SolveReferenceArgs, common: &Common) -> Result<u8> {
 }
 
 /// The folder `reference` of the checkout around the working directory.
-fn checkout() -> Result<PathBuf> {
+pub fn checkout() -> Result<PathBuf> {
     let here = std::env::current_dir()?;
     let found = here.ancestors().map(|folder| folder.join("reference"));
     let found = found.into_iter().find(|folder| folder.join("pyproject.toml").is_file());

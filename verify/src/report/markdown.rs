@@ -2,7 +2,7 @@
 
 use super::number::{bound_text, four_digits};
 use super::words::{duration, kind_name, study_counts, study_passed, unit_text, verdict};
-use crate::study::{Check, Report};
+use crate::study::{Cell, Check, Provenance, Report, Study};
 use std::fmt::Write;
 
 /// Verdict, failures, one line per study, and all checks folded away.
@@ -88,6 +88,35 @@ fn checks<'a>(text: &mut String, checks: impl Iterator<Item = &'a Check>) {
 
 fn mark(pass: bool) -> &'static str {
     if pass { "✅" } else { "❌" }
+}
+
+/// The tables and notes of a study.
+pub fn markdown_tables(study: &Study, provenance: &Provenance) -> String {
+    let mut text = format!("# {}\n\n{}\n", study.title, study.claim);
+    for table in &study.tables {
+        let _ = write!(text, "\n## {}\n\n", table.title);
+        let headings = table.columns.iter().map(|column| match column.unit.as_str() {
+            "" | "1" => cell(&column.name),
+            unit => format!("{} [{unit}]", cell(&column.name)),
+        });
+        let _ = writeln!(text, "| {} |", headings.collect::<Vec<_>>().join(" | "));
+        let _ = writeln!(text, "|{}", "---|".repeat(table.columns.len()));
+        for row in &table.rows {
+            let cells = row.iter().map(|content| match content {
+                Cell::Number(number) if number.is_nan() => "–".to_string(),
+                Cell::Number(number) => four_digits(*number),
+                Cell::Text(words) => cell(words),
+            });
+            let _ = writeln!(text, "| {} |", cells.collect::<Vec<_>>().join(" | "));
+        }
+    }
+    text.push('\n');
+    for note in &study.notes {
+        let _ = writeln!(text, "- {note}");
+    }
+    let Provenance { version, commit, processor, date, .. } = provenance;
+    let _ = writeln!(text, "\nmtled {version} ({commit}), {processor}, {date}.");
+    text
 }
 
 /// Keeps a text inside its cell.

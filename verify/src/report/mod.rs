@@ -14,5 +14,6 @@ pub mod vtu;
 mod words;
 pub mod write;
 
+pub use markdown::markdown_tables;
 pub use number::{bound_text, four_digits};
 pub use write::{write_atomically, write_report};
