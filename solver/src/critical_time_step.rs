@@ -5,6 +5,7 @@ use crate::internal_force::Workspace;
 use crate::model::Model;
 use crate::packed::{axpy, dot, noise};
 use crate::tangent::Tangent;
+use rayon::prelude::*;
 
 /// The critical step and what it cost.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,10 +61,7 @@ pub fn critical_time_step(
         diagonal.push(dot(&next, &basis[last]));
         // Twice is enough: round-off of one pass is removed by the second.
         for _ in 0..2 {
-            for vector in &basis {
-                let overlap = dot(&next, vector);
-                axpy(&mut next, -overlap, vector);
-            }
+            remove(&mut next, &basis);
         }
         let beta = norm(&next);
         let (ritz, weights) = largest_ritz_pair(&diagonal, &off_diagonal);
@@ -138,6 +136,27 @@ fn level(model: &Model, field: &mut [f64], squares: &[f64]) {
             values.iter_mut().for_each(|x| *x /= square.sqrt());
         }
     }
+}
+
+/// Components that are taken at a time, small enough to stay near the processor.
+const PIECE: usize = 4096;
+
+/// Takes out of a vector its overlaps with those of an orthonormal basis. They are
+/// summed piece by piece, in the order of the pieces on any number of threads.
+fn remove(vector: &mut [f64], basis: &[Vec<f64>]) {
+    let overlaps = |(index, piece): (usize, &[f64])| -> Vec<f64> {
+        let range = index * PIECE..index * PIECE + piece.len();
+        basis.iter().map(|known| dot(piece, &known[range.clone()])).collect()
+    };
+    let pieces: Vec<Vec<f64>> = vector.par_chunks(PIECE).enumerate().map(overlaps).collect();
+    let overlap = |known: usize| pieces.iter().map(|piece| piece[known]).sum::<f64>();
+    let overlaps: Vec<f64> = (0..basis.len()).map(overlap).collect();
+    vector.par_chunks_mut(PIECE).enumerate().for_each(|(index, piece)| {
+        let range = index * PIECE..index * PIECE + piece.len();
+        for (known, overlap) in basis.iter().zip(&overlaps) {
+            axpy(piece, -overlap, &known[range.clone()]);
+        }
+    });
 }
 
 /// Noise, or the last mode and pattern in equal parts with a little of it.

@@ -7,7 +7,8 @@ mod regularised;
 use crate::neighbours::Neighbours;
 use crate::problem::{Basis, Dimension, WeightFunction};
 use crate::tensor::Vector3;
-use inverse::{inverse, norm_1};
+pub(crate) use inverse::inverse;
+use inverse::norm_1;
 use nalgebra::{SMatrix, SVector};
 
 /// Nodes with their influence domains, ready to be evaluated anywhere.

@@ -112,13 +112,8 @@ impl Lattice {
     pub fn at(&self, X: &Vector3) -> Reach {
         let [(i, x), (j, y), (k, z)] = [0, 1, 2]
             .map(|axis| self.axes[axis].at((X[axis] - self.origin[axis]) / self.extent[axis]));
-        Reach { first: [i, j, k], counts: self.counts.map(|n| n.min(3)), values: [x, y, z] }
-    }
-
-    /// Calls `visit(function, value)` for the functions that may not be 0 at X.
-    #[inline]
-    pub fn for_each(&self, X: &Vector3, visit: impl FnMut(usize, f64)) {
-        self.at(X).for_each([0; 3], self.counts, visit);
+        let counts = self.counts.map(|n| n.min(3));
+        Reach { first: [i, j, k], counts, size: self.counts, values: [x, y, z] }
     }
 
     /// Along which axes a function is s − ½, as bits: functions of one kind
@@ -164,24 +159,25 @@ impl Lattice {
 pub(super) struct Reach {
     pub first: [usize; 3],
     pub counts: [usize; 3],
+    /// Functions along the axes of the box that `first` counts in.
+    size: [usize; 3],
     values: [[f64; 3]; 3],
 }
 
 impl Reach {
-    /// Calls `visit(place, value)` with places in the box of functions that starts
-    /// at `origin` and holds `size` along the axes.
+    /// The same functions in the box that starts at `origin` and holds `size`.
+    pub fn within(&self, origin: [usize; 3], size: [usize; 3]) -> Reach {
+        let first = [0, 1, 2].map(|axis| self.first[axis] - origin[axis]);
+        Reach { first, size, ..*self }
+    }
+
+    /// Calls `visit(place in the box, value)`.
     #[inline]
-    pub fn for_each(
-        &self,
-        origin: [usize; 3],
-        size: [usize; 3],
-        mut visit: impl FnMut(usize, f64),
-    ) {
-        let [x, y, z] = &self.values;
-        let [i, j, k] = [0, 1, 2].map(|axis| self.first[axis] - origin[axis]);
+    pub fn for_each(&self, mut visit: impl FnMut(usize, f64)) {
+        let ([x, y, z], [i, j, k]) = (&self.values, self.first);
         for (c, wz) in z[..self.counts[2]].iter().enumerate() {
             for (b, wy) in y[..self.counts[1]].iter().enumerate() {
-                let row = ((k + c) * size[1] + j + b) * size[0] + i;
+                let row = ((k + c) * self.size[1] + j + b) * self.size[0] + i;
                 for (a, wx) in x[..self.counts[0]].iter().enumerate() {
                     visit(row + a, wx * (wy * wz));
                 }

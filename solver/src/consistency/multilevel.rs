@@ -6,7 +6,7 @@
 //! does not grow with the number of nodes (method §3).
 #![allow(non_snake_case)]
 
-use super::lattice::Lattice;
+use super::lattice::{Lattice, Reach};
 use super::operator::{Layout, Operator};
 use crate::tensor::Vector3;
 use nalgebra::Vector4;
@@ -25,8 +25,9 @@ const SHARES: (usize, usize) = (16, 2048);
 const SAMPLES_TOGETHER: usize = 50;
 
 /// The preconditioner, ready to be applied.
-pub(super) struct Multilevel<'a> {
-    nodes: &'a [Vector3],
+pub(super) struct Multilevel {
+    /// Functions of the finest lattice at each node.
+    reaches: Vec<Reach>,
     inverse_diagonal: Vec<f64>,
     /// From fine to coarse.
     levels: Vec<Level>,
@@ -37,8 +38,8 @@ struct Level {
     inverse_diagonal: Vec<f64>,
 }
 
-impl Multilevel<'_> {
-    pub fn new<'a>(operator: &Operator, layout: &'a Layout<'a>) -> Multilevel<'a> {
+impl Multilevel {
+    pub fn new(operator: &Operator, layout: &Layout) -> Multilevel {
         let diagonal = operator.diagonal();
         let mean = layout.spacing.iter().sum::<f64>() / layout.spacing.len() as f64;
         let smallest = layout.spacing.iter().copied().fold(f64::INFINITY, f64::min);
@@ -52,6 +53,7 @@ impl Multilevel<'_> {
         // Bending of a smooth function between neighbours grows as h⁴.
         let bending: Vec<f64> = layout.spacing.iter().map(|h| (h / mean).powi(4)).collect();
         let sample = sample(layout.points.len());
+        let reaches = layout.nodes.par_iter().map(|X| lattice.at(X)).collect();
         let mut lattices = vec![lattice];
         while !lattice.coarser().is_affine() {
             lattice = lattice.coarser();
@@ -60,7 +62,7 @@ impl Multilevel<'_> {
         let level = |lattice| level(operator, layout, lattice, &diagonal, &bending, &sample);
         let levels = lattices.into_par_iter().map(level).collect();
         let inverse_diagonal = diagonal.iter().map(|d| inverse(*d)).collect();
-        Multilevel { nodes: layout.nodes, inverse_diagonal, levels }
+        Multilevel { reaches, inverse_diagonal, levels }
     }
 
     /// B r.
@@ -85,26 +87,26 @@ impl Multilevel<'_> {
             });
         }
         let finest = &moments[0];
-        let at_node = |((X, r), d): ((&Vector3, &Vector3), &f64)| {
+        let at_node = |((reach, r), d): ((&Reach, &Vector3), &f64)| {
             let mut sum = r * *d;
-            self.levels[0].lattice.for_each(X, |i, b| sum += b * finest[i]);
+            reach.for_each(|i, b| sum += b * finest[i]);
             sum
         };
-        self.nodes.par_iter().zip(r).zip(&self.inverse_diagonal).map(at_node).collect()
+        self.reaches.par_iter().zip(r).zip(&self.inverse_diagonal).map(at_node).collect()
     }
 
     /// Moments of a nodal field with the functions of the finest lattice.
     fn to_finest(&self, r: &[Vector3]) -> Vec<Vector3> {
         let lattice = &self.levels[0].lattice;
         let share = r.len().div_ceil(SHARES.0).max(SHARES.1);
-        let moments = |(nodes, values): (&[Vector3], &[Vector3])| {
+        let moments = |(reaches, values): (&[Reach], &[Vector3])| {
             let mut moments = vec![Vector3::zeros(); lattice.len()];
-            for (X, value) in nodes.iter().zip(values) {
-                lattice.for_each(X, |i, b| moments[i] += b * value);
+            for (reach, value) in reaches.iter().zip(values) {
+                reach.for_each(|i, b| moments[i] += b * value);
             }
             moments
         };
-        let shares = self.nodes.par_chunks(share).zip(r.par_chunks(share));
+        let shares = self.reaches.par_chunks(share).zip(r.par_chunks(share));
         let shares: Vec<Vec<Vector3>> = shares.map(moments).collect();
         let mut sum = vec![Vector3::zeros(); lattice.len()];
         for share in shares {
@@ -145,7 +147,7 @@ fn level(
 ) -> Level {
     let mut lumped = vec![0.0; lattice.len()];
     for ((X, d), bend) in layout.nodes.iter().zip(diagonal).zip(bending) {
-        lattice.for_each(X, |i, b| lumped[i] += if b != 0.0 { d * bend } else { 0.0 });
+        lattice.at(X).for_each(|i, b| lumped[i] += if b != 0.0 { d * bend } else { 0.0 });
     }
     let measure = |q: &usize| energies(operator, layout, &lattice, bending, *q);
     let together = |samples: &[usize]| samples.iter().map(measure).fold(NOTHING, add);
@@ -200,7 +202,7 @@ fn energies(
         let p = operator.local(q, entry);
         let metric = operator.metric(entry);
         let share = operator.diagonal_share(q, entry) * bending[operator.node(entry)];
-        reach.for_each(low, size, |place, b| {
+        reach.within(low, size).for_each(|place, b| {
             let sum = &mut sums[place];
             sum.whole += metric * b * b;
             sum.moments += p * (metric * b);

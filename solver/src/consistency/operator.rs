@@ -1,6 +1,7 @@
 //! The operator K of the multipliers.
 #![allow(non_snake_case)]
 
+use crate::mls::inverse;
 use crate::rows::Rows;
 use crate::tensor::Vector3;
 use nalgebra::{Matrix4, Vector4};
@@ -12,6 +13,9 @@ use std::ops::Range;
 const METRIC_FLOOR: f64 = 0.03;
 /// Points of a part, the last one aside.
 const PART: usize = 1024;
+
+/// A node without a place in a part.
+const NEW: u32 = u32::MAX;
 
 /// Where and with what weight the gradients stand.
 #[derive(Debug)]
@@ -74,7 +78,10 @@ impl<'a> Operator<'a> {
         operator.points = (0..count).into_par_iter().map(|q| operator.point(q)).collect();
         operator.parts = (0..count.div_ceil(PART))
             .into_par_iter()
-            .map(|part| operator.part(part * PART..count.min((part + 1) * PART)))
+            .map_init(
+                || vec![NEW; layout.nodes.len()],
+                |places, part| operator.part(part * PART..count.min((part + 1) * PART), places),
+            )
             .collect();
         (operator, grad_phi)
     }
@@ -107,28 +114,37 @@ impl<'a> Operator<'a> {
         if self.layout.components == 2 {
             gram[(3, 3)] = 1.0;
         }
-        let inverse = gram.cholesky().map(|factor| factor.inverse());
-        Point { inverse_scale, gram_inverse: inverse.unwrap_or_else(Matrix4::zeros) }
+        let gram_inverse = inverse(&gram).unwrap_or_else(Matrix4::zeros);
+        Point { inverse_scale, gram_inverse }
     }
 
-    fn part(&self, points: Range<usize>) -> Part {
+    /// Numbers nodes as they come; `places` are all new before and after.
+    fn part(&self, points: Range<usize>, places: &mut [u32]) -> Part {
         let entries = &self.nodes[self.starts[points.start]..self.starts[points.end]];
-        let mut nodes = entries.to_vec();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let place = |node: &u32| nodes.binary_search(node).unwrap_or_default() as u32;
-        let local = entries.iter().map(place).collect();
+        let mut nodes = Vec::new();
+        let mut local = Vec::with_capacity(entries.len());
+        for &node in entries {
+            let place = &mut places[node as usize];
+            if *place == NEW {
+                *place = nodes.len() as u32;
+                nodes.push(node);
+            }
+            local.push(*place);
+        }
+        nodes.iter().for_each(|&node| places[node as usize] = NEW);
         let positions = nodes.iter().map(|&node| self.layout.nodes[node as usize]).collect();
         Part { points, nodes, positions, local }
     }
 
     /// p of an entry of point `q`.
+    #[inline]
     pub fn local(&self, q: usize, entry: usize) -> Vector4<f64> {
         let offset = self.layout.nodes[self.node(entry)] - self.layout.points[q];
         local(&offset, self.points[q].inverse_scale)
     }
 
     /// pᵀ (Σ_a W p pᵀ)⁻¹ p at point `q`.
+    #[inline]
     pub fn square(&self, q: usize, p: &Vector4<f64>) -> f64 {
         p.dot(&(self.points[q].gram_inverse * p))
     }

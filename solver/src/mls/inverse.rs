@@ -5,7 +5,7 @@ use nalgebra::SMatrix;
 
 /// The inverse by Cholesky, of the lower triangle; `None` unless positive definite.
 #[inline]
-pub(super) fn inverse<const M: usize>(A: &SMatrix<f64, M, M>) -> Option<SMatrix<f64, M, M>> {
+pub(crate) fn inverse<const M: usize>(A: &SMatrix<f64, M, M>) -> Option<SMatrix<f64, M, M>> {
     let L = cholesky(A)?;
     let mut inverse = SMatrix::<f64, M, M>::identity();
     for column in 0..M {
