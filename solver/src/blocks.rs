@@ -1,11 +1,11 @@
 //! Quadrature points in blocks that the internal force runs over.
 
 use crate::discretisation::Discretisation;
-use crate::lanes::Four;
 use crate::material::Law;
 use crate::patches::orthonormal_basis;
 use crate::problem::{Dilatation, Problem};
-use crate::projection::Projection;
+use crate::projection::{Projection, Weighted};
+use crate::rows::Rows;
 use std::ops::Range;
 
 /// Consecutive quadrature points of one material, with their own numbering of
@@ -17,7 +17,8 @@ pub struct Block {
     pub points: Range<usize>,
     /// Global node of each local one.
     pub nodes: Vec<u32>,
-    /// Support of local point p is `starts[p]..starts[p + 1]`.
+    /// Support of local point p is `starts[p]..starts[p + 1]`, filled up to whole
+    /// eights with its last node and gradients of 0.
     pub starts: Vec<u32>,
     /// Local node indices \[support entry\].
     pub supports: Vec<u32>,
@@ -40,10 +41,30 @@ impl Block {
         (&self.supports[entries.clone()], &self.grad_phi.as_chunks::<D>().0[entries])
     }
 
-    /// Local points of each chunk.
-    pub fn chunks(&self) -> impl Iterator<Item = Range<usize>> {
-        self.chunks.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
+    /// The entries that stand `ahead` entries after the support of a point.
+    #[inline(always)]
+    pub fn coming<const D: usize>(&self, point: usize, ahead: usize) -> (&[u32], &[[f64; D]]) {
+        let first = (self.starts[point] as usize + ahead).min(self.supports.len());
+        (&self.supports[first..], &self.grad_phi.as_chunks::<D>().0[first..])
     }
+
+    pub fn chunks(&self) -> impl Iterator<Item = Chunk> {
+        let mut eights = 0..0;
+        self.chunks.windows(2).map(move |ends| {
+            let points = ends[0] as usize..ends[1] as usize;
+            eights = eights.end..eights.end + points.len().div_ceil(8);
+            Chunk { points, eights: eights.clone() }
+        })
+    }
+}
+
+/// Points that are worked on together.
+#[derive(Debug, Clone)]
+pub struct Chunk {
+    /// Local points.
+    pub points: Range<usize>,
+    /// Where they are where eight points make an entry.
+    pub eights: Range<usize>,
 }
 
 /// Points worked on together where nothing is projected: their gradients stay
@@ -78,10 +99,8 @@ fn block(problem: &Problem, patches: Range<usize>, discretisation: &Discretisati
     let starts = &discretisation.patches[patches.start..=patches.end];
     let points = starts[0]..starts[starts.len() - 1];
     let components = discretisation.dimension.components();
-    let entries = rows.starts[points.start]..rows.starts[points.end];
-    let (nodes, supports) =
-        number_by_appearance(&rows.nodes[entries.clone()], discretisation.cloud.positions.len());
-    let offset = entries.start;
+    let Packed { nodes, starts: entries, supports, grad_phi } =
+        pack(rows, points.clone(), components, discretisation.cloud.positions.len());
     let region = discretisation.quadrature.regions[points.start] as usize;
     let law = problem.regions[region].material.law;
     let share = match problem.recipe.dilatation {
@@ -90,15 +109,9 @@ fn block(problem: &Problem, patches: Range<usize>, discretisation: &Discretisati
     };
     Block {
         law,
-        starts: rows.starts[points.start..=points.end]
-            .iter()
-            .map(|s| (s - offset) as u32)
-            .collect(),
+        starts: entries,
         supports,
-        grad_phi: rows.grad_phi[entries]
-            .iter()
-            .flat_map(|gradient| gradient.iter().take(components).copied())
-            .collect(),
+        grad_phi,
         quadrature_weights: discretisation.quadrature.weights[points.clone()].to_vec(),
         chunks: match share > 0.0 {
             true => starts.iter().map(|start| (start - points.start) as u32).collect(),
@@ -113,32 +126,54 @@ fn block(problem: &Problem, patches: Range<usize>, discretisation: &Discretisati
     }
 }
 
-/// The nodes in the order in which they appear, which is that of the points in
-/// space, and the local number of each entry.
-fn number_by_appearance(entries: &[u32], nodes: usize) -> (Vec<u32>, Vec<u32>) {
+/// Supports of a block as [`Block`] holds them.
+#[derive(Default)]
+struct Packed {
+    nodes: Vec<u32>,
+    starts: Vec<u32>,
+    supports: Vec<u32>,
+    grad_phi: Vec<f64>,
+}
+
+/// Numbers the nodes in the order in which they appear, which is that of the
+/// points in space, and fills each support up to whole fours.
+fn pack(rows: &Rows, points: Range<usize>, components: usize, nodes: usize) -> Packed {
     const NONE: u32 = u32::MAX;
     let mut numbers = vec![NONE; nodes];
-    let mut seen = Vec::new();
-    let mut local = Vec::with_capacity(entries.len());
-    for &node in entries {
-        let number = &mut numbers[node as usize];
-        if *number == NONE {
-            *number = seen.len() as u32;
-            seen.push(node);
+    let mut packed = Packed { starts: vec![0], ..Packed::default() };
+    let room = (rows.starts[points.end] - rows.starts[points.start]) + 3 * points.len();
+    packed.supports.reserve_exact(room);
+    packed.grad_phi.reserve_exact(room * components);
+    for point in points {
+        for entry in rows.row(point) {
+            let number = &mut numbers[rows.nodes[entry] as usize];
+            if *number == NONE {
+                *number = packed.nodes.len() as u32;
+                packed.nodes.push(rows.nodes[entry]);
+            }
+            packed.supports.push(*number);
+            packed.grad_phi.extend(rows.grad_phi[entry].iter().take(components));
         }
-        local.push(*number);
+        let filled = packed.supports.len().next_multiple_of(4);
+        packed.supports.resize(filled, packed.supports.last().copied().unwrap_or(0));
+        packed.grad_phi.resize(filled * components, 0.0);
+        packed.starts.push(filled as u32);
     }
-    (seen, local)
+    packed.supports.shrink_to_fit();
+    packed.grad_phi.shrink_to_fit();
+    packed
 }
 
 fn projection(share: f64, starts: &[usize], discretisation: &Discretisation) -> Projection {
     let quadrature = &discretisation.quadrature;
     let components = discretisation.dimension.components();
-    let basis = |patch: &[usize]| {
+    let eights = |patch: &[usize]| {
         let points = patch[0]..patch[1];
-        orthonormal_basis(&quadrature.positions, &quadrature.weights, points, components)
+        let (positions, weights) = (&quadrature.positions, &quadrature.weights);
+        let basis = orthonormal_basis(positions, weights, points.clone(), components);
+        Weighted::eights(&weights[points], &basis)
     };
-    Projection { share, basis: starts.windows(2).flat_map(basis).map(Four).collect() }
+    Projection { share, eights: starts.windows(2).flat_map(eights).collect() }
 }
 
 /// How the forces of the blocks are summed: by stretches of nodes that any

@@ -5,6 +5,7 @@ use crate::internal_force::Workspace;
 use crate::model::Model;
 use crate::packed::{axpy, dot, noise};
 use crate::tangent::Tangent;
+use rayon::prelude::*;
 
 /// The critical step and what it cost.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,13 +59,7 @@ pub fn critical_time_step(
         let last = basis.len() - 1;
         let mut next = tangent.apply(&basis[last]);
         diagonal.push(dot(&next, &basis[last]));
-        // Twice is enough: round-off of one pass is removed by the second.
-        for _ in 0..2 {
-            for vector in &basis {
-                let overlap = dot(&next, vector);
-                axpy(&mut next, -overlap, vector);
-            }
-        }
+        orthogonalise(&mut next, &basis);
         let beta = norm(&next);
         let (ritz, weights) = largest_ritz_pair(&diagonal, &off_diagonal);
         let residual = beta * weights[last].abs();
@@ -137,6 +132,42 @@ fn level(model: &Model, field: &mut [f64], squares: &[f64]) {
             values.iter_mut().for_each(|x| *x /= square.sqrt());
         }
     }
+}
+
+/// Components that are taken at a time, small enough to stay near the processor.
+const PIECE: usize = 1024;
+
+/// Takes out of a vector its overlaps with those of an orthonormal basis. Twice is
+/// enough: round-off of one pass is removed by the second. Overlaps are summed piece
+/// by piece, in the order of the pieces on any number of threads.
+fn orthogonalise(vector: &mut [f64], basis: &[Vec<f64>]) {
+    let pass = |vector: &mut [f64], known: &[f64]| -> Vec<f64> {
+        let piece = |(index, piece): (usize, &mut [f64])| {
+            let range = index * PIECE..index * PIECE + piece.len();
+            for (factor, basis) in known.iter().zip(basis) {
+                axpy(piece, -factor, &basis[range.clone()]);
+            }
+            basis.iter().map(|basis| overlap(piece, &basis[range.clone()])).collect()
+        };
+        let pieces: Vec<Vec<f64>> = vector.par_chunks_mut(PIECE).enumerate().map(piece).collect();
+        (0..basis.len()).map(|i| pieces.iter().map(|piece| piece[i]).sum()).collect()
+    };
+    let first = pass(vector, &[]);
+    let second = pass(vector, &first);
+    for (factor, basis) in second.iter().zip(basis) {
+        axpy(vector, -factor, basis);
+    }
+}
+
+/// The dot product in eight sums, which need not wait for each other.
+fn overlap(a: &[f64], b: &[f64]) -> f64 {
+    let (a, a_rest) = a.as_chunks::<8>();
+    let (b, b_rest) = b.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        (0..8).for_each(|lane| sums[lane] += a[lane] * b[lane]);
+    }
+    sums.iter().sum::<f64>() + dot(a_rest, b_rest)
 }
 
 /// Noise, or the last mode and pattern in equal parts with a little of it.

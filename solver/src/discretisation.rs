@@ -4,12 +4,13 @@
 
 use crate::consistency::{Correction, Layout, connected_bodies, make_consistent};
 use crate::error::Error;
-use crate::mls::{Approximation, PoorSupport, Support};
+use crate::mls::{Approximation, PoorSupport};
 use crate::nodes::{NodeCloud, node_cloud};
 use crate::patches::sort_into_patches;
 use crate::problem::{Dimension, EssentialCondition, Gradients, Problem};
 use crate::quadrature::{Quadrature, quadrature};
 pub use crate::rows::Rows;
+use crate::rows::{Evaluated, Wanted};
 use crate::selection::Extent;
 use crate::surface_rule::SurfaceRule;
 use crate::tensor::Vector3;
@@ -102,10 +103,8 @@ impl Discretisation {
             dimension.thickness(),
             dimension.components(),
         );
-        let supports = evaluate_all(&approximation, &quadrature.positions)?;
-        let enlarged = supports.iter().filter(|support| support.enlargement > 1.0).count();
-        let worst_condition = supports.iter().map(|support| support.condition).fold(0.0, f64::max);
-        let supports = Rows::from_supports(supports);
+        let Evaluated { rows: supports, enlarged, worst_condition } =
+            evaluate_all(&approximation, &quadrature.positions)?;
         check_coverage(&cloud, &supports)?;
         let finest = cloud.spacing.iter().copied().fold(f64::INFINITY, f64::min);
         let consistent = matches!(recipe.gradients, Gradients::Consistent { .. });
@@ -174,11 +173,9 @@ impl Discretisation {
 
     /// Rows of φ and Grad φ at any points of the body \[m\].
     pub fn rows_at(&self, positions: &[Vector3]) -> Result<Rows, Error> {
-        let supports: Result<Vec<Support>, Error> = positions
-            .iter()
-            .map(|X| self.approximation.evaluate(X).map_err(|poor| outside(*X, &poor)))
-            .collect();
-        Ok(Rows::from_supports(supports?))
+        Rows::at(&self.approximation, positions, Wanted::ValuesAndGradients)
+            .map(|evaluated| evaluated.rows)
+            .map_err(|(point, poor)| outside(positions[point], &poor))
     }
 
     /// Mean number of support nodes per quadrature point.
@@ -223,30 +220,25 @@ fn outside(position: Vector3, poor: &PoorSupport) -> Error {
     Error::ProbeOutside { position, reason }
 }
 
-fn evaluate_all(
-    approximation: &Approximation,
-    positions: &[Vector3],
-) -> Result<Vec<Support>, Error> {
-    let results: Vec<Result<Support, PoorSupport>> =
-        positions.par_iter().map(|X| approximation.evaluate(X)).collect();
-    let locate = |(point, result): (usize, Result<Support, PoorSupport>)| {
-        result.map_err(|poor| match poor.support_size < approximation.smallest_support() {
-            true => Error::SmallSupport {
-                point,
-                position: positions[point],
-                support_size: poor.support_size,
-                smallest: approximation.smallest_support(),
-            },
-            false => Error::SingularMomentMatrix {
-                point,
-                position: positions[point],
-                support_size: poor.support_size,
-                condition: poor.condition,
-                largest: approximation.largest_condition(),
-            },
-        })
+fn evaluate_all(approximation: &Approximation, positions: &[Vector3]) -> Result<Evaluated, Error> {
+    let locate = |(point, poor): (usize, PoorSupport)| match poor.support_size
+        < approximation.smallest_support()
+    {
+        true => Error::SmallSupport {
+            point,
+            position: positions[point],
+            support_size: poor.support_size,
+            smallest: approximation.smallest_support(),
+        },
+        false => Error::SingularMomentMatrix {
+            point,
+            position: positions[point],
+            support_size: poor.support_size,
+            condition: poor.condition,
+            largest: approximation.largest_condition(),
+        },
     };
-    results.into_iter().enumerate().map(locate).collect()
+    Rows::at(approximation, positions, Wanted::ValuesAndGradients).map_err(locate)
 }
 
 /// Every node must be covered. The seed (section 2.3) also wants each boundary

@@ -4,12 +4,11 @@
 
 use crate::kernel::{Scratch, block_force};
 use crate::lanes::{Four, with_vectors};
-use crate::model::{Block, Model};
+use crate::model::{Block, Chunk, Model};
 use crate::real::Dual;
 use crate::tensor::Matrix3;
-use fearless_simd::{Level, Simd, f64x4};
+use fearless_simd::{Level, Simd, f64x8};
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Scratch memory of a run; nothing in it outlives a step.
 #[derive(Debug, Clone)]
@@ -120,12 +119,12 @@ fn internal_force_in<const D: usize>(
 
 #[inline(always)]
 fn force<S: Simd, const D: usize>(simd: S, block: &Block, scratch: &mut Scratch) {
-    block_force::<S, f64x4<S>, D>(simd, block, scratch);
+    block_force::<S, f64x8<S>, D>(simd, block, scratch);
 }
 
 #[inline(always)]
 fn derivative<S: Simd, const D: usize>(simd: S, block: &Block, scratch: &mut Scratch) {
-    block_force::<S, Dual<f64x4<S>>, D>(simd, block, scratch);
+    block_force::<S, Dual<f64x8<S>>, D>(simd, block, scratch);
 }
 
 /// The forces of all blocks, stretch by stretch of the nodes; each node gets its
@@ -198,16 +197,14 @@ fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) ->
     let mut energy = 0.0;
     let mut jacobians = Vec::new();
     for chunk in block.chunks() {
-        let weights = &block.quadrature_weights[chunk.clone()];
         jacobians.clear();
-        for (point, weight) in chunk.clone().zip(weights) {
+        for point in chunk.points {
             let F = deformation_gradient::<D>(block.support(point), local);
-            energy += weight * block.law.strain_energy(&F);
+            energy += block.quadrature_weights[point] * block.law.strain_energy(&F);
             jacobians.push(F.determinant());
         }
         if let Some(projection) = &block.projection {
-            let rule = (weights, &projection.basis[chunk]);
-            energy += projection.energy(&block.law, rule, &jacobians);
+            energy += projection.energy(&block.law, chunk.eights, &jacobians);
         }
     }
     energy
@@ -232,10 +229,9 @@ fn block_mean_stress<const D: usize>(block: &Block, u: &[f64]) -> Vec<f64> {
     gather::<D>(block, u, &mut local);
     let jacobian =
         |point: usize| deformation_gradient::<D>(block.support(point), &local).determinant();
-    let pressures = |chunk: Range<usize>| {
-        let rule = (&block.quadrature_weights[chunk.clone()], &projection.basis[chunk.clone()]);
-        let jacobians: Vec<f64> = chunk.map(jacobian).collect();
-        projection.plain_pressures(&block.law, rule, &jacobians)
+    let pressures = |chunk: Chunk| {
+        let jacobians: Vec<f64> = chunk.points.map(jacobian).collect();
+        projection.plain_pressures(&block.law, chunk.eights, &jacobians)
     };
     block.chunks().flat_map(pressures).collect()
 }

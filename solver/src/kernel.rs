@@ -1,11 +1,11 @@
-//! The hot loop over the points of one block, four points or one node at a time
+//! The hot loop over the points of one block, eight points or one node at a time
 //! in the processor's vectors: chunk by chunk the gradients of the displacement,
 //! J, the projected pressure, the stress and the nodal forces.
 #![allow(non_snake_case)]
 
-use crate::lanes::{Four, Lanes, Parts};
+use crate::lanes::{Eight, Four, Lanes, Parts, four, prefetch};
 use crate::material::{ConstitutiveLaw, Deformation, with_law};
-use crate::model::Block;
+use crate::model::{Block, Chunk};
 use crate::tensor::{Tensor, map};
 use fearless_simd::{Simd, f64x4, prelude::*};
 use std::ops::Range;
@@ -22,22 +22,22 @@ pub struct Scratch {
     /// The smallest J and its local point.
     pub smallest: (f64, usize),
     /// Columns of ∂u/∂X \[–\], later of P \[Pa\], of each point of a chunk.
-    columns: Parts,
-    /// F, row by row, of each four points.
-    deformation: Parts,
-    jacobians: Parts,
-    pressures: Parts,
+    columns: Parts<Four>,
+    /// F, row by row, of each eight points.
+    deformation: Parts<Eight>,
+    jacobians: Parts<Eight>,
+    pressures: Parts<Eight>,
 }
 
 impl Scratch {
     pub fn new(block: &Block, components: usize) -> Scratch {
-        let groups = block.chunks().map(|chunk| chunk.len().div_ceil(4)).max().unwrap_or(0);
+        let groups = block.chunks().map(|chunk| chunk.eights.len()).max().unwrap_or(0);
         Scratch {
             u: vec![Four::default(); block.nodes.len()],
             v: Vec::new(),
             f: vec![Four::default(); block.nodes.len()],
             smallest: (f64::INFINITY, 0),
-            columns: Parts::new(4 * groups * components),
+            columns: Parts::new(8 * groups * components),
             deformation: Parts::new(9 * groups),
             jacobians: Parts::new(groups),
             pressures: Parts::new(groups),
@@ -55,30 +55,29 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
 ) {
     scratch.f.fill(Four::default());
     scratch.smallest = (f64::INFINITY, 0);
-    for chunk in block.chunks() {
+    for Chunk { points, eights } in block.chunks() {
         let columns = &mut scratch.columns;
-        gradients::<S, D>(simd, block, &chunk, &scratch.u, &mut columns.values);
+        gradients::<S, D>(simd, block, &points, &scratch.u, &mut columns.values);
         if R::SLOPES {
-            gradients::<S, D>(simd, block, &chunk, &scratch.v, &mut columns.slopes);
+            gradients::<S, D>(simd, block, &points, &scratch.v, &mut columns.slopes);
         }
         with_law!(&block.law, law => match &block.projection {
-            None => stress::<S, R, _, D>(simd, law, chunk.len(), scratch),
+            None => stress::<S, R, _, D>(simd, law, eights.len(), scratch),
             Some(projection) => {
-                deform::<S, R, D>(simd, chunk.len(), scratch);
-                let rule = (&block.quadrature_weights[chunk.clone()], &projection.basis[chunk.clone()]);
+                deform::<S, R, D>(simd, eights.len(), scratch);
                 let Scratch { jacobians, pressures, .. } = &mut *scratch;
-                projection.pressures::<S, R, _>(simd, law, rule, jacobians, pressures);
-                stress_and_pressure::<S, R, _, D>(simd, law, chunk.len(), scratch);
+                projection.pressures::<S, R, _>(simd, law, eights.clone(), jacobians, pressures);
+                stress_and_pressure::<S, R, _, D>(simd, law, eights.len(), scratch);
             }
         });
-        keep_smallest(&chunk, scratch);
+        keep_smallest(&points, scratch);
         let columns = if R::SLOPES { &scratch.columns.slopes } else { &scratch.columns.values };
-        scatter::<S, D>(simd, block, &chunk, columns, &mut scratch.f);
+        scatter::<S, D>(simd, block, &points, columns, &mut scratch.f);
     }
 }
 
 /// Columns Σ_a u_a ∂φ_a/∂X_j at the points of a chunk, 0 at what fills the last
-/// four.
+/// eight.
 #[inline(always)]
 fn gradients<S: Simd, const D: usize>(
     simd: S,
@@ -93,21 +92,26 @@ fn gradients<S: Simd, const D: usize>(
         let (nodes, gradients) = block.support::<D>(point);
         // Two sums, so that one need not wait for the other.
         let mut sums = [[f64x4::splat(simd, 0.0); D]; 2];
-        let ((pairs, node), (two, gradient)) = (nodes.as_chunks::<2>(), gradients.as_chunks::<2>());
-        for (pair, two) in pairs.iter().zip(two) {
-            for k in 0..2 {
-                add_product(simd, &u[pair[k] as usize], &two[k], &mut sums[k]);
+        for (nodes, gradients) in in_fours(nodes, gradients) {
+            for k in 0..4 {
+                add_product(simd, &u[nodes[k] as usize], &gradients[k], &mut sums[k % 2]);
             }
-        }
-        if let ([node], [gradient]) = (node, gradient) {
-            add_product(simd, &u[*node as usize], gradient, &mut sums[0]);
         }
         for j in 0..D {
             columns[j].0 = (sums[0][j] + sums[1][j]).into();
         }
     }
-    let rest = chunk.len().next_multiple_of(4) - chunk.len();
+    let rest = chunk.len().next_multiple_of(8) - chunk.len();
     padding[..rest].fill([Four::default(); D]);
+}
+
+/// The entries of a support, which blocks fill up to whole fours.
+#[inline(always)]
+fn in_fours<'a, const D: usize>(
+    nodes: &'a [u32],
+    gradients: &'a [[f64; D]],
+) -> impl Iterator<Item = (&'a [u32; 4], &'a [[f64; D]; 4])> {
+    nodes.as_chunks::<4>().0.iter().zip(gradients.as_chunks::<4>().0)
 }
 
 /// sums_j += u_a ∂φ_a/∂X_j.
@@ -118,40 +122,40 @@ fn add_product<S: Simd, const D: usize>(
     gradient: &[f64; D],
     sums: &mut [f64x4<S>; D],
 ) {
-    let u: f64x4<S> = u.0.simd_into(simd);
+    let u = four(simd, u);
     for j in 0..D {
         sums[j] = u.mul_add(f64x4::splat(simd, gradient[j]), sums[j]);
     }
 }
 
-/// F = I + ∂u/∂X with its cofactors and J at four points; in a plane F₃₃ = 1.
+/// F = I + ∂u/∂X with its cofactors and J at eight points; in a plane F₃₃ = 1.
 #[inline(always)]
 fn deformation<S: Simd, R: Lanes<S>, const D: usize>(
     simd: S,
-    columns: &Parts,
+    columns: &Parts<Four>,
     group: usize,
 ) -> Deformation<R> {
     Deformation::new(map(
         #[inline(always)]
         |i, j| {
-            let slope = R::from_parts(
+            if i >= D || j >= D {
+                return R::constant(simd, if i == j { 1.0 } else { 0.0 });
+            }
+            let slope = R::gather(
                 simd,
                 columns,
                 #[inline(always)]
-                |columns, lane| match i < D && j < D {
-                    true => columns[(4 * group + lane) * D + j].0[i],
-                    false => 0.0,
-                },
+                |lane| ((8 * group + lane) * D + j, i),
             );
             if i == j { slope + 1.0 } else { slope }
         },
     ))
 }
 
-/// F and J of `count` points.
+/// F and J of so many eights of points.
 #[inline(always)]
-fn deform<S: Simd, R: Lanes<S>, const D: usize>(simd: S, count: usize, scratch: &mut Scratch) {
-    for group in 0..count.div_ceil(4) {
+fn deform<S: Simd, R: Lanes<S>, const D: usize>(simd: S, eights: usize, scratch: &mut Scratch) {
+    for group in 0..eights {
         let state: Deformation<R> = deformation::<S, R, D>(simd, &scratch.columns, group);
         state.J.store(&mut scratch.jacobians, group);
         for (k, value) in state.F.iter().flatten().enumerate() {
@@ -162,7 +166,7 @@ fn deform<S: Simd, R: Lanes<S>, const D: usize>(simd: S, count: usize, scratch: 
 
 #[inline(always)]
 fn keep_smallest(chunk: &Range<usize>, scratch: &mut Scratch) {
-    let jacobians = scratch.jacobians.values.iter().flat_map(|four| four.0);
+    let jacobians = scratch.jacobians.values.iter().flat_map(|eight| eight.0);
     for (point, jacobian) in chunk.clone().zip(jacobians) {
         if jacobian < scratch.smallest.0 {
             scratch.smallest = (jacobian, point);
@@ -170,15 +174,15 @@ fn keep_smallest(chunk: &Range<usize>, scratch: &mut Scratch) {
     }
 }
 
-/// J and the columns of P of `count` points.
+/// J and the columns of P of so many eights of points.
 #[inline(always)]
 fn stress<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
     simd: S,
     law: &L,
-    count: usize,
+    eights: usize,
     scratch: &mut Scratch,
 ) {
-    for group in 0..count.div_ceil(4) {
+    for group in 0..eights {
         let state: Deformation<R> = deformation::<S, R, D>(simd, &scratch.columns, group);
         state.J.store(&mut scratch.jacobians, group);
         put_columns::<S, R, D>(&law.first_piola_kirchhoff(&state), group, &mut scratch.columns);
@@ -190,10 +194,10 @@ fn stress<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
 fn stress_and_pressure<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
     simd: S,
     law: &L,
-    count: usize,
+    eights: usize,
     scratch: &mut Scratch,
 ) {
-    for group in 0..count.div_ceil(4) {
+    for group in 0..eights {
         let state: Deformation<R> = Deformation::new(map(
             #[inline(always)]
             |i, j| R::load(simd, &scratch.deformation, 9 * group + 3 * i + j),
@@ -212,45 +216,52 @@ fn stress_and_pressure<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>
 fn put_columns<S: Simd, R: Lanes<S>, const D: usize>(
     P: &Tensor<R>,
     group: usize,
-    columns: &mut Parts,
+    columns: &mut Parts<Four>,
 ) {
     for i in 0..D {
         for j in 0..D {
             P[i][j].spread(
                 columns,
                 #[inline(always)]
-                |lane| ((4 * group + lane) * D + j, i),
+                |lane| ((8 * group + lane) * D + j, i),
             );
         }
     }
 }
 
-/// f_a += w P Grad φ_a.
+/// f_a += w P Grad φ_a. On the way the processor is told to fetch what the
+/// next chunk will read, as many entries ahead as this chunk has.
 #[inline(always)]
 fn scatter<S: Simd, const D: usize>(
     simd: S,
     block: &Block,
-    chunk: &Range<usize>,
+    points: &Range<usize>,
     columns: &[Four],
     f: &mut [Four],
 ) {
-    for (point, columns) in chunk.clone().zip(columns.as_chunks::<D>().0) {
+    let ahead = (block.starts[points.end] - block.starts[points.start]) as usize;
+    for (point, columns) in points.clone().zip(columns.as_chunks::<D>().0) {
         let weight = block.quadrature_weights[point];
-        let columns: [f64x4<S>; D] = std::array::from_fn(
-            #[inline(always)]
-            |j| {
-                let column: f64x4<S> = columns[j].0.simd_into(simd);
-                column * weight
-            },
-        );
+        let mut weighted = [f64x4::splat(simd, 0.0); D];
+        for j in 0..D {
+            weighted[j] = four(simd, &columns[j]) * weight;
+        }
         let (nodes, gradients) = block.support::<D>(point);
-        for (&node, gradient) in nodes.iter().zip(gradients) {
-            let force = &mut f[node as usize].0;
-            let mut sum: f64x4<S> = (*force).simd_into(simd);
-            for j in 0..D {
-                sum = columns[j].mul_add(f64x4::splat(simd, gradient[j]), sum);
+        let coming = block.coming::<D>(point, ahead);
+        for (entry, (nodes, gradients)) in in_fours(nodes, gradients).enumerate() {
+            prefetch(coming.1, 4 * entry);
+            prefetch(coming.1, 4 * entry + 2);
+            for k in 0..4 {
+                let force = &mut f[nodes[k] as usize];
+                let mut sum = four(simd, force);
+                for j in 0..D {
+                    sum = weighted[j].mul_add(f64x4::splat(simd, gradients[k][j]), sum);
+                }
+                force.0 = sum.into();
             }
-            *force = sum.into();
+        }
+        for k in (0..nodes.len()).step_by(16) {
+            prefetch(coming.0, k);
         }
     }
 }

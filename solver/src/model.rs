@@ -1,7 +1,7 @@
 //! Everything that stays constant during a run, checked.
 
 use crate::blocks::blocks;
-pub use crate::blocks::{Block, Sums};
+pub use crate::blocks::{Block, Chunk, Sums};
 use crate::consistency::connected_bodies;
 use crate::contact::ContactPlan;
 use crate::discretisation::Discretisation;

@@ -12,6 +12,8 @@ pub struct Neighbours {
     /// Nodes of cell c are `nodes[starts[c]..starts[c + 1]]`.
     starts: Vec<u32>,
     nodes: Vec<u32>,
+    /// Positions in the order of `nodes`, so that a query reads on \[m\].
+    positions: Vec<Vector3>,
 }
 
 impl Neighbours {
@@ -27,8 +29,14 @@ impl Neighbours {
             }
             cell *= 1.5;
         };
-        let mut neighbours =
-            Neighbours { origin: min, cell, counts, starts: Vec::new(), nodes: Vec::new() };
+        let mut neighbours = Neighbours {
+            origin: min,
+            cell,
+            counts,
+            starts: Vec::new(),
+            nodes: Vec::new(),
+            positions: Vec::new(),
+        };
         neighbours.fill(positions);
         neighbours
     }
@@ -49,6 +57,7 @@ impl Neighbours {
             nodes[next[cell] as usize] = node as u32;
             next[cell] += 1;
         }
+        self.positions = nodes.iter().map(|&node| positions[node as usize]).collect();
         self.starts = starts;
         self.nodes = nodes;
     }
@@ -61,10 +70,16 @@ impl Neighbours {
         (k * self.counts[1] + j) * self.counts[0] + i
     }
 
-    /// Calls `visit(node)` for every node in the cells that a ball of
-    /// `radius` \[m\] about `x` touches; the caller tests the distance.
+    /// Calls `visit(node, position − x)` for every node closer to `x` than
+    /// `radius` \[m\], in the order of the cells.
     #[inline]
-    pub fn for_each_near(&self, x: &Vector3, radius: f64, mut visit: impl FnMut(usize)) {
+    pub fn for_each_within(
+        &self,
+        x: &Vector3,
+        radius: f64,
+        mut visit: impl FnMut(usize, &Vector3),
+    ) {
+        let square = radius * radius;
         let range = |axis: usize| {
             let low = (x[axis] - radius - self.origin[axis]) / self.cell;
             let high = (x[axis] + radius - self.origin[axis]) / self.cell;
@@ -82,8 +97,12 @@ impl Neighbours {
                 }
                 let from = self.starts[row + columns.start] as usize;
                 let to = self.starts[row + columns.end] as usize;
-                for &node in &self.nodes[from..to] {
-                    visit(node as usize);
+                for (&node, position) in self.nodes[from..to].iter().zip(&self.positions[from..to])
+                {
+                    let offset = position - x;
+                    if offset.norm_squared() < square {
+                        visit(node as usize, &offset);
+                    }
                 }
             }
         }
@@ -106,14 +125,13 @@ mod tests {
             let positions: Vec<Vector3> = points.into_iter().map(Vector3::from).collect();
             let x = Vector3::from(x);
             let mut found = Vec::new();
-            Neighbours::new(&positions, cell).for_each_near(&x, radius, |node| {
-                if (positions[node] - x).norm() < radius {
-                    found.push(node);
-                }
+            Neighbours::new(&positions, cell).for_each_within(&x, radius, |node, offset| {
+                assert_eq!(*offset, positions[node] - x);
+                found.push(node);
             });
             found.sort_unstable();
-            let plain: Vec<usize> =
-                (0..positions.len()).filter(|&a| (positions[a] - x).norm() < radius).collect();
+            let near = |a: &usize| (positions[*a] - x).norm_squared() < radius * radius;
+            let plain: Vec<usize> = (0..positions.len()).filter(near).collect();
             prop_assert_eq!(found, plain);
         }
     }

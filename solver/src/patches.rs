@@ -27,22 +27,26 @@ pub fn sort_into_patches(
     thickness: f64,
     components: usize,
 ) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..quadrature.positions.len()).collect();
-    order.sort_by_key(|&q| (quadrature.regions[q], q));
+    let mut order: Vec<u32> = (0..quadrature.positions.len() as u32).collect();
+    order.sort_by_key(|&q| quadrature.regions[q as usize]);
+    let bisection = Bisection { quadrature, spacing, thickness, components };
     let mut starts = vec![0];
-    let mut from = 0;
-    while from < order.len() {
-        let region = quadrature.regions[order[from]];
-        let same = order[from..].iter().take_while(|&&q| quadrature.regions[q] == region).count();
-        let bisection = Bisection { quadrature, spacing, thickness, components };
-        bisection.split(&mut order[from..from + same], &mut starts);
-        from += same;
+    for same in order.chunk_by_mut(|&a, &b| bisection.region(a) == bisection.region(b)) {
+        let ascending = [0, 1, 2].map(|axis| bisection.ascending(same, axis));
+        for count in bisection.split(same, ascending) {
+            starts.push(starts[starts.len() - 1] + count);
+        }
     }
-    quadrature.positions = order.iter().map(|&q| quadrature.positions[q]).collect();
-    quadrature.weights = order.iter().map(|&q| quadrature.weights[q]).collect();
-    quadrature.regions = order.iter().map(|&q| quadrature.regions[q]).collect();
+    let all = || order.iter().map(|&q| q as usize);
+    let positions = all().map(|q| quadrature.positions[q]).collect();
+    let weights = all().map(|q| quadrature.weights[q]).collect();
+    let regions = all().map(|q| quadrature.regions[q]).collect();
+    (quadrature.positions, quadrature.weights, quadrature.regions) = (positions, weights, regions);
     starts
 }
+
+/// Fewer points than this are not worth another thread.
+const FEWEST_PARALLEL: usize = 4096;
 
 struct Bisection<'a> {
     quadrature: &'a Quadrature,
@@ -52,49 +56,118 @@ struct Bisection<'a> {
 }
 
 impl Bisection<'_> {
-    /// Halves a set of points across its longest edge until it fits a patch.
-    fn split(&self, points: &mut [usize], starts: &mut Vec<usize>) {
-        let positions = &self.quadrature.positions;
-        let count = points.len() as f64;
-        let volume: f64 = points.iter().map(|&q| self.quadrature.weights[q]).sum();
-        let spacing = points.iter().map(|&q| self.spacing[q]).sum::<f64>() / count;
-        let largest = (EDGE * spacing).powi(self.components as i32) * self.thickness;
-        if volume <= largest * (1.0 + SAME) || points.len() < 2 {
-            starts.push(starts[starts.len() - 1] + points.len());
-            return;
-        }
-        let first = positions[points[0]];
-        let (min, max) = points
-            .iter()
-            .fold((first, first), |(l, u), &q| (l.inf(&positions[q]), u.sup(&positions[q])));
-        let longest = (max - min).max();
-        let across = (0..3).find(|&k| max[k] - min[k] >= longest * (1.0 - SAME)).unwrap_or(0);
-        for turn in (0..3).rev() {
-            self.sort_into_layers(points, (across + turn) % 3, SAME * longest);
-        }
-        let (mut below, mut middle) = (0.0, 0);
-        while middle < points.len() - 1 && below < 0.5 * volume * (1.0 - SAME) {
-            below += self.quadrature.weights[points[middle]];
-            middle += 1;
-        }
-        let (low, high) = points.split_at_mut(middle.max(1));
-        self.split(low, starts);
-        self.split(high, starts);
+    fn region(&self, q: u32) -> u16 {
+        self.quadrature.regions[q as usize]
     }
 
-    /// Sorts points along an axis; points of one layer, each within `same`
-    /// \[m\] of the one before, keep their order.
-    fn sort_into_layers(&self, points: &mut [usize], axis: usize, same: f64) {
-        let at = |q: usize| self.quadrature.positions[q][axis];
-        let mut coordinates: Vec<f64> = points.iter().map(|&q| at(q)).collect();
-        coordinates.sort_by(f64::total_cmp);
-        let edges: Vec<f64> = coordinates
-            .windows(2)
-            .filter(|pair| pair[1] - pair[0] > same)
-            .map(|pair| 0.5 * (pair[0] + pair[1]))
-            .collect();
-        points.sort_by_key(|&q| edges.partition_point(|&edge| edge < at(q)));
+    fn at(&self, q: u32, axis: usize) -> f64 {
+        self.quadrature.positions[q as usize][axis]
     }
+
+    /// Places in `points`, by ascending coordinate.
+    fn ascending(&self, points: &[u32], axis: usize) -> Vec<u32> {
+        let mut places: Vec<(f64, u32)> =
+            points.iter().zip(0..).map(|(&q, place)| (self.at(q, axis), place)).collect();
+        places.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        places.into_iter().map(|(_, place)| place).collect()
+    }
+
+    /// Halves a set of points across its longest edge until it fits a patch;
+    /// returns the numbers of points of its patches. `ascending` are places in
+    /// `points` by coordinate along each axis.
+    fn split(&self, points: &mut [u32], ascending: [Vec<u32>; 3]) -> Vec<usize> {
+        let count = points.len() as f64;
+        let volume: f64 = points.iter().map(|&q| self.quadrature.weights[q as usize]).sum();
+        let spacing = points.iter().map(|&q| self.spacing[q as usize]).sum::<f64>() / count;
+        let largest = (EDGE * spacing).powi(self.components as i32) * self.thickness;
+        if volume <= largest * (1.0 + SAME) || points.len() < 2 {
+            return vec![points.len()];
+        }
+        let edges = [0, 1, 2].map(|k| {
+            let end = |place: u32| self.at(points[place as usize], k);
+            end(ascending[k][points.len() - 1]) - end(ascending[k][0])
+        });
+        let longest = edges.iter().copied().fold(0.0, f64::max);
+        let across = (0..3).find(|&k| edges[k] >= longest * (1.0 - SAME)).unwrap_or(0);
+        let order = self.in_layers(points, &ascending, across, SAME * longest);
+        let sorted: Vec<u32> = order.iter().map(|&place| points[place as usize]).collect();
+        points.copy_from_slice(&sorted);
+        let (mut below, mut middle) = (0.0, 0);
+        while middle < points.len() - 1 && below < 0.5 * volume * (1.0 - SAME) {
+            below += self.quadrature.weights[points[middle] as usize];
+            middle += 1;
+        }
+        let middle = middle.max(1);
+        let (low_places, high_places) = halve(&order, ascending, middle);
+        let (low, high) = points.split_at_mut(middle);
+        let halves = (|| self.split(low, low_places), || self.split(high, high_places));
+        let (mut counts, others) = match sorted.len() < FEWEST_PARALLEL {
+            true => (halves.0(), halves.1()),
+            false => rayon::join(halves.0, halves.1),
+        };
+        counts.extend(others);
+        counts
+    }
+
+    /// Places of the points by their layers along the axis `across`, those of one
+    /// layer by their layers along the next axis and so on. A layer holds points
+    /// each within `same` \[m\] of the one before; where all layers agree, points
+    /// keep their order.
+    fn in_layers(
+        &self,
+        points: &[u32],
+        ascending: &[Vec<u32>; 3],
+        across: usize,
+        same: f64,
+    ) -> Vec<u32> {
+        let mut order: Vec<u32> = (0..points.len() as u32).collect();
+        let mut layers = vec![0; points.len()];
+        for turn in (0..3).rev() {
+            let axis = (across + turn) % 3;
+            let at = |place: u32| self.at(points[place as usize], axis);
+            let (mut layer, mut last) = (0, at(ascending[axis][0]));
+            for &place in &ascending[axis] {
+                let here = at(place);
+                layer += (here - last > same) as u32;
+                layers[place as usize] = layer;
+                last = here;
+            }
+            order = counting_sort(&order, &layers, layer as usize + 1);
+        }
+        order
+    }
+}
+
+/// `order` sorted by the layers of its members, of which there are `count`; stable.
+fn counting_sort(order: &[u32], layers: &[u32], count: usize) -> Vec<u32> {
+    let mut next = vec![0u32; count + 1];
+    layers.iter().for_each(|&layer| next[layer as usize + 1] += 1);
+    for layer in 1..count {
+        next[layer] += next[layer - 1];
+    }
+    let mut sorted = vec![0; order.len()];
+    for &place in order {
+        let slot = &mut next[layers[place as usize] as usize];
+        sorted[*slot as usize] = place;
+        *slot += 1;
+    }
+    sorted
+}
+
+/// Ascending places of the two halves of points that were brought into `order`.
+fn halve(order: &[u32], ascending: [Vec<u32>; 3], middle: usize) -> ([Vec<u32>; 3], [Vec<u32>; 3]) {
+    let mut moved = vec![0; order.len()];
+    order.iter().zip(0..).for_each(|(&place, now)| moved[place as usize] = now);
+    let half = |range: Range<usize>| {
+        [0, 1, 2].map(|axis| {
+            let within = |&place: &u32| {
+                let now = moved[place as usize] as usize;
+                range.contains(&now).then_some((now - range.start) as u32)
+            };
+            ascending[axis].iter().filter_map(within).collect()
+        })
+    };
+    (half(0..middle), half(middle..order.len()))
 }
 
 /// 1, X, Y, Z made orthonormal over the points of a patch with their weights:

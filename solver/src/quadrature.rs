@@ -1,6 +1,8 @@
 //! Background grid → quadrature points. The grid need not conform to the body.
 #![allow(non_snake_case)]
 
+mod cut;
+
 use crate::error::Error;
 use crate::geometry::Shape;
 use crate::problem::{BackgroundGrid, Dimension, InsideRule, Region};
@@ -25,6 +27,9 @@ pub struct Quadrature {
 /// Halvings below a sub-cell when its inside volume is measured.
 const FRACTION_DEPTH: usize = 4;
 const FRACTION_DEPTH_PLANE: usize = 5;
+/// The boundary is flat in a cell where the signed distance differs by less than this
+/// share of its edge from that of a plane \[–\].
+const FLAT: f64 = 1e-9;
 /// Parts of a cell smaller than this share of it are dropped \[–\].
 const SMALLEST_FRACTION: f64 = 1e-4;
 
@@ -33,6 +38,19 @@ const SMALLEST_FRACTION: f64 = 1e-4;
 struct Cell {
     centre: Vector3,
     edge: f64,
+}
+
+impl Cell {
+    /// n parts per direction.
+    fn divide(self, n: usize, components: usize) -> impl Iterator<Item = Cell> {
+        let edge = self.edge / n as f64;
+        let at = move |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) * edge;
+        let (layers, solid) = if components == 3 { (n, 1.0) } else { (1, 0.0) };
+        (0..n * n * layers).map(move |part| {
+            let shift = Vector3::new(at(part % n), at(part / n % n), solid * at(part / (n * n)));
+            Cell { centre: self.centre + shift, edge }
+        })
+    }
 }
 
 struct Builder<'a> {
@@ -114,7 +132,7 @@ impl Builder<'_> {
         let split = (meets_boundary && self.grid.boundary_cell.is_some_and(too_large))
             || self.grid.refinements.iter().any(|refinement| {
                 too_large(refinement.size)
-                    && self.samples(&cell).iter().any(|X| refinement.part.contains(X))
+                    && self.samples(&cell).any(|X| refinement.part.contains(&X))
             });
         if split {
             for child in self.children(&cell) {
@@ -164,7 +182,7 @@ impl Builder<'_> {
     /// One point per sub-box and region at the centroid of what lies inside.
     fn parts(&mut self, cell: &Cell) -> Result<(), Error> {
         let depth = if self.components == 2 { FRACTION_DEPTH_PLANE } else { FRACTION_DEPTH };
-        for part in self.divide(cell, self.grid.gauss_points) {
+        for part in cell.divide(self.grid.gauss_points, self.components) {
             let mut moments = vec![(0.0, Vector3::zeros()); self.regions.len()];
             self.measure(&part, depth, &mut moments)?;
             for (region, (volume, moment)) in moments.into_iter().enumerate() {
@@ -176,7 +194,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Adds the inside volume of a cell and its first moment, by region.
+    /// Adds the inside volume of a cell and its first moment, by region: halves it
+    /// where the boundary is not flat, and at last takes it for flat.
     fn measure(
         &self,
         cell: &Cell,
@@ -189,14 +208,21 @@ impl Builder<'_> {
             return Ok(());
         }
         let cut = distance > -reach;
-        if depth > 0 && (cut || (self.regions.len() > 1 && self.is_mixed(cell))) {
-            for child in self.children(cell) {
-                self.measure(&child, depth - 1, moments)?;
+        let mixed = depth > 0 && self.regions.len() > 1 && self.is_mixed(cell);
+        let one_plane = match (cut, mixed) {
+            (false, false) => Some((1.0, Vector3::zeros())),
+            (true, false) if depth > 0 => self.flat_cut(cell, distance),
+            _ => None,
+        };
+        let (fraction, shift) = match one_plane {
+            Some(part) => part,
+            None if depth > 0 => {
+                return self
+                    .children(cell)
+                    .try_for_each(|child| self.measure(&child, depth - 1, moments));
             }
-            return Ok(());
-        }
-        let (fraction, shift) =
-            if cut { self.plane_cut(cell, distance) } else { (1.0, Vector3::zeros()) };
+            None => self.axis_cut(cell, distance),
+        };
         if fraction > 0.0 {
             let volume = fraction * self.volume(cell);
             let centroid = cell.centre + shift;
@@ -207,11 +233,45 @@ impl Builder<'_> {
         Ok(())
     }
 
+    /// Inside fraction of a cell and the shift of its centroid where the boundary is
+    /// flat, as far as the signed distance at centre and corners tells.
+    fn flat_cut(&self, cell: &Cell, distance: f64) -> Option<(f64, Vector3)> {
+        let near = |value: f64| value.abs() <= FLAT * cell.edge;
+        let half = 0.5 * cell.edge;
+        let ends: &[[f64; 3]] = match self.components {
+            2 => &[[1.0, 1.0, 0.0], [1.0, -1.0, 0.0]],
+            _ => &[[1.0, 1.0, 1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0], [1.0, -1.0, -1.0]],
+        };
+        let mut rises = [0.0; 4];
+        let mut slope = Vector3::zeros();
+        for (rise, end) in rises.iter_mut().zip(ends) {
+            let end = Vector3::from(*end);
+            let ahead = self.body.signed_distance(&(cell.centre + half * end));
+            let behind = self.body.signed_distance(&(cell.centre - half * end));
+            if !near(ahead + behind - 2.0 * distance) {
+                return None;
+            }
+            *rise = 0.5 * (ahead - behind);
+            slope += end * *rise;
+        }
+        // Half the change of the distance along each edge.
+        slope /= ends.len() as f64;
+        let straight =
+            rises.iter().zip(ends).all(|(rise, end)| near(slope.dot(&Vector3::from(*end)) - rise));
+        straight.then(|| {
+            let (fraction, shift) = cut::cut(distance, &(2.0 * slope));
+            (fraction, shift * cell.edge)
+        })
+    }
+
     /// Inside fraction of a small cell and the shift of its centroid, as if
     /// the boundary were a plane whose normal is the nearest axis: exact for
     /// boundaries along the grid, second order in the sub-cell for others.
-    fn plane_cut(&self, cell: &Cell, distance: f64) -> (f64, Vector3) {
+    fn axis_cut(&self, cell: &Cell, distance: f64) -> (f64, Vector3) {
         let fraction = (0.5 - distance / cell.edge).clamp(0.0, 1.0);
+        if fraction == 0.0 || fraction == 1.0 {
+            return (fraction, Vector3::zeros());
+        }
         let mut normal = self.body.gradient(&cell.centre);
         if self.components == 2 {
             normal.z = 0.0;
@@ -237,37 +297,18 @@ impl Builder<'_> {
     fn is_mixed(&self, cell: &Cell) -> bool {
         let owner = |X: &Vector3| self.regions.iter().position(|region| region.part.contains(X));
         let at_centre = owner(&cell.centre);
-        self.samples(cell).iter().any(|X| owner(X) != at_centre)
+        self.samples(cell).any(|X| owner(&X) != at_centre)
     }
 
     /// Centre and corners, the corners drawn in by a hair so that neighbours
     /// along a shared face do not claim each other's region.
-    fn samples(&self, cell: &Cell) -> Vec<Vector3> {
+    fn samples(&self, cell: &Cell) -> impl Iterator<Item = Vector3> + use<> {
         let corner = Cell { centre: cell.centre, edge: 2.0 * cell.edge * (1.0 - 1e-6) };
-        let mut samples: Vec<Vector3> = self.children(&corner).iter().map(|c| c.centre).collect();
-        samples.push(cell.centre);
-        samples
+        self.children(&corner).map(|child| child.centre).chain([cell.centre])
     }
 
-    fn children(&self, cell: &Cell) -> Vec<Cell> {
-        self.divide(cell, 2)
-    }
-
-    /// n parts per direction.
-    fn divide(&self, cell: &Cell, n: usize) -> Vec<Cell> {
-        let edge = cell.edge / n as f64;
-        let at = |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) * edge;
-        let layers = if self.components == 3 { n } else { 1 };
-        let mut parts = Vec::with_capacity(n * n * layers);
-        for k in 0..layers {
-            for j in 0..n {
-                for i in 0..n {
-                    let z = if self.components == 3 { at(k) } else { 0.0 };
-                    parts.push(Cell { centre: cell.centre + Vector3::new(at(i), at(j), z), edge });
-                }
-            }
-        }
-        parts
+    fn children(&self, cell: &Cell) -> impl Iterator<Item = Cell> + use<> {
+        cell.divide(2, self.components)
     }
 
     fn half_diagonal(&self, cell: &Cell) -> f64 {

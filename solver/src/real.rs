@@ -1,7 +1,7 @@
-//! The numbers that formulas of the hot loop are written in: one `f64`, four of
+//! The numbers that formulas of the hot loop are written in: one `f64`, eight of
 //! them side by side, or a value with its derivative in one direction.
 
-use fearless_simd::{Simd, f64x4, prelude::*};
+use fearless_simd::{Simd, f64x8, prelude::*};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What the constitutive laws and the projection ask of a number.
@@ -42,7 +42,7 @@ impl Real for f64 {
     }
 }
 
-impl<S: Simd> Real for f64x4<S> {
+impl<S: Simd> Real for f64x8<S> {
     #[inline(always)]
     fn times_plus(self, a: Self, b: Self) -> Self {
         self.mul_add(a, b)
@@ -50,7 +50,7 @@ impl<S: Simd> Real for f64x4<S> {
 
     #[inline(always)]
     fn ln(self) -> Self {
-        f64x4::from_fn(
+        f64x8::from_fn(
             self.simd,
             #[inline(always)]
             |lane| self[lane].ln(),
@@ -63,13 +63,13 @@ impl<S: Simd> Real for f64x4<S> {
     fn power_minus_two_thirds(self) -> Self {
         const START: u64 = 0x553E_F000_0000_0000;
         let x = self.abs();
-        let mut y = f64x4::from_fn(
+        let mut y = f64x8::from_fn(
             self.simd,
             #[inline(always)]
             |lane| f64::from_bits(START.wrapping_sub(x[lane].to_bits() / 3)),
         );
         for _ in 0..2 {
-            let e = (-x * y).times_plus(y * y, f64x4::splat(self.simd, 1.0));
+            let e = (-x * y).times_plus(y * y, f64x8::splat(self.simd, 1.0));
             let series = (e * (14.0 / 81.0) + 2.0 / 9.0) * e + 1.0 / 3.0;
             y = (y * e).times_plus(series, y);
         }
@@ -179,10 +179,10 @@ mod tests {
     const SAMPLES: [f64; 8] = [1e-9, 0.03, 0.7, 0.999, 1.0, 1.3, 27.0, 4e5];
 
     #[test]
-    fn four_lanes_give_the_powers_of_one() {
-        for chunk in SAMPLES.as_chunks::<4>().0 {
-            let powers: [f64; 4] = dispatch!(Level::new(), simd => {
-                f64x4::simd_from(simd, *chunk).power_minus_two_thirds().into()
+    fn eight_lanes_give_the_powers_of_one() {
+        for chunk in [SAMPLES] {
+            let powers: [f64; 8] = dispatch!(Level::new(), simd => {
+                f64x8::simd_from(simd, chunk).power_minus_two_thirds().into()
             });
             for (x, power) in chunk.iter().zip(powers) {
                 approx::assert_relative_eq!(power, x.powf(-2.0 / 3.0), max_relative = 1e-15);

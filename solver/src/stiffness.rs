@@ -44,18 +44,17 @@ fn add_projected<const D: usize>(block: &Block, modulus: f64, diagonal: &mut [f6
     let Some(projection) = &block.projection else { return };
     let mut moments = vec![[[0.0; D]; 4]; diagonal.len()];
     for patch in block.chunks() {
-        for point in patch.clone() {
+        for (i, point) in patch.points.clone().enumerate() {
             let (nodes, gradients) = block.support::<D>(point);
+            let eight = &projection.eights[patch.eights.start + i / 8];
             for (&node, gradient) in nodes.iter().zip(gradients) {
-                for (moment, basis) in
-                    moments[node as usize].iter_mut().zip(projection.basis[point].0)
-                {
-                    let factor = block.quadrature_weights[point] * basis;
+                for (moment, basis) in moments[node as usize].iter_mut().zip(&eight.basis) {
+                    let factor = block.quadrature_weights[point] * basis.0[i % 8];
                     moment.iter_mut().zip(gradient).for_each(|(m, g)| *m += factor * g);
                 }
             }
         }
-        for point in patch {
+        for point in patch.points {
             for &node in block.support::<D>(point).0 {
                 // Taken once: a node that comes again finds nothing.
                 let taken = std::mem::replace(&mut moments[node as usize], [[0.0; D]; 4]);

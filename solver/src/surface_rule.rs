@@ -2,11 +2,11 @@
 #![allow(non_snake_case)]
 
 use crate::geometry::Panel;
-use crate::mls::{Approximation, PoorSupport, Support};
+use crate::mls::{Approximation, PoorSupport};
 use crate::moments::take_moments;
 use crate::neighbours::Neighbours;
 use crate::nodes::NodeCloud;
-use crate::rows::Rows;
+use crate::rows::{Rows, Wanted};
 use crate::tensor::{Matrix3, Vector3};
 use rayon::prelude::*;
 
@@ -31,8 +31,10 @@ pub struct SurfaceRule {
     /// The points: `held` nodes first, then free panels \[m\].
     positions: Vec<Vector3>,
     held: Vec<u32>,
-    /// φ at the points.
-    rows: Rows,
+    /// φ at the held nodes.
+    held_rows: Rows,
+    /// The panels that are points.
+    free: Vec<u32>,
     /// Node and closed vector area \[m²\] of each point, if all of them are held.
     pub held_areas: Vec<(u32, Vector3)>,
 }
@@ -68,40 +70,50 @@ impl SurfaceRule {
         held.retain(|&node| cloud.on_boundary[node as usize]);
         let at = |node: &u32| cloud.positions[*node as usize];
         let near = Nearby::new(cloud, &boundary);
-        // A panel that the nodes do not reach stands where the nearest one does.
-        let centres: Vec<Vector3> = (panels.par_iter())
-            .map(|panel| match approximation.evaluate(&panel.centre) {
-                Ok(_) => panel.centre,
-                Err(_) => near.nearest(panel).map_or(panel.centre, |node| at(&node)),
-            })
-            .collect();
-        let panel_rows = values_at(approximation, &centres)?;
+        let (centres, panel_rows) = panel_rows(&panels, approximation, &near)?;
+        let positions: Vec<Vector3> = held.iter().map(at).collect();
+        let held_rows = values_at(approximation, &positions)?;
+        let shared = |panel: &Panel| -> Option<Vec<(u32, f64)>> {
+            let shares = if held.is_empty() { Vec::new() } else { near.shares(panel, components) };
+            let point =
+                |(node, share): (u32, f64)| Some((held.binary_search(&node).ok()? as u32, share));
+            let points: Option<Vec<_>> = shares.into_iter().map(point).collect();
+            points.filter(|points| !points.is_empty())
+        };
+        let shared: Vec<_> = panels.par_iter().map(shared).collect();
         let mut rule = SurfaceRule {
             panels,
             panel_rows,
             starts: vec![0],
-            positions: held.iter().map(at).collect(),
+            positions,
             held,
+            held_rows,
             ..SurfaceRule::default()
         };
-        for (p, panel) in rule.panels.iter().enumerate() {
-            let shares = near.shares(panel, components);
-            let point = |(node, _): &(u32, f64)| rule.held.binary_search(node).ok();
-            match shares.iter().map(point).collect::<Option<Vec<usize>>>() {
-                Some(points) if !points.is_empty() => {
-                    rule.points.extend(points.iter().map(|&point| point as u32));
-                    rule.shares.extend(shares.iter().map(|(_, share)| share));
+        for (panel, points) in shared.into_iter().enumerate() {
+            match points {
+                Some(points) => {
+                    rule.points.extend(points.iter().map(|(point, _)| point));
+                    rule.shares.extend(points.iter().map(|(_, share)| share));
                 }
-                _ => {
+                None => {
                     rule.points.push(rule.positions.len() as u32);
                     rule.shares.push(1.0);
-                    rule.positions.push(centres[p]);
+                    rule.positions.push(centres[panel]);
+                    rule.free.push(panel as u32);
                 }
             }
             rule.starts.push(rule.points.len());
         }
-        rule.rows = values_at(approximation, &rule.positions)?;
         Ok(rule)
+    }
+
+    /// φ at a point: rows and the one of them.
+    fn row(&self, point: usize) -> (&Rows, usize) {
+        match point.checked_sub(self.held.len()) {
+            None => (&self.held_rows, point),
+            Some(free) => (&self.panel_rows, self.free[free] as usize),
+        }
     }
 
     /// Strengths g_i of a density g on the panels, with its resultant and first
@@ -123,18 +135,19 @@ impl SurfaceRule {
                 }
             }
             if shared {
-                add(&self.panel_rows, p, &strength, &mut wanted);
+                add((&self.panel_rows, p), &strength, &mut wanted);
             }
         }
         let own: Vec<usize> = (0..held).collect();
         for _ in 0..SWEEPS {
             let mut rest = wanted.clone();
             for (c, strength) in strengths[..held].iter().enumerate() {
-                add(&self.rows, c, &-strength, &mut rest);
+                add((&self.held_rows, c), &-strength, &mut rest);
             }
-            let value = |entry: usize| self.rows.phi[entry] * rest[self.rows.nodes[entry] as usize];
+            let rows = &self.held_rows;
+            let value = |entry: usize| rows.phi[entry] * rest[rows.nodes[entry] as usize];
             let mut change: Vec<Vector3> =
-                (0..held).map(|c| self.rows.row(c).map(value).sum()).collect();
+                (0..held).map(|c| rows.row(c).map(value).sum()).collect();
             take_moments(&mut change, &sizes, &self.positions, &own, |moments, _| moments);
             strengths.iter_mut().zip(&change).for_each(|(strength, change)| *strength += change);
         }
@@ -152,7 +165,7 @@ impl SurfaceRule {
     pub fn spread(&self, nodes: usize, strengths: &[Vector3]) -> Vec<Vector3> {
         let mut sums = vec![Vector3::zeros(); nodes];
         for (point, strength) in strengths.iter().enumerate() {
-            add(&self.rows, point, strength, &mut sums);
+            add(self.row(point), strength, &mut sums);
         }
         sums
     }
@@ -166,9 +179,11 @@ impl SurfaceRule {
         components: usize,
         owns: impl Fn(u32) -> bool,
     ) -> f64 {
-        let nodes = &self.rows.nodes;
-        let own: Vec<usize> =
-            (0..areas.len()).filter(|&point| owns(nodes[self.rows.starts[point]])).collect();
+        let first = |point: usize| {
+            let (rows, row) = self.row(point);
+            rows.nodes[rows.starts[row]]
+        };
+        let own: Vec<usize> = (0..areas.len()).filter(|&point| owns(first(point))).collect();
         let sizes: Vec<f64> = areas.iter().map(|area| area.norm()).collect();
         let mut volume = 0.0;
         take_moments(areas, &sizes, &self.positions, &own, |mut moments, length| {
@@ -183,10 +198,31 @@ impl SurfaceRule {
     }
 }
 
-fn add(rows: &Rows, row: usize, strength: &Vector3, sums: &mut [Vector3]) {
+fn add((rows, row): (&Rows, usize), strength: &Vector3, sums: &mut [Vector3]) {
     for entry in rows.row(row) {
         sums[rows.nodes[entry] as usize] += rows.phi[entry] * strength;
     }
+}
+
+/// Middles of the panels and φ there. A panel that the nodes do not reach stands
+/// where the nearest one does.
+fn panel_rows(
+    panels: &[Panel],
+    approximation: &Approximation,
+    near: &Nearby,
+) -> Result<(Vec<Vector3>, Rows), (Vector3, PoorSupport)> {
+    let mut centres: Vec<Vector3> = panels.iter().map(|panel| panel.centre).collect();
+    if let Ok(rows) = values_at(approximation, &centres) {
+        return Ok((centres, rows));
+    }
+    centres.par_iter_mut().zip(panels).for_each(|(centre, panel)| {
+        if approximation.evaluate(centre).is_err() {
+            let nearest = near.nearest(panel);
+            *centre = nearest.map_or(*centre, |node| near.cloud.positions[node as usize]);
+        }
+    });
+    let rows = values_at(approximation, &centres)?;
+    Ok((centres, rows))
 }
 
 /// φ without its gradients.
@@ -194,11 +230,9 @@ fn values_at(
     approximation: &Approximation,
     positions: &[Vector3],
 ) -> Result<Rows, (Vector3, PoorSupport)> {
-    let evaluate = |X: &Vector3| approximation.evaluate(X).map_err(|poor| (*X, poor));
-    let supports: Result<Vec<Support>, _> = positions.par_iter().map(evaluate).collect();
-    let mut rows = Rows::from_supports(supports?);
-    rows.grad_phi = Vec::new();
-    Ok(rows)
+    Rows::at(approximation, positions, Wanted::Values)
+        .map(|evaluated| evaluated.rows)
+        .map_err(|(point, poor)| (positions[point], poor))
 }
 
 /// The boundary nodes, ready to be found.
@@ -235,10 +269,10 @@ impl Nearby<'_> {
     /// spacings and offsets in spacings.
     fn candidates(&self, panel: &Panel, reach: f64) -> Vec<(u32, f64, Vector3)> {
         let mut candidates = Vec::new();
-        self.cells.for_each_near(&panel.centre, reach * self.largest, |index| {
+        self.cells.for_each_within(&panel.centre, reach * self.largest, |index, offset| {
             let node = self.boundary[index];
             let spacing = self.cloud.spacing[node as usize];
-            let offset = (self.cloud.positions[node as usize] - panel.centre) / spacing;
+            let offset = offset / spacing;
             let lift = offset.dot(&panel.normal);
             let along = (offset - lift * panel.normal).norm();
             let q = offset.norm() / reach;

@@ -4,20 +4,21 @@
 use crate::moments::homogeneous;
 use crate::rows::Rows;
 use crate::tensor::Vector3;
-use nalgebra::{Matrix4, Matrix4x3};
+use nalgebra::{Matrix4, Matrix4x3, Vector4};
 
 /// Affine functions on each body, orthonormal over its nodes.
 pub(super) struct Affine<'a> {
     bodies: &'a [u32],
-    positions: &'a [Vector3],
-    /// Centre, length and inverse Cholesky factor of each body.
-    pub bases: Vec<(Vector3, f64, Matrix4<f64>)>,
+    /// The functions of its body at each node.
+    values: Vec<Vector4<f64>>,
+    /// Number of bodies.
+    pub count: usize,
 }
 
 impl Affine<'_> {
-    pub fn new<'a>(positions: &'a [Vector3], bodies: &'a [u32]) -> Affine<'a> {
+    pub fn new<'a>(positions: &[Vector3], bodies: &'a [u32]) -> Affine<'a> {
         let count = bodies.iter().max().map_or(0, |&last| last as usize + 1);
-        let bases = (0..count as u32)
+        let bases: Vec<(Vector3, f64, Matrix4<f64>)> = (0..count as u32)
             .map(|body| {
                 let own = || positions.iter().zip(bodies).filter(move |(_, b)| **b == body);
                 let centre = own().map(|(X, _)| X).sum::<Vector3>() / own().count() as f64;
@@ -41,21 +42,21 @@ impl Affine<'_> {
                 (centre, length, inverse)
             })
             .collect();
-        Affine { bodies, positions, bases }
+        let value = |(X, body): (&Vector3, &u32)| {
+            let (centre, length, inverse) = &bases[*body as usize];
+            inverse * homogeneous(&((X - centre) / *length))
+        };
+        Affine { bodies, values: positions.iter().zip(bodies).map(value).collect(), count }
     }
 
     /// Takes the affine part out of a nodal field.
     pub fn project(&self, field: &mut [Vector3]) {
-        let basis = |node: usize| {
-            let (centre, length, inverse) = &self.bases[self.bodies[node] as usize];
-            inverse * homogeneous(&((self.positions[node] - centre) / *length))
-        };
-        let mut parts = vec![Matrix4x3::<f64>::zeros(); self.bases.len()];
-        for (node, value) in field.iter().enumerate() {
-            parts[self.bodies[node] as usize] += basis(node) * value.transpose();
+        let mut parts = vec![Matrix4x3::<f64>::zeros(); self.count];
+        for ((value, p), body) in field.iter().zip(&self.values).zip(self.bodies) {
+            parts[*body as usize].ger(1.0, p, value, 1.0);
         }
-        for (node, value) in field.iter_mut().enumerate() {
-            *value -= parts[self.bodies[node] as usize].tr_mul(&basis(node));
+        for ((value, p), body) in field.iter_mut().zip(&self.values).zip(self.bodies) {
+            *value -= parts[*body as usize].tr_mul(p);
         }
     }
 }

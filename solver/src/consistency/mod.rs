@@ -13,6 +13,7 @@
 #![allow(non_snake_case)]
 
 mod affine;
+mod lattice;
 mod multilevel;
 mod operator;
 
@@ -58,7 +59,7 @@ pub fn make_consistent(
             residual[rows.nodes[entry] as usize] -= *weight * rows.grad_phi[entry];
         }
     }
-    let operator = Operator::new(rows, layout);
+    let (operator, gradients) = Operator::new(rows, layout);
     let preconditioner = Multilevel::new(&operator, layout);
     let affine = Affine::new(layout.nodes, bodies);
     affine.project(&mut residual);
@@ -67,14 +68,13 @@ pub fn make_consistent(
     let goal = (tolerance * first).max(1e-15 * size);
     let (multipliers, iterations, last) =
         solve(&operator, &preconditioner, &affine, residual, goal);
-    let changes = operator.changes(&multipliers);
-    rows.grad_phi.iter_mut().zip(changes).for_each(|(gradient, change)| *gradient += change);
+    operator.change(&multipliers, gradients);
     Correction {
         iterations,
         residual: last / first.max(f64::MIN_POSITIVE),
         tolerance: goal / first.max(f64::MIN_POSITIVE),
         defect: first / size,
-        bodies: affine.bases.len(),
+        bodies: affine.count,
     }
 }
 

@@ -4,7 +4,7 @@ use super::recipes::{Family, families};
 use super::{Challenge, Code};
 use crate::machine::{cpu_seconds, peak_memory};
 use crate::measure::median;
-use crate::run::{internal_forces, march, neighbour_visits, prepare_to_run};
+use crate::run::{Work, march, prepare_to_run};
 use anyhow::{Context, Result, bail};
 use mtled::observe::Unobserved;
 use serde::{Deserialize, Serialize};
@@ -104,6 +104,7 @@ pub fn run_here(key: &str) -> Result<Run> {
     let components = solved.prepared.model.components;
     let rows = solved.prepared.discretisation.rows_at(&truth.places)?;
     let displacement = |i| rows.interpolate(i, &solved.state.displacement, components).into();
+    let work = Work::of(&solved);
     let displacements: Vec<[f64; 3]> = (0..rows.len()).map(displacement).collect();
     Ok(Run {
         challenge: challenge.name().to_string(),
@@ -119,8 +120,8 @@ pub fn run_here(key: &str) -> Result<Run> {
         wall_s,
         peak_memory_bytes,
         steps: solved.summary.newton.map_or(solved.summary.steps, |newton| newton.iterations),
-        internal_forces: Some(internal_forces(&solved)),
-        neighbour_visits: Some(neighbour_visits(&solved)),
+        internal_forces: Some(work.force_evaluations),
+        neighbour_visits: Some(work.neighbour_visits),
         stored: false,
     })
 }

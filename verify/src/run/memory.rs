@@ -9,9 +9,8 @@ use mtled::tensor::Vector3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Estimated size of a discretisation. Measured on fourteen cubes of 343 to
-/// 42 875 nodes with supports of 21 to 56, the estimate of the memory is
-/// within 20 % of the largest resident memory of the process.
+/// Estimated size of a discretisation. Fitted to cubes of 343 to 42 875 nodes with
+/// supports of 21 to 56; on other bodies it is a rough guide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footprint {
     pub nodes: f64,
