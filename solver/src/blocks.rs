@@ -182,9 +182,16 @@ fn projection(share: f64, starts: &[usize], discretisation: &Discretisation) -> 
 pub struct Sums {
     /// Nodes of a stretch.
     pub stretch: usize,
-    /// The blocks that touch a stretch, in order, with their nodes in it and the
-    /// local numbers of these \[stretch\].
-    pub terms: Vec<Vec<(usize, Vec<(u32, u32)>)>>,
+    /// What the blocks that touch a stretch give to it, in order \[stretch\].
+    pub terms: Vec<Vec<Term>>,
+}
+
+/// What one block gives to a stretch.
+#[derive(Debug, Clone)]
+pub struct Term {
+    pub block: usize,
+    /// Nodes with their local numbers.
+    pub nodes: Vec<(u32, u32)>,
 }
 
 impl Sums {
@@ -192,12 +199,11 @@ impl Sums {
         let stretch = nodes.div_ceil(16).max(1);
         let mut terms = vec![Vec::new(); nodes.div_ceil(stretch)];
         for (index, block) in blocks.iter().enumerate() {
-            let mut numbers: Vec<(u32, u32)> =
-                block.nodes.iter().zip(0..).map(|(&node, local)| (node, local)).collect();
+            let mut numbers: Vec<(u32, u32)> = block.nodes.iter().copied().zip(0..).collect();
             numbers.sort_unstable();
-            for entries in numbers.chunk_by(|a, b| a.0 as usize / stretch == b.0 as usize / stretch)
-            {
-                terms[entries[0].0 as usize / stretch].push((index, entries.to_vec()));
+            let place = |node: u32| node as usize / stretch;
+            for nodes in numbers.chunk_by(|a, b| place(a.0) == place(b.0)) {
+                terms[place(nodes[0].0)].push(Term { block: index, nodes: nodes.to_vec() });
             }
         }
         Sums { stretch, terms }

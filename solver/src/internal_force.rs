@@ -134,10 +134,10 @@ fn sum_in_order<const D: usize>(model: &Model, blocks: &[Scratch], nodes: &mut [
     nodes.par_chunks_mut(length).zip(&model.sums.terms).enumerate().for_each(
         |(stretch, (nodes, terms))| {
             nodes.fill([0.0; D]);
-            for (block, entries) in terms {
-                for (node, local) in entries {
-                    let node = *node as usize - stretch * length;
-                    add(&mut nodes[node], &blocks[*block].f[*local as usize]);
+            for term in terms {
+                let forces = &blocks[term.block].f;
+                for (node, local) in &term.nodes {
+                    add(&mut nodes[*node as usize - stretch * length], &forces[*local as usize]);
                 }
             }
         },
@@ -146,9 +146,7 @@ fn sum_in_order<const D: usize>(model: &Model, blocks: &[Scratch], nodes: &mut [
 
 #[inline(always)]
 fn add<const D: usize>(node: &mut [f64; D], force: &Four) {
-    for k in 0..D {
-        node[k] += force.0[k];
-    }
+    node.iter_mut().zip(force.0).for_each(|(sum, f)| *sum += f);
 }
 
 fn gather<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) {

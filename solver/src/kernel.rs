@@ -218,9 +218,9 @@ fn put_columns<S: Simd, R: Lanes<S>, const D: usize>(
     group: usize,
     columns: &mut Parts<Four>,
 ) {
-    for i in 0..D {
-        for j in 0..D {
-            P[i][j].spread(
+    for (i, row) in P.iter().enumerate().take(D) {
+        for (j, entry) in row.iter().enumerate().take(D) {
+            entry.spread(
                 columns,
                 #[inline(always)]
                 |lane| ((8 * group + lane) * D + j, i),
