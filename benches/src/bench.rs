@@ -99,8 +99,10 @@ fn row(benchmark: &Benchmark, size: &Size, estimates: &Estimates, triad: Option<
     let interval = &estimates.median.confidence_interval;
     let half = 50.0 * (interval.upper_bound - interval.lower_bound) / median;
     let visits = size.points as f64 * size.neighbours;
+    // The triad is that of one thread, as the force alone is.
+    let alone = benchmark.full_id.starts_with("internal_force/");
     let share = match (size.bytes, triad) {
-        (Some(bytes), Some(triad)) => format!("{:.2}", bytes as f64 / median / triad),
+        (Some(bytes), Some(triad)) if alone => format!("{:.2}", bytes as f64 / median / triad),
         _ => "–".into(),
     };
     format!(

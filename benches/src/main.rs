@@ -7,19 +7,25 @@ mod verify;
 
 use anyhow::Context;
 use clap::Parser;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// Fill the tables of the README from the files of `cargo bench` and of
-/// `mtled verify`, and print them.
+/// Fill the tables of the README from what `mtled verify`, `mtled bench` and
+/// `mtled study race` wrote, or print the table of `cargo bench`.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
-    /// Criterion's folder.
+    /// Criterion's folder, of which the table is printed.
     #[arg(long, default_value = "target/criterion")]
     criterion: PathBuf,
     /// A results.json of `mtled verify`; fills that table instead.
-    #[arg(long, value_name = "RESULTS")]
+    #[arg(long, value_name = "RESULTS", conflicts_with_all = ["bench", "race"])]
     verify: Option<PathBuf>,
+    /// What `mtled bench` printed; fills these tables instead.
+    #[arg(long, value_name = "TABLES", conflicts_with = "race")]
+    bench: Option<PathBuf>,
+    /// A race.md of `mtled study race`; fills its first table instead.
+    #[arg(long, value_name = "RACE")]
+    race: Option<PathBuf>,
     /// The file with the markers.
     #[arg(long, default_value = "README.md")]
     readme: PathBuf,
@@ -27,15 +33,29 @@ struct Arguments {
 
 fn main() -> anyhow::Result<()> {
     let arguments = Arguments::parse();
-    let (name, table) = match &arguments.verify {
-        Some(results) => ("verify", verify::table(results)?),
-        None => ("bench", bench::table(&arguments.criterion)?),
+    let (name, table) = match &arguments {
+        Arguments { verify: Some(results), .. } => ("verify", verify::table(results)?),
+        Arguments { bench: Some(tables), .. } => ("bench", without_title(&read(tables)?)),
+        Arguments { race: Some(page), .. } => ("race", markers::first_table(&read(page)?)?),
+        _ => {
+            print!("{}", bench::table(&arguments.criterion)?);
+            return Ok(());
+        }
     };
     let readme = &arguments.readme;
-    let text = std::fs::read_to_string(readme)
-        .with_context(|| format!("cannot read {}", readme.display()))?;
-    std::fs::write(readme, markers::fill(&text, name, &table)?)
+    std::fs::write(readme, markers::fill(&read(readme)?, name, &table)?)
         .with_context(|| format!("cannot write {}", readme.display()))?;
     print!("{table}");
     Ok(())
+}
+
+fn read(path: &Path) -> anyhow::Result<String> {
+    std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))
+}
+
+/// The README has a title of its own.
+fn without_title(page: &str) -> String {
+    page.lines()
+        .filter(|line| !line.starts_with('#'))
+        .fold(String::new(), |text, line| text + line + "\n")
 }

@@ -11,9 +11,24 @@ pub fn fill(text: &str, name: &str, content: &str) -> Result<String> {
     Ok(format!("{before}{begin}\n{content}{end}{after}"))
 }
 
+/// The first table of a Markdown page.
+pub fn first_table(page: &str) -> Result<String> {
+    let row = |line: &&str| line.starts_with('|');
+    let rows = page.lines().skip_while(|line| !row(line)).take_while(row);
+    let table = rows.fold(String::new(), |text, line| text + line + "\n");
+    if table.is_empty() { Err(anyhow!("the page has no table")) } else { Ok(table) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_first_table_ends_where_its_rows_do() {
+        let page = "# title\n\n| a | b |\n|---|---|\n| 1 | 2 |\n\n| c |\n";
+        assert_eq!(first_table(page).unwrap(), "| a | b |\n|---|---|\n| 1 | 2 |\n");
+        assert!(first_table("no table\n").is_err());
+    }
 
     const PAGE: &str = "a\n<!-- bench:begin -->\nold\n<!-- bench:end -->\nb\n";
 
