@@ -150,10 +150,6 @@ const WANTED_CHANGE: f64 = 0.02;
 /// made \[–\]. Below it the step follows the growth by itself.
 const CHANGE: f64 = 0.15;
 
-/// Fall of the smallest J since the last look that has the next one taken at
-/// once \[–\]: J is known after every step, and what is crushed stiffens.
-const WANTED_JACOBIAN: f64 = 0.9;
-
 /// Follows the critical step as the body deforms and counts what is done.
 ///
 /// Between two Lanczos runs one product with the tangent now and then tells
@@ -171,8 +167,6 @@ pub(crate) struct Pace {
     growth: Option<(f64, f64)>,
     /// Steps from one look to the next, and until the next.
     looks: (usize, usize),
-    /// The smallest J at the last look.
-    jacobian: f64,
     changed: bool,
     stage: usize,
     since: usize,
@@ -198,7 +192,6 @@ impl Pace {
             time_step: control.fixed.unwrap_or(control.safety_factor * critical.time_step),
             growth: None,
             looks: (LOOKS.0, 1),
-            jacobian: 1.0,
             changed: false,
             stage: model.constraints.stage(state.time),
             since: 0,
@@ -253,9 +246,7 @@ impl Pace {
         self.summary.time_steps = (low.min(state.time_step), high.max(state.time_step));
         self.see(report.smallest_jacobian);
         self.looks.1 -= 1;
-        let jacobian = report.smallest_jacobian.jacobian;
-        if self.looks.1 == 0 || jacobian < WANTED_JACOBIAN * self.jacobian {
-            self.jacobian = jacobian;
+        if self.looks.1 == 0 {
             if self.control.fixed.is_none() {
                 self.look(model, state, buffers);
             }

