@@ -18,7 +18,7 @@ pub struct Block {
     /// Global node of each local one.
     pub nodes: Vec<u32>,
     /// Support of local point p is `starts[p]..starts[p + 1]`, filled up to whole
-    /// eights with its last node and gradients of 0.
+    /// fours with its last node and gradients of 0.
     pub starts: Vec<u32>,
     /// Local node indices \[support entry\].
     pub supports: Vec<u32>,

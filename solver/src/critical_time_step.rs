@@ -82,10 +82,9 @@ pub fn critical_time_step(
 
 /// The largest local growth \[1/s²\] of a product with the tangent at
 /// displacements `u` \[m\]: the largest, over all neighbourhoods, of the size of
-/// the image over the size of `pattern`. The
-/// pattern is replaced by its image, brought to the same size everywhere: power
-/// iteration in all neighbourhoods at once, so that one product sees the body
-/// stiffen wherever it does.
+/// the image over the size of `pattern`. The pattern is replaced by its image,
+/// brought to the same size everywhere: power iteration in all neighbourhoods at
+/// once, so that one product sees the body stiffen wherever it does.
 pub fn local_growth(
     model: &Model,
     u: &[f64],
