@@ -23,4 +23,7 @@ pub mod studies;
 pub mod bench;
 pub mod race;
 
+pub mod store;
+pub mod sweep;
+
 pub mod cli;

@@ -1,10 +1,10 @@
 //! What a run has done, counted: figures that do not depend on the machine.
 
 use super::Solved;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Counters of a run; all may be compared between machines.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
     pub steps: usize,
     /// Evaluations of the internal force.

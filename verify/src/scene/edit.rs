@@ -1,112 +1,13 @@
 //! Changes to the recipe of a case file: the text stays as it was written,
 //! comments and all, but for the keys that change.
 
-use serde::{Deserialize, Serialize};
-use std::fmt::{self, Display};
+use super::edit_load::scale_loads;
+use super::knob::{Knob, Level, Setting};
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 /// Nodes of a lattice that becomes another cloud move by this share of their
 /// distance \[–\]: enough to be another cloud, too little to be a poor one.
 const MILD_JITTER: f64 = 0.1;
-
-/// What may be changed about a recipe.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Knob {
-    /// Node spacing \[m\]; every other length of the recipe is scaled with it.
-    Spacing,
-    /// Influence radius over node spacing \[–\].
-    Dilation,
-    /// Cells along a node spacing \[–\]; smaller cells keep their ratio.
-    CellsPerSpacing,
-    GaussPoints,
-    Basis,
-    WeightFunction,
-    Mass,
-    Enforcement,
-    Gradients,
-    Dilatation,
-    /// Largest random move over the spacing \[–\]; a lattice becomes jittered.
-    Jitter,
-    /// Another cloud of the same spacing: added to the seed of a jittered or
-    /// graded cloud; a lattice is jittered by a tenth. 0 changes nothing.
-    Cloud,
-    /// Step over the critical one \[–\].
-    SafetyFactor,
-    /// How a static solution is found.
-    Solver,
-    /// Of a static solution \[–\].
-    Tolerance,
-}
-
-/// Every knob, its name on the command line and in plans, and its key.
-pub const KNOBS: &[(Knob, &str, &[&str])] = &[
-    (Knob::Spacing, "spacing", &["discretisation", "spacing"]),
-    (Knob::Dilation, "dilation", &["discretisation", "dilation"]),
-    (Knob::CellsPerSpacing, "cells_per_spacing", &["discretisation", "grid", "cells_per_spacing"]),
-    (Knob::GaussPoints, "gauss_points", &["discretisation", "grid", "gauss_points"]),
-    (Knob::Basis, "basis", &["discretisation", "basis"]),
-    (Knob::WeightFunction, "weight_function", &["discretisation", "weight_function"]),
-    (Knob::Mass, "mass", &["discretisation", "mass"]),
-    (Knob::Enforcement, "enforcement", &["discretisation", "enforcement"]),
-    (Knob::Gradients, "gradients", &["discretisation", "gradients"]),
-    (Knob::Dilatation, "dilatation", &["discretisation", "dilatation"]),
-    (Knob::Jitter, "jitter", &["discretisation", "jitter"]),
-    (Knob::Cloud, "cloud", &["discretisation", "seed"]),
-    (Knob::SafetyFactor, "safety_factor", &["time", "safety_factor"]),
-    (Knob::Solver, "solver", &["time", "solver"]),
-    (Knob::Tolerance, "tolerance", &["time", "tolerance"]),
-];
-
-impl Knob {
-    pub fn name(self) -> &'static str {
-        KNOBS.iter().find(|row| row.0 == self).map_or("", |row| row.1)
-    }
-
-    fn path(self) -> &'static [&'static str] {
-        KNOBS.iter().find(|row| row.0 == self).map_or(&[], |row| row.2)
-    }
-}
-
-/// A number or a word.
-#[derive(Debug, Clone, PartialEq, PartialOrd, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Level {
-    Number(f64),
-    Word(String),
-}
-
-impl Display for Level {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Level::Number(number) => write!(out, "{number}"),
-            Level::Word(word) => write!(out, "{word}"),
-        }
-    }
-}
-
-/// One change.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Setting {
-    pub knob: Knob,
-    pub level: Level,
-}
-
-impl Setting {
-    pub fn number(knob: Knob, value: f64) -> Setting {
-        Setting { knob, level: Level::Number(value) }
-    }
-
-    pub fn word(knob: Knob, word: &str) -> Setting {
-        Setting { knob, level: Level::Word(word.to_string()) }
-    }
-}
-
-impl Display for Setting {
-    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        write!(out, "{} {}", self.knob.name(), self.level)
-    }
-}
 
 /// Why a case cannot be changed so.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -134,7 +35,11 @@ pub fn edited(text: &str, settings: &[Setting]) -> Result<String, EditError> {
 fn change(document: &mut DocumentMut, setting: &Setting) -> Result<(), EditError> {
     let Setting { knob, level } = setting;
     match knob {
-        Knob::Spacing => respace(document, number(setting)?),
+        Knob::Spacing => respace(document, level),
+        Knob::Load => {
+            scale_loads(document, number(setting)?);
+            Ok(())
+        }
         Knob::CellsPerSpacing => rescale_cells(document, number(setting)?),
         Knob::Jitter => {
             let jitter = number(setting)?;
@@ -224,7 +129,7 @@ fn float(table: &dyn TableLike, key: &str) -> Option<f64> {
 }
 
 /// Multiplies the number under a key, if it is there.
-fn scale(table: &mut dyn TableLike, key: &str, factor: f64) {
+pub(super) fn scale(table: &mut dyn TableLike, key: &str, factor: f64) {
     if let Some(old) = float(table, key) {
         set(table, key, Value::from(rounded(old * factor)));
     }
@@ -246,7 +151,7 @@ fn scale_rows(table: &mut dyn TableLike, list: &str, key: &str, factor: f64) {
 }
 
 /// Nine digits are enough for a length, and read better than seventeen.
-fn rounded(number: f64) -> f64 {
+pub(super) fn rounded(number: f64) -> f64 {
     format!("{number:.8e}").parse().unwrap_or(number)
 }
 
@@ -257,13 +162,23 @@ fn refuse_given(recipe: &dyn TableLike, what: &'static str) -> Result<(), EditEr
     }
 }
 
-fn respace(document: &mut DocumentMut, spacing: f64) -> Result<(), EditError> {
+/// A spacing \[m\], or `x0.8` for 0.8 times the one that the case has.
+fn respace(document: &mut DocumentMut, level: &Level) -> Result<(), EditError> {
     let recipe = table(document.as_item_mut(), &["discretisation"])?;
     refuse_given(recipe, "spacing")?;
     let old = float(recipe, "spacing")
         .ok_or_else(|| EditError::Absent("discretisation.spacing".into()))?;
-    let factor = spacing / old;
-    set(recipe, "spacing", Value::from(spacing));
+    let factor = match level {
+        Level::Number(spacing) => Some(spacing / old),
+        Level::Word(word) => word.strip_prefix('x').and_then(|factor| factor.parse().ok()),
+    };
+    let factor: f64 =
+        factor.filter(|factor| *factor > 0.0 && factor.is_finite()).ok_or(EditError::Level {
+            knob: "spacing",
+            wanted: "length in metres, or a factor such as x0.8",
+            level: level.clone(),
+        })?;
+    scale(recipe, "spacing", factor);
     scale_rows(recipe, "refine", "spacing", factor);
     scale_grid(recipe, factor);
     Ok(())
@@ -311,4 +226,76 @@ fn another_cloud(document: &mut DocumentMut, seed: f64) -> Result<(), EditError>
     };
     set(recipe, "seed", Value::from(old + seed as i64));
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = r#"
+title = "Block" # a comment
+[discretisation]
+cloud = "graded"
+spacing = 0.004 # [m]
+refine = [{ where = "all", spacing = 0.003 }]
+[discretisation.grid]
+cell = 0.003
+boundary_cell = 0.0015 # half as wide
+refine = [{ where = "all", cell = 0.0015 }]
+[[prescribe]]
+displacement = { x = 0.01, z = 0 }
+[[traction]]
+traction = [0.0, 2, -4.0]
+"#;
+
+    #[test]
+    fn another_spacing_scales_every_length_of_the_recipe_and_keeps_the_comments() {
+        let half = edited(TEXT, &[Setting::word(Knob::Spacing, "x0.5")]).unwrap();
+        for line in [
+            "title = \"Block\" # a comment",
+            "spacing = 0.002 # [m]",
+            "refine = [{ where = \"all\", spacing = 0.0015 }]",
+            "cell = 0.0015\n",
+            "boundary_cell = 0.00075 # half as wide",
+            "refine = [{ where = \"all\", cell = 0.00075 }]",
+        ] {
+            assert!(half.contains(line), "{line} in {half}");
+        }
+        let metres = edited(TEXT, &[Setting::number(Knob::Spacing, 0.002)]).unwrap();
+        assert_eq!(metres, half);
+    }
+
+    #[test]
+    fn another_cell_density_keeps_the_ratio_of_small_cells() {
+        let dense = edited(TEXT, &[Setting::number(Knob::CellsPerSpacing, 2.0)]).unwrap();
+        assert!(dense.contains("cells_per_spacing = 2.0"), "{dense}");
+        assert!(!dense.contains("\ncell ="), "{dense}");
+        assert!(dense.contains("boundary_cell = 0.001 # half as wide"), "{dense}");
+    }
+
+    #[test]
+    fn a_lattice_becomes_another_cloud_by_a_mild_jitter_and_cloud_0_is_the_case_itself() {
+        let text = "[discretisation]\ncloud = \"regular\"\nspacing = 0.1\n";
+        assert_eq!(edited(text, &[Setting::number(Knob::Cloud, 0.0)]).unwrap(), text);
+        let moved = edited(text, &[Setting::number(Knob::Cloud, 3.0)]).unwrap();
+        assert!(moved.contains("cloud = \"jittered\"") && moved.contains("jitter = 0.1"), "{moved}");
+        assert!(moved.contains("seed = 4"), "{moved}");
+        assert!(edited(TEXT, &[Setting::number(Knob::Cloud, 3.0)]).unwrap().contains("seed = 3"));
+    }
+
+    #[test]
+    fn a_load_scales_all_that_moves_the_body() {
+        let half = edited(TEXT, &[Setting::number(Knob::Load, 0.5)]).unwrap();
+        assert!(half.contains("displacement = { x = 0.005, z = 0.0 }"), "{half}");
+        assert!(half.contains("traction = [0.0, 1.0, -2.0]"), "{half}");
+    }
+
+    #[test]
+    fn what_cannot_be_changed_says_why() {
+        let given = "[discretisation]\ncloud = \"file\"\n";
+        let refused = edited(given, &[Setting::number(Knob::Spacing, 0.1)]);
+        assert_eq!(refused, Err(EditError::GivenNodes("spacing")));
+        let refused = edited(TEXT, &[Setting::word(Knob::Spacing, "small")]).unwrap_err();
+        assert!(refused.to_string().contains("length in metres"), "{refused}");
+    }
 }

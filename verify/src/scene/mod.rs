@@ -10,15 +10,18 @@ mod build_time;
 mod diagnostic;
 mod document;
 mod edit;
+mod edit_load;
 mod format;
 mod format_geometry;
 mod format_recipe;
+mod knob;
 mod problem_hash;
 mod reading;
 
 pub use build_recipe::defaults;
 pub use diagnostic::{Diagnostic, Location};
-pub use edit::{EditError, KNOBS, Knob, Level, Setting, edited};
+pub use edit::{EditError, edited};
+pub use knob::{KNOBS, Knob, Level, Setting};
 pub use problem_hash::problem_hash;
 
 use document::Document;

@@ -24,7 +24,7 @@ mod manufactured_pose;
 mod manufactured_report;
 mod patch;
 mod patch_exact;
-mod plain;
+pub(crate) mod plain;
 pub(crate) mod problems;
 mod references;
 mod set_up;
@@ -35,6 +35,8 @@ mod time_step_clouds;
 mod time_step_runs;
 mod vibration;
 mod work;
+
+pub use time_step::{largest_stable_step, trial_velocity};
 
 use crate::reference::{ReferenceError, ReferenceFile, read_reference};
 use crate::run::{Record, Solved, solve_case};
@@ -237,7 +239,7 @@ fn relative_error(computed: f64, truth: f64) -> f64 {
 }
 
 /// Node spacing \[m\] of a recipe; for a graded cloud the largest.
-fn spacing_of(problem: &Problem) -> Result<f64> {
+pub fn spacing_of(problem: &Problem) -> Result<f64> {
     match problem.recipe.cloud {
         Cloud::Regular { spacing }
         | Cloud::Jittered { spacing, .. }

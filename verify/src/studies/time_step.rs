@@ -112,7 +112,7 @@ fn measure(specimen: &Specimen) -> anyhow::Result<Limits> {
 
 /// A random velocity that moves nodes by 1e-8 of the spacing in a step of the
 /// size of the per-point bound.
-pub(super) fn trial_velocity(model: &Model, spacing: &[f64]) -> Vec<f64> {
+pub fn trial_velocity(model: &Model, spacing: &[f64]) -> Vec<f64> {
     let finest = spacing.iter().copied().fold(f64::INFINITY, f64::min);
     let size = 1e-8 * finest / model.bound;
     let mut random = Random(11);
@@ -121,7 +121,7 @@ pub(super) fn trial_velocity(model: &Model, spacing: &[f64]) -> Vec<f64> {
 
 /// By bisection between a step \[s\] that is stable and one that is not; `guess`
 /// only says where to look first.
-pub(super) fn largest_stable_step(
+pub fn largest_stable_step(
     model: &Model,
     u: &[f64],
     t: f64,

@@ -1,0 +1,40 @@
+//! Scaling all that moves a body, in the text of its case file.
+
+use super::edit::{rounded, scale};
+use toml_edit::{DocumentMut, Item, Value};
+
+/// Multiplies prescribed displacements and angles, tractions, body forces and initial
+/// velocities.
+pub(super) fn scale_loads(document: &mut DocumentMut, factor: f64) {
+    let numbers = [
+        ("prescribe", "displacement", &["x", "y", "z"][..]),
+        ("prescribe", "rotation", &["angle"][..]),
+    ];
+    for (list, inner, keys) in numbers {
+        for row in rows(document, list) {
+            let Some(inner) = row.get_mut(inner).and_then(Item::as_table_like_mut) else { continue };
+            keys.iter().for_each(|key| scale(inner, key, factor));
+        }
+    }
+    let triples =
+        [("traction", "traction"), ("body_force", "acceleration"), ("initial_velocity", "velocity")];
+    for (list, key) in triples {
+        for row in rows(document, list) {
+            let Some(array) = row.get_mut(key).and_then(Item::as_array_mut) else { continue };
+            for value in array.iter_mut() {
+                let old = value.as_float().or(value.as_integer().map(|whole| whole as f64));
+                if let Some(old) = old {
+                    let decor = value.decor().clone();
+                    *value = Value::from(rounded(old * factor));
+                    *value.decor_mut() = decor;
+                }
+            }
+        }
+    }
+}
+
+/// The tables of a list such as `[[prescribe]]`.
+fn rows<'a>(document: &'a mut DocumentMut, list: &str) -> Vec<&'a mut toml_edit::Table> {
+    let tables = document.get_mut(list).and_then(Item::as_array_of_tables_mut);
+    tables.map_or(Vec::new(), |tables| tables.iter_mut().collect())
+}

@@ -1,0 +1,147 @@
+//! Ranges of settings, as they are written on the command line and in plans.
+
+use crate::scene::{KNOBS, Knob, Level, Setting};
+
+/// More levels than this on one axis are a slip of the keyboard.
+const MOST_LEVELS: usize = 1000;
+
+/// One knob and its levels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    pub knob: Knob,
+    pub levels: Vec<Level>,
+}
+
+/// What is wrong with a range.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AxisError {
+    #[error("there is no `{name}` to change; there are {}", names())]
+    Unknown { name: String },
+    #[error("{knob}: `{text}` is no list such as 1.4,1.8 and no range such as 1.4..2.6:0.2")]
+    Range { knob: &'static str, text: String },
+    #[error("{knob}: `{text}` has {count} levels; {MOST_LEVELS} are the most")]
+    TooMany { knob: &'static str, text: String, count: f64 },
+}
+
+fn names() -> String {
+    KNOBS.iter().map(|row| row.1).collect::<Vec<_>>().join(", ")
+}
+
+impl Axis {
+    /// The axis of a knob by its name.
+    pub fn named(name: &str, text: &str) -> Result<Axis, AxisError> {
+        let wanted = name.replace('-', "_");
+        let row = KNOBS.iter().find(|row| row.1 == wanted);
+        let knob = row.ok_or_else(|| AxisError::Unknown { name: name.into() })?.0;
+        Axis::parse(knob, text)
+    }
+
+    /// `1.4`, `1.4,1.8`, `linear,quadratic`, or `1.4..2.6:0.2` with both ends.
+    pub fn parse(knob: Knob, text: &str) -> Result<Axis, AxisError> {
+        let refused = || AxisError::Range { knob: knob.name(), text: text.into() };
+        let mut levels = Vec::new();
+        for part in text.split(',').map(str::trim) {
+            match part.split_once("..") {
+                Some((first, rest)) => {
+                    let (last, step) = rest.split_once(':').ok_or_else(refused)?;
+                    let [first, last, step] = [first, last, step].map(|n| n.trim().parse::<f64>());
+                    let (Ok(first), Ok(last), Ok(step)) = (first, last, step) else {
+                        return Err(refused());
+                    };
+                    levels.extend(range(first, last, step, knob, text)?);
+                }
+                None if part.is_empty() => return Err(refused()),
+                None => levels.push(match part.parse::<f64>() {
+                    Ok(number) if number.is_finite() => Level::Number(number),
+                    Ok(_) => return Err(refused()),
+                    Err(_) => Level::Word(part.to_string()),
+                }),
+            }
+        }
+        Ok(Axis { knob, levels })
+    }
+}
+
+/// From `first` to `last`, both included, in steps; nine digits, so that 1.4 + 0.2 is
+/// 1.6.
+fn range(
+    first: f64,
+    last: f64,
+    step: f64,
+    knob: Knob,
+    text: &str,
+) -> Result<Vec<Level>, AxisError> {
+    let count = ((last - first) / step + 1e-9).floor() + 1.0;
+    if !(step != 0.0 && count.is_finite() && count >= 1.0) {
+        return Err(AxisError::Range { knob: knob.name(), text: text.into() });
+    }
+    if count > MOST_LEVELS as f64 {
+        return Err(AxisError::TooMany { knob: knob.name(), text: text.into(), count });
+    }
+    let at = |n: usize| format!("{:.8e}", first + n as f64 * step);
+    Ok((0..count as usize).map(|n| Level::Number(at(n).parse().unwrap_or(first))).collect())
+}
+
+/// Every combination of levels, the last axis fastest; settings stand in the order
+/// in which they must be made.
+pub fn combinations(axes: &[Axis]) -> Vec<Vec<Setting>> {
+    let mut all = vec![Vec::new()];
+    for axis in axes {
+        all = all
+            .iter()
+            .flat_map(|so_far: &Vec<Setting>| {
+                axis.levels.iter().map(|level| {
+                    let mut settings = so_far.clone();
+                    settings.push(Setting { knob: axis.knob, level: level.clone() });
+                    settings
+                })
+            })
+            .collect();
+    }
+    all.iter_mut().for_each(|settings| settings.sort_by_key(|setting| setting.knob));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(text: &str) -> Vec<f64> {
+        let axis = Axis::parse(Knob::Dilation, text).unwrap();
+        let number = |level: &Level| match level {
+            Level::Number(number) => *number,
+            Level::Word(word) => panic!("{word}"),
+        };
+        axis.levels.iter().map(number).collect()
+    }
+
+    #[test]
+    fn ranges_hold_both_ends_and_lists_may_hold_ranges() {
+        assert_eq!(numbers("1.4..2.6:0.4"), [1.4, 1.8, 2.2, 2.6]);
+        assert_eq!(numbers("1.4..2.5:0.4"), [1.4, 1.8, 2.2]);
+        assert_eq!(numbers("2, 1..0:-0.5"), [2.0, 1.0, 0.5, 0.0]);
+    }
+
+    #[test]
+    fn slips_are_named() {
+        for text in ["", "1.4..2", "1..2:0", "2..1:0.5", "nan", "1,,2", "a..b:1"] {
+            let error = Axis::parse(Knob::Dilation, text).unwrap_err();
+            assert!(matches!(error, AxisError::Range { .. }), "{text}: {error}");
+        }
+        let error = Axis::parse(Knob::Dilation, "0..1:1e-9").unwrap_err();
+        assert!(matches!(error, AxisError::TooMany { .. }), "{error}");
+        let error = Axis::named("dilatoin", "1").unwrap_err();
+        assert!(error.to_string().contains("dilation"), "{error}");
+    }
+
+    #[test]
+    fn combinations_come_in_order_with_the_spacing_set_first() {
+        let axes = [
+            Axis::parse(Knob::Dilation, "1.6,2").unwrap(),
+            Axis::parse(Knob::Spacing, "x1,x0.5").unwrap(),
+        ];
+        let all = combinations(&axes);
+        assert_eq!(all.len(), 4);
+        assert_eq!(all[1], [Setting::word(Knob::Spacing, "x0.5"), Setting::number(Knob::Dilation, 1.6)]);
+    }
+}
