@@ -28,7 +28,9 @@ fn main() {
 fn fingerprint() -> u64 {
     let here = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").unwrap_or_default());
     let mut hasher = DefaultHasher::new();
-    for folder in ["../solver/src", "src/accuracy", "src/files", "src/run", "src/scene", "src/store"] {
+    for folder in
+        ["../solver/src", "src/accuracy", "src/files", "src/run", "src/scene", "src/store"]
+    {
         println!("cargo::rerun-if-changed={folder}");
         for file in sources(&here.join(folder)) {
             hasher.write(&std::fs::read(&file).unwrap_or_default());

@@ -26,4 +26,6 @@ pub mod race;
 pub mod store;
 pub mod sweep;
 
+pub mod budget;
+
 pub mod cli;

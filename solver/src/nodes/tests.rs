@@ -83,8 +83,18 @@ fn nodes_keep_their_distance_and_leave_no_holes() {
         for (kind, cloud, least, hole) in [
             ("regular", Cloud::Regular { spacing: 0.06 }, 0.49, 1.1),
             ("jittered", Cloud::Jittered { spacing: 0.06, jitter: 0.2, seed: 5 }, 0.2, 1.3),
-            ("graded", Cloud::Graded { spacing: 0.06, refinements: vec![], growth: 0.5, seed: 0 }, 0.5, 1.2),
-            ("graded, moved", Cloud::Graded { spacing: 0.06, refinements: vec![], growth: 0.5, seed: 7 }, 0.5, 1.2),
+            (
+                "graded",
+                Cloud::Graded { spacing: 0.06, refinements: vec![], growth: 0.5, seed: 0 },
+                0.5,
+                1.2,
+            ),
+            (
+                "graded, moved",
+                Cloud::Graded { spacing: 0.06, refinements: vec![], growth: 0.5, seed: 7 },
+                0.5,
+                1.2,
+            ),
         ] {
             let nodes = node_cloud(&body, &cloud, &dimension).unwrap();
             let closest = nearest(&nodes).into_iter().fold(f64::INFINITY, f64::min);

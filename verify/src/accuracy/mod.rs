@@ -191,4 +191,21 @@ impl Truth {
     ) -> Option<Difference> {
         difference(case, group, &self.quantities, computed)
     }
+
+    /// How far two computed answers are apart: rms over the largest value of the
+    /// kind \[–\].
+    pub fn apart(
+        &self,
+        case: &Case,
+        group: Group,
+        one: &[Vec<f64>],
+        other: &[Vec<f64>],
+    ) -> Option<f64> {
+        let moved = |(known, values): (&Agreed, &Vec<f64>)| Agreed {
+            values: values.clone(),
+            ..known.clone()
+        };
+        let other: Vec<Agreed> = self.quantities.iter().zip(other).map(moved).collect();
+        difference(case, group, &other, one).map(|difference| difference.rms)
+    }
 }

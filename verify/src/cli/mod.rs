@@ -1,15 +1,19 @@
 //! The command line: parse, dispatch, exit code.
 
 mod bench;
+mod budget;
 mod case;
 mod inspect;
 mod inspect_text;
+mod progress;
 mod python;
 mod reference;
 mod reference_solve;
 mod reference_table;
+mod runs;
 mod solve;
 mod study;
+mod sweep;
 mod verify;
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -70,9 +74,16 @@ enum Command {
     Inspect(inspect::InspectArgs),
     /// Run the verification studies and write their report (the main job).
     Verify(verify::VerifyArgs),
-    /// Compare at length what depends on the machine.
+    /// Tell how wrong a case is, where the error comes from, and what each part costs.
+    Budget(budget::BudgetArgs),
+    /// Study a case over ranges of its recipe, or race against finite elements.
     #[command(subcommand)]
     Study(study::StudyCommand),
+    /// List, show or remove the records of runs that studies have made.
+    #[command(subcommand)]
+    Runs(runs::RunsCommand),
+    /// Bring the records of several stores together.
+    Merge(runs::MergeArgs),
     /// Check, list or describe case files.
     #[command(subcommand)]
     Case(case::CaseCommand),
@@ -123,7 +134,10 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Solve(arguments) => solve::solve(arguments, &cli.common),
         Command::Inspect(arguments) => inspect::inspect(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
+        Command::Budget(arguments) => budget::budget_of(arguments, &cli.common),
         Command::Study(command) => study::study(command, &cli.common),
+        Command::Runs(command) => runs::runs(command, &cli.common),
+        Command::Merge(arguments) => runs::merge(arguments),
         Command::Case(command) => case::case(command),
         Command::Reference(command) => reference::reference(command, &cli.common),
         Command::Bench(arguments) => bench::bench(arguments, &cli.common),

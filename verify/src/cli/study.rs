@@ -1,17 +1,32 @@
-//! `mtled study`: comparisons that take minutes and depend on the machine.
+//! `mtled study`: cases over ranges of recipes, and the race.
 
 use super::python::installed;
+use super::sweep::{SweepArgs, sweep};
 use super::{Common, Format, print_data};
 use crate::machine::provenance;
 use crate::race::{Challenge, Code, Interpreter, Race, race, run_here};
 use crate::report::{json, markdown_tables, write_atomically, write_report};
 use crate::study::Report;
+use crate::sweep::Subject;
 use anyhow::Result;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Debug, Subcommand)]
 pub enum StudyCommand {
+    /// How far the discrete divergence theorem and the quadrature are off, and how
+    /// well supports are conditioned, over recipes.
+    Consistency(SweepArgs),
+    /// An affine field on the body of the case: errors over recipes.
+    Patch(SweepArgs),
+    /// Bound, Lanczos and the bisected truth of the critical step over recipes, at
+    /// rest and compressed.
+    Timestep(SweepArgs),
+    /// Errors against a reference or own finer runs over spacings, with orders and
+    /// their scatter over clouds.
+    Convergence(SweepArgs),
+    /// Which recipes and loads end soundly, and how the others end.
+    Stability(SweepArgs),
     /// Speed against error, side by side with FEniCSx and scikit-fem: the bonded
     /// block and two smooth problems over ladders of recipes and elements.
     Race(RaceArgs),
@@ -41,7 +56,17 @@ pub struct RaceArgs {
 }
 
 pub fn study(command: &StudyCommand, common: &Common) -> Result<u8> {
-    let StudyCommand::Race(arguments) = command;
+    match command {
+        StudyCommand::Consistency(arguments) => sweep(Subject::Consistency, arguments, common),
+        StudyCommand::Patch(arguments) => sweep(Subject::Patch, arguments, common),
+        StudyCommand::Timestep(arguments) => sweep(Subject::TimeStep, arguments, common),
+        StudyCommand::Convergence(arguments) => sweep(Subject::Convergence, arguments, common),
+        StudyCommand::Stability(arguments) => sweep(Subject::Stability, arguments, common),
+        StudyCommand::Race(arguments) => race_study(arguments, common),
+    }
+}
+
+fn race_study(arguments: &RaceArgs, common: &Common) -> Result<u8> {
     if let Some(key) = &arguments.run {
         print_data(&serde_json::to_string(&run_here(key)?)?)?;
         return Ok(0);

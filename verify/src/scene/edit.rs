@@ -55,9 +55,14 @@ fn change(document: &mut DocumentMut, setting: &Setting) -> Result<(), EditError
         Knob::Cloud => another_cloud(document, number(setting)?),
         Knob::Solver => {
             let time = table(document.as_item_mut(), &["time"])?;
-            for key in
-                ["tolerance", "load_steps", "max_steps", "safety_factor", "reevaluate_every", "fixed_step"]
-            {
+            for key in [
+                "tolerance",
+                "load_steps",
+                "max_steps",
+                "safety_factor",
+                "reevaluate_every",
+                "fixed_step",
+            ] {
                 time.remove(key);
             }
             set(time, "solver", value(knob, level)?);
@@ -93,10 +98,7 @@ fn number(setting: &Setting) -> Result<f64, EditError> {
 }
 
 /// The table at a path; a missing last one is made.
-fn table<'a>(
-    item: &'a mut Item,
-    path: &[&str],
-) -> Result<&'a mut dyn TableLike, EditError> {
+fn table<'a>(item: &'a mut Item, path: &[&str]) -> Result<&'a mut dyn TableLike, EditError> {
     let absent = || EditError::Absent(path.join("."));
     let mut item = item;
     for (depth, key) in path.iter().enumerate() {
@@ -278,7 +280,10 @@ traction = [0.0, 2, -4.0]
         let text = "[discretisation]\ncloud = \"regular\"\nspacing = 0.1\n";
         assert_eq!(edited(text, &[Setting::number(Knob::Cloud, 0.0)]).unwrap(), text);
         let moved = edited(text, &[Setting::number(Knob::Cloud, 3.0)]).unwrap();
-        assert!(moved.contains("cloud = \"jittered\"") && moved.contains("jitter = 0.1"), "{moved}");
+        assert!(
+            moved.contains("cloud = \"jittered\"") && moved.contains("jitter = 0.1"),
+            "{moved}"
+        );
         assert!(moved.contains("seed = 4"), "{moved}");
         assert!(edited(TEXT, &[Setting::number(Knob::Cloud, 3.0)]).unwrap().contains("seed = 3"));
     }

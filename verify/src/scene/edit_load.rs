@@ -12,12 +12,17 @@ pub(super) fn scale_loads(document: &mut DocumentMut, factor: f64) {
     ];
     for (list, inner, keys) in numbers {
         for row in rows(document, list) {
-            let Some(inner) = row.get_mut(inner).and_then(Item::as_table_like_mut) else { continue };
+            let Some(inner) = row.get_mut(inner).and_then(Item::as_table_like_mut) else {
+                continue;
+            };
             keys.iter().for_each(|key| scale(inner, key, factor));
         }
     }
-    let triples =
-        [("traction", "traction"), ("body_force", "acceleration"), ("initial_velocity", "velocity")];
+    let triples = [
+        ("traction", "traction"),
+        ("body_force", "acceleration"),
+        ("initial_velocity", "velocity"),
+    ];
     for (list, key) in triples {
         for row in rows(document, list) {
             let Some(array) = row.get_mut(key).and_then(Item::as_array_mut) else { continue };

@@ -19,6 +19,8 @@ pub enum Knob {
     Mass,
     Enforcement,
     Gradients,
+    /// Of consistent gradients, over the defect of plain ones \[–\].
+    GradientTolerance,
     Dilatation,
     /// Largest random move over the spacing \[–\]; a lattice becomes jittered.
     Jitter,
@@ -48,6 +50,7 @@ pub const KNOBS: &[(Knob, &str, &[&str])] = &[
     (Knob::Mass, "mass", &["discretisation", "mass"]),
     (Knob::Enforcement, "enforcement", &["discretisation", "enforcement"]),
     (Knob::Gradients, "gradients", &["discretisation", "gradients"]),
+    (Knob::GradientTolerance, "gradient_tolerance", &["discretisation", "gradient_tolerance"]),
     (Knob::Dilatation, "dilatation", &["discretisation", "dilatation"]),
     (Knob::Jitter, "jitter", &["discretisation", "jitter"]),
     (Knob::Cloud, "cloud", &["discretisation", "seed"]),

@@ -1,7 +1,8 @@
 //! One run, from its task to its record.
 #![allow(non_snake_case)]
 
-use super::patch::patch_errors;
+use super::affine::{held_affinely, patch_errors};
+use super::held::held_misfit;
 use super::record::{Outcome, Record, SCHEMA_VERSION, Stage, Timings};
 use super::task::{Job, Task, solver_identity};
 use crate::accuracy::{SAMPLES, values};
@@ -15,8 +16,7 @@ use cpu_time::ThreadTime;
 use mtled::critical_time_step::critical_time_step;
 use mtled::error::Error;
 use mtled::internal_force::Workspace;
-use mtled::model::Model;
-use mtled::tensor::Vector3;
+use mtled::tensor::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
 type Figures = BTreeMap<String, f64>;
@@ -76,8 +76,13 @@ fn carry_out(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<Outc
         Job::Consistency => Ok(Some(plain(discretisation_figures(case, &prepared), &prepared))),
         Job::TimeStep => {
             let mut figures = discretisation_figures(case, &prepared);
-            figures.append(&mut step_figures(&prepared));
-            Ok(Some(plain(figures, &prepared)))
+            Ok(Some(match step_figures(case, &prepared) {
+                Ok(mut steps) => {
+                    figures.append(&mut steps);
+                    plain(figures, &prepared)
+                }
+                Err(error) => refused(error.to_string()),
+            }))
         }
         Job::Patch => Ok(Some(match patch_errors(&case.problem) {
             Ok(mut errors) => {
@@ -112,6 +117,9 @@ fn solve(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<Outcome>
     }
     let record = recorder.finish();
     figures.append(&mut march_figures(&solved));
+    if let Some(misfit) = held_misfit(&case.problem, &solved)? {
+        figures.insert("held_misfit".into(), misfit);
+    }
     warnings.extend(solved.summary.crushed(&solved.prepared.model).map(|c| c.to_string()));
     Ok(Some(Outcome::Done {
         figures,
@@ -162,34 +170,47 @@ fn march_figures(solved: &Solved) -> Figures {
 /// Shares of the height by which a body is compressed for its critical step \[–\].
 pub const COMPRESSIONS: [f64; 3] = [0.0, 0.25, 0.5];
 
-/// Bound, estimate and truth of the critical step, at rest and compressed along its
-/// last axis without change of volume.
-fn step_figures(prepared: &Prepared) -> Figures {
-    let model = &prepared.model;
-    let mut figures = Figures::from([("per_point_bound_s".into(), model.bound)]);
-    let velocity = trial_velocity(model, &prepared.discretisation.cloud.spacing);
-    let mut workspace = Workspace::new(model);
+/// Bound, estimate and truth of the critical step of the case at rest; then of its
+/// body held on the whole boundary, compressed along its last axis without change of
+/// volume.
+fn step_figures(case: &Case, prepared: &Prepared) -> Result<Figures, Error> {
+    let mut figures = Figures::from([("per_point_bound_s".into(), prepared.model.bound)]);
+    let at_rest = vec![0.0; prepared.model.size()];
+    let (lanczos, stable, products) = steps(prepared, &at_rest, 0.0);
+    figures.insert("lanczos_s".into(), lanczos);
+    figures.insert("largest_stable_step_s".into(), stable);
+    figures.insert("lanczos_products".into(), products as f64);
     for compression in COMPRESSIONS {
-        let u = compressed(model, compression);
-        let critical = critical_time_step(model, &u, 0.0, None, &mut workspace);
-        let stable = largest_stable_step(model, &u, 0.0, &velocity, critical.time_step);
-        let name = |what: &str| format!("{what}_at_{:.0}_percent_s", 100.0 * compression);
-        figures.insert(name("lanczos"), critical.time_step);
+        let H = compressed(prepared.model.components, compression);
+        let held = prepare_to_run(&held_affinely(&case.problem, H))?;
+        let moved = |X: &Vector3| (0..held.model.components).map(|k| H[(k, k)] * X[k]).collect();
+        let u: Vec<f64> =
+            held.model.positions.iter().flat_map(|X| -> Vec<f64> { moved(X) }).collect();
+        let (lanczos, stable, _) = steps(&held, &u, 1.0);
+        let name = |what: &str| format!("{what}_held_at_{:.0}_percent_s", 100.0 * compression);
+        figures.insert(name("lanczos"), lanczos);
         figures.insert(name("largest_stable_step"), stable);
-        if compression == 0.0 {
-            figures.insert("lanczos_products".into(), critical.products as f64);
-        }
     }
-    figures
+    Ok(figures)
 }
 
-/// Nodal parameters of an isochoric compression: the last axis becomes shorter, the
-/// others longer.
-fn compressed(model: &Model, compression: f64) -> Vec<f64> {
-    let components = model.components;
+/// Lanczos, the largest stable step by trial \[s\], and the products that Lanczos took.
+fn steps(prepared: &Prepared, u: &[f64], t: f64) -> (f64, f64, usize) {
+    let model = &prepared.model;
+    let critical = critical_time_step(model, u, t, None, &mut Workspace::new(model));
+    let velocity = trial_velocity(model, &prepared.discretisation.cloud.spacing);
+    let stable = largest_stable_step(model, u, t, &velocity, critical.time_step);
+    (critical.time_step, stable, critical.products)
+}
+
+/// Displacement gradient of an isochoric compression: the last axis becomes shorter,
+/// the others longer.
+fn compressed(components: usize, compression: f64) -> Matrix3 {
     let along = 1.0 - compression;
     let across = along.powf(-1.0 / (components - 1) as f64);
-    let stretch = |axis: usize| if axis + 1 == components { along } else { across };
-    let moved = |X: &Vector3| (0..components).map(move |k| (stretch(k) - 1.0) * X[k]).collect();
-    model.positions.iter().flat_map(|X| -> Vec<f64> { moved(X) }).collect()
+    Matrix3::from_diagonal(&Vector3::from_fn(|axis, _| match axis {
+        axis if axis + 1 == components => along - 1.0,
+        axis if axis < components => across - 1.0,
+        _ => 0.0,
+    }))
 }

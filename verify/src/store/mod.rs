@@ -7,9 +7,10 @@
 //! to the side and renamed, so that a program that is killed leaves whole records
 //! or none.
 
+mod affine;
 mod disk;
+mod held;
 mod jobs;
-mod patch;
 mod record;
 mod runs;
 mod task;

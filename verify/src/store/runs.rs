@@ -22,7 +22,9 @@ pub struct Progress<'a> {
 
 /// The user has stopped many runs; what was done is on record.
 #[derive(Debug, thiserror::Error)]
-#[error("stopped after {done} of {of} runs; they are on record, and the same command goes on from there")]
+#[error(
+    "stopped after {done} of {of} runs; they are on record, and the same command goes on from there"
+)]
 pub struct Stopped {
     pub done: usize,
     pub of: usize,

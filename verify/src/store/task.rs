@@ -87,7 +87,8 @@ impl Task {
     pub fn key(&self) -> Result<String> {
         let mut hash = Sha256::new();
         // The hash of the case covers the files that it refers to.
-        for part in [solver_identity(), &self.source.case.hash, &self.source.text_with(&self.settings)?]
+        for part in
+            [solver_identity(), &self.source.case.hash, &self.source.text_with(&self.settings)?]
         {
             hash.update(part.len().to_le_bytes());
             hash.update(part);

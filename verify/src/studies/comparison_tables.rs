@@ -1,8 +1,8 @@
 //! Tables and figures of the comparison with the references.
 
 use super::comparison::Compared;
-use crate::accuracy::{Difference, Group};
 use super::plain::{axis, number, styled, text};
+use crate::accuracy::{Difference, Group};
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{CODES, Family, Mesh};
 use crate::study::{Cell, Plot, SeriesStyle, Table};

@@ -121,13 +121,7 @@ pub fn trial_velocity(model: &Model, spacing: &[f64]) -> Vec<f64> {
 
 /// By bisection between a step \[s\] that is stable and one that is not; `guess`
 /// only says where to look first.
-pub fn largest_stable_step(
-    model: &Model,
-    u: &[f64],
-    t: f64,
-    velocity: &[f64],
-    guess: f64,
-) -> f64 {
+pub fn largest_stable_step(model: &Model, u: &[f64], t: f64, velocity: &[f64], guess: f64) -> f64 {
     let stable = |time_step: f64| is_stable(model, u, t, velocity, time_step);
     let (mut low, mut high) = (0.98 * guess, 1.02 * guess);
     while !stable(low) {

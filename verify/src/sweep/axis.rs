@@ -142,6 +142,9 @@ mod tests {
         ];
         let all = combinations(&axes);
         assert_eq!(all.len(), 4);
-        assert_eq!(all[1], [Setting::word(Knob::Spacing, "x0.5"), Setting::number(Knob::Dilation, 1.6)]);
+        assert_eq!(
+            all[1],
+            [Setting::word(Knob::Spacing, "x0.5"), Setting::number(Knob::Dilation, 1.6)]
+        );
     }
 }

@@ -64,11 +64,7 @@ pub fn add(study: &mut Study, sweep: &Sweep, case: &Measured) {
 /// (spacing \[m\], error) of every record, by what else was set.
 type Family = (String, Vec<(f64, f64)>);
 
-fn families(
-    sweep: &Sweep,
-    case: &Measured,
-    error: &dyn Fn(&Record) -> Option<f64>,
-) -> Vec<Family> {
+fn families(sweep: &Sweep, case: &Measured, error: &dyn Fn(&Record) -> Option<f64>) -> Vec<Family> {
     let mut families: Vec<Family> = Vec::new();
     for record in &case.records {
         let (Some(h), Some(error)) = (record.figure("spacing_m"), error(record)) else { continue };
@@ -135,10 +131,10 @@ fn figure(case: &Measured, words: &str, families: &[Family], bar: f64) -> Plot {
         })
         .collect();
     let spacings = families.iter().flat_map(|family| family.1.iter().map(|s| s.0));
-    let (low, high) =
-        spacings.fold((f64::INFINITY, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
+    let (low, high) = spacings.fold((f64::INFINITY, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
     if bar > 0.0 && high > 0.0 {
-        series.push(crate::studies::plain::line("error of the truth", vec![(low, bar), (high, bar)]));
+        series
+            .push(crate::studies::plain::line("error of the truth", vec![(low, bar), (high, bar)]));
     }
     Plot {
         title: format!("{}: error of the {words} over the spacing", case.source.name),

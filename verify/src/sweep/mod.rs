@@ -9,6 +9,7 @@ mod truth;
 
 pub use axis::{Axis, AxisError, combinations};
 pub use plan::{Plan, PlanError};
+pub use tables::percent;
 pub use truth::{TruthWanted, find_truth};
 
 use crate::accuracy::{Group, Truth};
@@ -157,8 +158,12 @@ impl Sweep {
             let times = self.truth.times(source)?;
             wanted.extend(self.tasks(source, &times));
         }
-        let own: Vec<Task> =
-            wanted.into_iter().enumerate().filter(|(n, _)| n % parts + 1 == part).map(|t| t.1).collect();
+        let own: Vec<Task> = wanted
+            .into_iter()
+            .enumerate()
+            .filter(|(n, _)| n % parts + 1 == part)
+            .map(|t| t.1)
+            .collect();
         perform_all(store, &own, say)?;
         Ok(own.len())
     }
@@ -201,10 +206,10 @@ impl Sweep {
             study.tables.push(tables::timings(self, case));
         }
         study.notes.push(format!(
-            "{} clouds per combination; cloud 0 is the case's own. A lattice becomes another cloud \
+            "{} per combination; cloud 0 is the case's own. A lattice becomes another cloud \
              by a jitter of a tenth of the spacing, a jittered cloud by another seed, a graded \
              one by moving the lattices that its nodes are picked from.",
-            self.clouds
+            if self.clouds == 1 { "One cloud".into() } else { format!("{} clouds", self.clouds) }
         ));
         study
     }

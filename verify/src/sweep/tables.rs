@@ -41,9 +41,23 @@ pub fn add(study: &mut Study, sweep: &Sweep, case: &Measured) {
     let shown = match sweep.subject {
         Subject::TimeStep => {
             study.tables.push(steps(sweep, case));
-            add_figure(study, sweep, case, "largest stable step over the per-point bound", &|record| {
-                Some(stable(record, 0.0)? / record.figure("per_point_bound_s")?)
-            });
+            add_figure(
+                study,
+                sweep,
+                case,
+                "largest stable step over the per-point bound",
+                &|record| {
+                    ratio(
+                        record.figure("largest_stable_step_s"),
+                        record.figure("per_point_bound_s"),
+                    )
+                },
+            );
+            study.notes.push(
+                "Compressed: the body held on its whole boundary, shortened along its last axis and \
+                 widened to the same volume, against the same at rest."
+                    .into(),
+            );
             return;
         }
         Subject::Consistency => CONSISTENCY,
@@ -75,7 +89,9 @@ pub fn add(study: &mut Study, sweep: &Sweep, case: &Measured) {
                 record.figure("patch_displacement_error")
             });
         }
-        _ => add_figure(study, sweep, case, "smallest J", &|record| record.figure("smallest_jacobian")),
+        _ => add_figure(study, sweep, case, "smallest J", &|record| {
+            record.figure("smallest_jacobian")
+        }),
     }
 }
 
@@ -98,17 +114,17 @@ fn steps(sweep: &Sweep, case: &Measured) -> Table {
     columns.push(text("what came of it"));
     let row = |record: &Record| {
         let mut cells = setting_cells(sweep, record);
-        let at_rest = stable(record, 0.0);
+        let at_rest = record.figure("largest_stable_step_s");
         let bound = record.figure("per_point_bound_s");
         cells.push(optional(record.figure("nodes")));
         cells.push(optional(bound));
         cells.push(optional(at_rest));
         cells.push(optional(ratio(bound, at_rest)));
-        cells.push(optional(ratio(lanczos(record, 0.0), at_rest)));
+        cells.push(optional(ratio(record.figure("lanczos_s"), at_rest)));
         cells.push(optional(record.figure("lanczos_products")));
         for &compression in &COMPRESSIONS[1..] {
             let compressed = stable(record, compression);
-            cells.push(optional(ratio(compressed, at_rest)));
+            cells.push(optional(ratio(compressed, stable(record, 0.0))));
             cells.push(optional(ratio(lanczos(record, compression), compressed)));
         }
         cells.push(Cell::Text(ending(record)));
@@ -122,11 +138,11 @@ fn steps(sweep: &Sweep, case: &Measured) -> Table {
 }
 
 fn stable(record: &Record, compression: f64) -> Option<f64> {
-    record.figure(&format!("largest_stable_step_at_{:.0}_percent_s", 100.0 * compression))
+    record.figure(&format!("largest_stable_step_held_at_{:.0}_percent_s", 100.0 * compression))
 }
 
 fn lanczos(record: &Record, compression: f64) -> Option<f64> {
-    record.figure(&format!("lanczos_at_{:.0}_percent_s", 100.0 * compression))
+    record.figure(&format!("lanczos_held_at_{:.0}_percent_s", 100.0 * compression))
 }
 
 fn ratio(a: Option<f64>, b: Option<f64>) -> Option<f64> {
@@ -218,8 +234,13 @@ fn add_figure(
         else {
             continue;
         };
-        let others: Vec<String> = sweep.axes.iter().filter(|axis| axis.knob != along.knob)
-            .map(|axis| format!("{} {}", axis.knob.name().replace('_', " "), level(record, axis.knob)))
+        let others: Vec<String> = sweep
+            .axes
+            .iter()
+            .filter(|axis| axis.knob != along.knob)
+            .map(|axis| {
+                format!("{} {}", axis.knob.name().replace('_', " "), level(record, axis.knob))
+            })
             .collect();
         let name = if others.is_empty() { case.source.name.clone() } else { others.join(", ") };
         let index = curves.iter().position(|curve| curve.0 == name).unwrap_or_else(|| {

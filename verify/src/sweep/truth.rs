@@ -88,7 +88,10 @@ pub fn find_truth(
     let mut runs = Vec::new();
     for record in &records {
         if let Some(reason) = record.failure() {
-            anyhow::bail!("{}: the finer run that errors are measured against fails: {reason}", source.name);
+            anyhow::bail!(
+                "{}: the finer run that errors are measured against fails: {reason}",
+                source.name
+            );
         }
         let spacing = record.figure("spacing_m").context("a record without a spacing")?;
         runs.push((spacing, record.values().unwrap_or_default().to_vec()));

@@ -1,4 +1,4 @@
-//! The affine patch test on the body and recipe of any case.
+//! Affine fields on the body and recipe of any case: the patch test.
 #![allow(non_snake_case)]
 
 use crate::run::{march, prepare_to_run};
@@ -12,7 +12,7 @@ use mtled::tensor::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
 /// Stretch, contraction and shear of about 10 %, not symmetric.
-fn affine(components: usize) -> Matrix3 {
+fn shear(components: usize) -> Matrix3 {
     let mut H = Matrix3::new(0.08, 0.03, 0.01, 0.02, -0.05, 0.03, -0.01, 0.02, -0.02);
     if components == 2 {
         H.fill_row(2, 0.0);
@@ -21,13 +21,9 @@ fn affine(components: usize) -> Matrix3 {
     H
 }
 
-/// Largest errors of field and gradient where the whole boundary of the case's body
-/// follows u = H X and everything inside is of its first material: relative to the
-/// largest displacement and to |H| \[–\]. With consistent gradients both are as large
-/// as their tolerance lets them be; without, percents.
-pub fn patch_errors(problem: &Problem) -> Result<BTreeMap<String, f64>, Error> {
-    let components = problem.dimension.components();
-    let H = affine(components);
+/// The body and recipe of a case with nothing but u = H X on the whole boundary at
+/// t = 1 s, all of its first material.
+pub fn held_affinely(problem: &Problem, H: Matrix3) -> Problem {
     let mut problem = problem.clone();
     let material = problem.regions[0].material;
     problem.regions.iter_mut().for_each(|region| region.material = material);
@@ -42,6 +38,17 @@ pub fn patch_errors(problem: &Problem) -> Result<BTreeMap<String, f64>, Error> {
         release: None,
     }];
     problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-12 });
+    problem
+}
+
+/// Largest errors of field and gradient where the whole boundary of the case's body
+/// follows an affine field: relative to the largest displacement and to |H| \[–\]. With
+/// consistent gradients both are as large as their tolerance lets them be; without,
+/// percents.
+pub fn patch_errors(problem: &Problem) -> Result<BTreeMap<String, f64>, Error> {
+    let components = problem.dimension.components();
+    let H = shear(components);
+    let problem = held_affinely(problem, H);
     let prepared = prepare_to_run(&problem)?;
     let solved = march(&problem, prepared, &mut Unobserved)?;
     let (rows, u) = (&solved.prepared.discretisation.supports, &solved.state.displacement);
