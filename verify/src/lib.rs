@@ -27,5 +27,6 @@ pub mod store;
 pub mod sweep;
 
 pub mod budget;
+pub mod tune;
 
 pub mod cli;

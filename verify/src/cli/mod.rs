@@ -14,6 +14,7 @@ mod runs;
 mod solve;
 mod study;
 mod sweep;
+mod tune;
 mod verify;
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -39,6 +40,9 @@ const EXAMPLES: &str = "Examples:
   mtled verify --only brain --out brain_report  one study
   mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON
   mtled inspect my_case.toml                    are its nodes and supports sound?
+  mtled budget my_case.toml                     how wrong is it, why, and at what price?
+  mtled tune my_case.toml --target-error 1%     the cheapest recipe that is good enough
+  mtled study convergence my_case.toml          errors over spacings, with orders
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the cases that the program carries
   mtled bench --quick                           how fast is the solver here?
@@ -76,6 +80,8 @@ enum Command {
     Verify(verify::VerifyArgs),
     /// Tell how wrong a case is, where the error comes from, and what each part costs.
     Budget(budget::BudgetArgs),
+    /// Find the cheapest recipe that meets a wanted error, or the best for a cost.
+    Tune(tune::TuneArgs),
     /// Study a case over ranges of its recipe, or race against finite elements.
     #[command(subcommand)]
     Study(study::StudyCommand),
@@ -135,6 +141,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Inspect(arguments) => inspect::inspect(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
         Command::Budget(arguments) => budget::budget_of(arguments, &cli.common),
+        Command::Tune(arguments) => tune::tune_cases(arguments, &cli.common),
         Command::Study(command) => study::study(command, &cli.common),
         Command::Runs(command) => runs::runs(command, &cli.common),
         Command::Merge(arguments) => runs::merge(arguments),

@@ -65,7 +65,7 @@ Examples:
 /// One option per knob.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Ranges")]
-struct Ranges {
+pub struct Ranges {
     /// Node spacings [m], or factors such as x0.8.
     #[arg(long, value_name = "RANGE")]
     spacing: Option<String>,
@@ -117,7 +117,8 @@ struct Ranges {
 }
 
 impl Ranges {
-    fn axes(&self) -> Result<Vec<Axis>> {
+    /// The axes that were given.
+    pub fn axes(&self) -> Result<Vec<Axis>> {
         let given = [
             (Knob::Spacing, &self.spacing),
             (Knob::Dilation, &self.dilation),

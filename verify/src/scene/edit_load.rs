@@ -1,7 +1,38 @@
-//! Scaling all that moves a body, in the text of its case file.
+//! Scaling all that moves a body, and moving the file itself, in the text of a case.
 
 use super::edit::{rounded, scale};
-use toml_edit::{DocumentMut, Item, Value};
+use std::path::Path;
+use toml_edit::visit_mut::{VisitMut, visit_table_like_kv_mut};
+use toml_edit::{DocumentMut, Item, KeyMut, Value};
+
+/// Makes the names of other files absolute.
+struct Absolute<'a> {
+    base: &'a Path,
+}
+
+impl VisitMut for Absolute<'_> {
+    fn visit_table_like_kv_mut(&mut self, key: KeyMut<'_>, node: &mut Item) {
+        if key.get() == "file"
+            && let Some(value) = node.as_value_mut()
+            && let Some(name) = value.as_str()
+        {
+            let path = self.base.join(name);
+            let path = path.canonicalize().unwrap_or(path);
+            let decor = value.decor().clone();
+            *value = Value::from(path.display().to_string());
+            *value.decor_mut() = decor;
+        }
+        visit_table_like_kv_mut(self, key, node);
+    }
+}
+
+/// The text of a case that may stand in any folder: files that it refers to, found from
+/// `base` so far, get their whole path.
+pub fn movable(text: &str, base: &Path) -> Result<String, toml_edit::TomlError> {
+    let mut document: DocumentMut = text.parse()?;
+    Absolute { base }.visit_document_mut(&mut document);
+    Ok(document.to_string())
+}
 
 /// Multiplies prescribed displacements and angles, tractions, body forces and initial
 /// velocities.

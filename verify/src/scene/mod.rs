@@ -21,6 +21,7 @@ mod reading;
 pub use build_recipe::defaults;
 pub use diagnostic::{Diagnostic, Location};
 pub use edit::{EditError, edited};
+pub use edit_load::movable;
 pub use knob::{KNOBS, Knob, Level, Setting};
 pub use problem_hash::problem_hash;
 
