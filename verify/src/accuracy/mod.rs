@@ -1,8 +1,10 @@
 //! How wrong a run is: its numbers against a truth that carries its own error bar.
 
+mod finest;
 mod own;
 mod values;
 
+pub use finest::{Finest, finest};
 pub use own::extrapolated;
 pub use values::{SAMPLES, values};
 
@@ -172,7 +174,24 @@ impl Truth {
     pub fn carried(case: &Case) -> Option<Truth> {
         let hash = format!("\"{}\"", case.problem_hash);
         let (name, text) = REFERENCES.iter().find(|(_, text)| text.contains(&hash))?;
-        Truth::of_reference(case, text, &format!("carried reference {name}")).ok()
+        let mut truth =
+            Truth::of_reference(case, text, &format!("carried reference {name}")).ok()?;
+        if let Ok(Some(finest)) = finest(case) {
+            truth.sharpen(finest);
+        }
+        Some(truth)
+    }
+
+    /// Takes a quantity from a finer field.
+    fn sharpen(&mut self, finest: Finest) {
+        let known = self.quantities.iter_mut().find(|q| q.quantity.name == finest.quantity);
+        let Some(known) = known.filter(|known| known.values.len() == finest.values.len()) else {
+            return;
+        };
+        known.error = rms_of_points(&finest.errors, known.quantity.family.components());
+        known.values = finest.values;
+        known.errors = finest.errors;
+        self.source += &format!("; {} on a finer mesh ({})", finest.quantity, finest.source);
     }
 
     /// What is judged where the user names nothing: the first group that the case

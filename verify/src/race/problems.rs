@@ -1,17 +1,17 @@
 //! What is raced: the bonded block and two smooth problems.
 #![allow(non_snake_case)]
 
-use crate::cases::{CASES, carried_reference};
+use crate::accuracy::finest;
+use crate::cases::CASES;
 use crate::exact::manufactured::{Family, FieldKind, Manufactured};
 use crate::measure::rms_distance;
-use crate::reference::read_reference;
+use crate::reference::agreement::rms_of_points;
 use crate::scene::{Case, parse_case};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::ValueEnum;
 use mtled::material::{ElasticConstants, Material};
 use mtled::problem::{Amplitude, BodyForce, Field, Prescribed, Problem};
 use mtled::tensor::Vector3;
-use serde::Deserialize;
 use std::path::Path;
 
 /// A problem of the race.
@@ -48,8 +48,6 @@ impl Truth {
     }
 }
 
-/// The probe of the block at which displacements are compared.
-const LATTICE: &str = "lattice";
 /// Probes of smooth problems: the middles of this many cells per edge. It shares no
 /// factor with the meshes, which are best or worst at places of their own.
 const MIDDLES: usize = 13;
@@ -116,7 +114,7 @@ impl Challenge {
     pub fn truth(self) -> Result<Truth> {
         match self.solution()? {
             Some(solution) => Ok(exact(&solution)),
-            None => finest(),
+            None => finest_field(),
         }
     }
 
@@ -194,40 +192,20 @@ fn exact(solution: &Manufactured) -> Truth {
     Truth { places, displacements, uncertainty: 0.0, factor }
 }
 
-/// `reference/race/bonded_block.json`: the finest mesh.
-#[derive(Debug, Deserialize)]
-struct Finest {
-    problem_hash: String,
-    code: String,
-    /// Size of the cells of the finest mesh in `reference/data` over its own \[–\].
-    refinement: f64,
-    /// x, y, z of each position of the case's lattice in turn.
-    displacement_m: Vec<f64>,
-}
-
-/// The finest field, errors in mm. At the bonded edges no element converges faster
-/// than with order 1: the error bar is what the last refinement, by r, leaves at
-/// that order, |f₁ − f₂|/(r − 1).
-fn finest() -> Result<Truth> {
+/// The finest field, errors in mm.
+fn finest_field() -> Result<Truth> {
     let case = bonded_block()?;
-    let text = include_str!("../../../reference/race/bonded_block.json");
-    let finest: Finest = serde_json::from_str(text).context("reference/race/bonded_block.json")?;
-    if finest.problem_hash != case.problem_hash {
+    let Some(finest) = finest(&case)? else {
         bail!("reference/race/bonded_block.json belongs to another problem; make it anew");
-    }
-    let lattice = case.probes.iter().find(|probe| probe.name == LATTICE);
+    };
+    let probe = finest.quantity.rsplit('/').next().unwrap_or_default();
+    let lattice = case.probes.iter().find(|found| found.name == probe);
     let places = lattice.context("the block has no lattice")?.kind.positions();
-    let coarser = carried_reference(&case.name).context("the block has no reference")?;
-    let coarser = read_reference(&case, coarser)?;
-    let solution = coarser.solutions.iter().find(|solution| solution.code == finest.code);
-    let mesh = solution.and_then(|solution| solution.meshes.last());
-    let values = mesh.and_then(|mesh| mesh.values.get(&format!("displacement/{LATTICE}")));
-    let coarser = triples(&values.context("the reference lacks the lattice")?.flat());
-    let displacements = triples(&finest.displacement_m);
+    let displacements = triples(&finest.values);
     if displacements.len() != places.len() {
         bail!("reference/race/bonded_block.json has another lattice than the case");
     }
-    let uncertainty = 1e3 * rms_distance(&displacements, &coarser) / (finest.refinement - 1.0);
+    let uncertainty = 1e3 * rms_of_points(&finest.errors, 3);
     Ok(Truth { places, displacements, uncertainty, factor: 1e3 })
 }
 

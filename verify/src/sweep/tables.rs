@@ -1,7 +1,6 @@
 //! Records as tables and figures.
 
 use super::{Measured, Subject, Sweep, level, number_of};
-use crate::report::four_digits;
 use crate::scene::{Knob, Level};
 use crate::store::{COMPRESSIONS, Outcome, Record};
 use crate::studies::plain::{axis, curve, number, text};
@@ -285,7 +284,16 @@ pub fn middle(values: &[f64]) -> (f64, f64) {
     (0.5 * (low + high), 0.5 * (high - low))
 }
 
-/// A share in per cent, for tables that people read.
+/// A share in per cent, for people: three digits, and no powers of ten.
 pub fn percent(share: f64) -> String {
-    format!("{} %", four_digits(100.0 * share))
+    let percent = 100.0 * share;
+    match percent.abs() {
+        size if !size.is_finite() => "–".into(),
+        0.0 => "0 %".into(),
+        size if size < 1e-3 => "< 0.001 %".into(),
+        size => {
+            let decimals = (2 - size.log10().floor() as i32).max(0) as usize;
+            format!("{percent:.decimals$} %")
+        }
+    }
 }

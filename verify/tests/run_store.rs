@@ -1,0 +1,134 @@
+//! Studies whose runs are on record: killed, split, merged.
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+const STUDY: [&str; 10] = [
+    "study",
+    "convergence",
+    "uniaxial_bar",
+    "--spacing",
+    "x1.6,x1.4,x1.2,x1",
+    "--clouds",
+    "3",
+    "--threads",
+    "2",
+    "--quiet",
+];
+
+fn program() -> Command {
+    Command::new(cargo_bin_cmd!("mtled").get_program())
+}
+
+fn study(folder: &Path, store: &str, out: &str, more: &[&str]) -> Command {
+    let mut command = program();
+    command.current_dir(folder).args(STUDY).args(["--store", store, "--out", out]).args(more);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
+/// A report without what may differ from one time to the next.
+fn lasting(folder: &Path, out: &str) -> Value {
+    let text = std::fs::read_to_string(folder.join(out).join("results.json")).unwrap();
+    let mut report: Value = serde_json::from_str(&text).unwrap();
+    report["provenance"] = Value::Null;
+    report["wall_seconds"] = Value::Null;
+    for study in report["studies"].as_array_mut().unwrap() {
+        study["wall_seconds"] = Value::Null;
+        study["command"] = Value::Null;
+        let tables = study["tables"].as_array_mut().unwrap();
+        tables.retain(|table| !table["title"].as_str().unwrap().ends_with("timings"));
+    }
+    report
+}
+
+fn records(folder: &Path, store: &str) -> Vec<Value> {
+    let mut command = program();
+    command.current_dir(folder).args(["runs", "list", "--format", "json", "--store", store]);
+    let mut all: Value = serde_json::from_slice(&command.output().unwrap().stdout).unwrap();
+    let all = all.as_array_mut().unwrap();
+    all.iter_mut().for_each(|record| record["timings"] = Value::Null);
+    all.clone()
+}
+
+#[test]
+fn a_study_that_was_killed_ten_times_ends_with_the_results_of_an_undisturbed_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    assert!(study(folder, "calm", "calm_report", &[]).status().unwrap().success());
+    for n in 0..10 {
+        let mut child = study(folder, "killed", "killed_report", &[]).spawn().unwrap();
+        // From the very beginning to where some runs are done.
+        std::thread::sleep(Duration::from_millis(7 + 23 * n));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // Whatever is there can be read: whole records or none.
+        records(folder, "killed");
+    }
+    assert!(study(folder, "killed", "killed_report", &[]).status().unwrap().success());
+    assert_eq!(records(folder, "killed"), records(folder, "calm"));
+    assert_eq!(lasting(folder, "killed_report"), lasting(folder, "calm_report"));
+}
+
+#[test]
+fn four_parts_merged_are_the_whole_study_and_nothing_is_run_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    assert!(study(folder, "whole", "whole_report", &[]).status().unwrap().success());
+    let mut merge = program();
+    merge.current_dir(folder).args(["merge", "--into", "merged"]);
+    for part in 1..=4 {
+        let store = format!("part{part}");
+        let shard = ["--shard", &format!("{part}/4")];
+        assert!(study(folder, &store, "no_report", &shard).status().unwrap().success());
+        merge.arg(&store);
+    }
+    assert!(!folder.join("no_report").exists());
+    assert!(merge.stdout(Stdio::null()).status().unwrap().success());
+    assert_eq!(records(folder, "merged"), records(folder, "whole"));
+    let before = std::fs::read_dir(folder.join("merged")).unwrap().count();
+    assert!(study(folder, "merged", "merged_report", &[]).status().unwrap().success());
+    assert_eq!(std::fs::read_dir(folder.join("merged")).unwrap().count(), before);
+    assert_eq!(lasting(folder, "merged_report"), lasting(folder, "whole_report"));
+}
+
+#[test]
+fn records_of_other_sources_and_leftovers_are_pruned() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut consistency = program();
+    consistency.current_dir(folder).args(["study", "consistency", "cube_compression", "--quiet"]);
+    consistency.args(["--dilation", "1.8", "--cells-per-spacing", "1.26", "--store", "runs"]);
+    assert!(consistency.stdout(Stdio::null()).status().unwrap().success());
+    let record = &records(folder, "runs")[0];
+    let key = record["key"].as_str().unwrap();
+    let file = folder.join("runs").join(&key[..2]).join(format!("{key}.json"));
+    let text = std::fs::read_to_string(&file).unwrap();
+    let solver = record["solver"].as_str().unwrap();
+    std::fs::write(&file, text.replace(solver, "0.0.0+other")).unwrap();
+    std::fs::write(file.with_file_name(format!(".{key}.json.7.tmp")), "half").unwrap();
+    let prune = program().current_dir(folder).args(["runs", "prune", "--store", "runs"]).output();
+    let said = String::from_utf8(prune.unwrap().stdout).unwrap();
+    assert!(said.contains("1 records removed, 1 files"), "{said}");
+    assert!(records(folder, "runs").is_empty());
+}
+
+#[test]
+fn a_range_that_cannot_be_read_and_a_case_that_is_not_there_end_with_code_2() {
+    for (arguments, words) in [
+        (vec!["study", "patch", "cube_compression", "--dilation", "1.4..2"], "1.4..2.6:0.2"),
+        (vec!["study", "patch", "no_such_case"], "no case file no_such_case"),
+        (vec!["tune", "no_such_case"], "no case file no_such_case"),
+        (vec!["tune", "cube_compression", "--target-error", "2"], "no share"),
+        (vec!["budget", "cube_compression", "--truth", "no_file.json"], "no_file.json"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let output = program().current_dir(folder.path()).args(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains(words), "{arguments:?}: {said}");
+    }
+}
