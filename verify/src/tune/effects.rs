@@ -43,7 +43,8 @@ pub fn one_at_a_time(bench: &mut Bench, winner: &Trial) -> Result<Vec<Trial>> {
     }
     let mut points = Vec::new();
     for change in changes {
-        let settings = own.iter().cloned().chain(change).collect();
+        let kept = own.iter().filter(|old| change.iter().all(|new| new.knob != old.knob));
+        let settings = kept.cloned().chain(change.iter().cloned()).collect();
         points.push((bench.candidates.len(), winner.factor));
         bench.candidates.push(Candidate { settings, factorial: false });
     }
@@ -54,15 +55,16 @@ pub fn one_at_a_time(bench: &mut Bench, winner: &Trial) -> Result<Vec<Trial>> {
     bench.trials(&points, &clouds)
 }
 
-/// What a change of the winner is called: the settings that it adds.
+/// What a change of the winner is called: the settings in which it differs.
 pub fn change_words(candidates: &[Candidate], winner: &Trial, change: &Trial) -> String {
     if change.candidate == winner.candidate {
         return format!("spacing x{:.3}", change.factor / winner.factor);
     }
-    let own = candidates[winner.candidate].settings.len();
-    let added = &candidates[change.candidate].settings[own..];
+    let own = &candidates[winner.candidate].settings;
+    let changed = &candidates[change.candidate].settings;
+    let added = changed.iter().filter(|setting| !own.contains(setting));
     let words: Vec<String> =
-        added.iter().map(|s| format!("{} {}", s.knob.name().replace('_', " "), s.level)).collect();
+        added.map(|s| format!("{} {}", s.knob.name().replace('_', " "), s.level)).collect();
     words.join(", ")
 }
 
