@@ -69,8 +69,8 @@ pub fn consistency(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
         columns: columns(),
         rows,
     });
-    study.figures.push(Figure::Plot(condition_figure()?));
-    study.figures.push(Figure::Plot(regularisation_figure()?));
+    study.figures.push(Figure::Plot(condition_figure(bench)?));
+    study.figures.push(Figure::Plot(regularisation_figure(bench)?));
     study.notes.push(format!(
         "Clouds of 6 nodes along each edge, spacing {SPACING} m, jitter 0, 0.15, 0.3 and 0.45 of the \
          spacing, at 0, 1 and 10 m from the origin; dilation 1.8 (linear), 2.7 (quadratic) and 2 \
@@ -90,7 +90,7 @@ fn measure(
     let components = dimension.components();
     let mut errors = Errors::default();
     for (index, jitter) in JITTERS.into_iter().enumerate() {
-        for seed in 0..bench.pick(3, 10) {
+        for seed in (0..bench.pick(3, 10)).map(|seed| bench.seed(seed)) {
             let cloud = cloud(dimension, jitter, seed)?;
             let mut random = Random(1000 * seed + index as u64);
             let points: Vec<Vector3> =
@@ -255,9 +255,9 @@ fn row(place: &str, order: &str, weight_function: WeightFunction, errors: &Error
 
 /// Condition number against distance from the origin: flat in the local
 /// basis, growing with monomials in the coordinates themselves.
-fn condition_figure() -> anyhow::Result<Plot> {
+fn condition_figure(bench: &Workbench) -> anyhow::Result<Plot> {
     let dimension = Dimension::Three;
-    let cloud = cloud(dimension, 0.3, 1)?;
+    let cloud = cloud(dimension, 0.3, bench.seed(1))?;
     let X = Vector3::new(0.43, 0.52, 0.37) * SIZE;
     let mut series = Vec::new();
     for (basis, name) in [(Basis::Linear, "linear"), (Basis::Quadratic, "quadratic")] {
@@ -290,9 +290,9 @@ fn condition_figure() -> anyhow::Result<Plot> {
 }
 
 /// Error of squares against the regularisation of the modified basis.
-fn regularisation_figure() -> anyhow::Result<Plot> {
+fn regularisation_figure(bench: &Workbench) -> anyhow::Result<Plot> {
     let dimension = Dimension::Three;
-    let cloud = cloud(dimension, 0.3, 1)?;
+    let cloud = cloud(dimension, 0.3, bench.seed(1))?;
     let X = Vector3::new(0.43, 0.52, 0.37) * SIZE;
     let mut errors = Vec::new();
     for power in -8..=-1 {

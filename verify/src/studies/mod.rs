@@ -36,6 +36,7 @@ mod time_step_runs;
 mod vibration;
 mod work;
 
+use self::problems::Random;
 use crate::reference::{ReferenceError, ReferenceFile, read_reference};
 use crate::run::{Record, Solved, solve_case};
 use crate::scene::{Case, read_case};
@@ -53,6 +54,11 @@ pub enum Suite {
     Full,
 }
 
+/// Seeds of one run do not meet those of the next.
+const SEEDS_APART: u64 = 1000;
+/// How far the clouds of carried cases move with another seed \[spacing\].
+const VARIATION: f64 = 0.02;
+
 /// A study by name.
 pub struct Definition {
     pub id: &'static str,
@@ -65,6 +71,8 @@ pub struct Definition {
 #[derive(Debug)]
 pub struct Workbench {
     pub suite: Suite,
+    /// Which family of clouds: 0 is the one that all stated figures belong to.
+    seed: u64,
     cases: PathBuf,
 }
 
@@ -184,12 +192,48 @@ pub const STUDIES: &[Definition] = &[
 
 impl Workbench {
     /// Unpacks the carried cases into the output folder.
-    pub fn new(suite: Suite, out: &Path) -> Result<Workbench> {
-        Ok(Workbench { suite, cases: crate::cases::unpack(out)? })
+    pub fn new(suite: Suite, seed: u64, out: &Path) -> Result<Workbench> {
+        Ok(Workbench { suite, seed, cases: crate::cases::unpack(out)? })
     }
 
-    /// A carried case.
+    /// The seed of a random cloud in this run, for one that is stated.
+    pub fn seed(&self, stated: u64) -> u64 {
+        stated + SEEDS_APART * self.seed
+    }
+
+    /// Gives a jittered cloud the seed of this run.
+    pub fn reseed(&self, problem: &mut Problem) {
+        if let Cloud::Jittered { seed, .. } = &mut problem.recipe.cloud {
+            *seed = self.seed(*seed);
+        }
+    }
+
+    /// A carried case; with another seed on a cloud that differs a little.
     pub fn case(&self, name: &str) -> Result<Case> {
+        let case = self.stated_case(name)?;
+        if self.seed == 0 { Ok(case) } else { self.varied(case) }
+    }
+
+    /// A lattice jittered by [`VARIATION`] of its spacing; a graded cloud, which
+    /// takes no seed, with up to as much more or less spacing, cells and all.
+    fn varied(&self, mut case: Case) -> Result<Case> {
+        let seed = self.seed(0);
+        match case.problem.recipe.cloud {
+            Cloud::Regular { spacing } => {
+                case.problem.recipe.cloud = Cloud::Jittered { spacing, jitter: VARIATION, seed };
+            }
+            Cloud::Graded { spacing, .. } => {
+                let share = VARIATION * Random(seed).symmetric();
+                return respaced(&case, spacing * (1.0 + share));
+            }
+            Cloud::Jittered { .. } => self.reseed(&mut case.problem),
+            Cloud::Given { .. } => {}
+        }
+        Ok(case)
+    }
+
+    /// A carried case on the very cloud of its file.
+    pub fn stated_case(&self, name: &str) -> Result<Case> {
         read_case(&self.cases.join(format!("{name}.toml"))).map_err(|mistakes| {
             let lines: Vec<String> = mistakes.iter().map(|mistake| mistake.to_string()).collect();
             anyhow!("{}", lines.join("\n"))
