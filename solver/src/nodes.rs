@@ -52,8 +52,9 @@ pub fn node_cloud(
                 _ => regular::in_solid(&section, *spacing, random, dimension)?,
             }
         }
-        Cloud::Graded { spacing, refinements, growth } => {
-            graded::graded(&section, *spacing, refinements, *growth, dimension)?
+        Cloud::Graded { spacing, refinements, growth, seed } => {
+            let sizes = graded::Wanted { spacing: *spacing, refinements, growth: *growth };
+            graded::graded(&section, &sizes, *seed, dimension)?
         }
         Cloud::Given { nodes } => given::given(&section, nodes, dimension)?,
     };

@@ -58,7 +58,8 @@ pub enum Cloud {
     Jittered { spacing: f64, jitter: f64, seed: u64 },
     /// Spacing that varies: `spacing` \[m\] far away, each refinement its own
     /// spacing inside its part, growing by at most `growth` per unit length.
-    Graded { spacing: f64, refinements: Vec<Refinement>, growth: f64 },
+    /// Another `seed` than 0 moves the tree of lattices that nodes are picked from.
+    Graded { spacing: f64, refinements: Vec<Refinement>, growth: f64, seed: u64 },
     /// Nodes given one by one \[m\]; the local spacing is estimated.
     Given { nodes: Vec<Vector3> },
 }

@@ -25,7 +25,7 @@ fn pushed(mass_scaling: f64) -> Problem {
     let fine = |size| vec![Refinement { part: part.clone(), size }];
     problem.recipe.grid.refinements = fine(0.002);
     problem.recipe.cloud =
-        Cloud::Graded { spacing: EDGE / 10.0, refinements: fine(EDGE / 30.0), growth: 0.6 };
+        Cloud::Graded { spacing: EDGE / 10.0, refinements: fine(EDGE / 30.0), growth: 0.6, seed: 0 };
     problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
     let mut top = condition("top", face(1, EDGE), [None, Some(-0.1 * EDGE), None]);
     top.amplitude = Amplitude::Smooth { duration: 4.0 };

@@ -16,6 +16,8 @@ pub mod report;
 pub mod cases;
 pub mod machine;
 pub mod run;
+
+pub mod accuracy;
 pub mod studies;
 
 pub mod bench;

@@ -1,6 +1,8 @@
 //! Clouds whose spacing varies.
 #![allow(non_snake_case)]
 
+use super::random::SplitMix64;
+use super::regular::in_dimension;
 use super::{MOST_NODES, NodeCloud};
 use crate::geometry::{
     GeometryError, PointHash, ScalarGrid, Seed, Shape, Sizes, boundary_points_sized, positive,
@@ -15,6 +17,15 @@ const MOST_SAMPLES: f64 = 4e6;
 const APART: f64 = 0.85;
 /// Distance of candidates \[spacing\].
 const CANDIDATE: f64 = 1.0 / 3.0;
+
+/// What sizes are wanted.
+pub(super) struct Wanted<'a> {
+    /// Far from all refinements \[m\].
+    pub spacing: f64,
+    pub refinements: &'a [Refinement],
+    /// Of the spacing per length \[–\].
+    pub growth: f64,
+}
 
 /// Wanted spacing h(X) = min(`spacing`, size + growth · distance to the part)
 /// \[m\] over all refinements.
@@ -84,11 +95,11 @@ impl<'a> SizeField<'a> {
 /// if no node is nearer than 0.85 of its spacing.
 pub(super) fn graded(
     body: &Shape,
-    spacing: f64,
-    refinements: &[Refinement],
-    growth: f64,
+    wanted: &Wanted,
+    seed: u64,
     dimension: &Dimension,
 ) -> Result<NodeCloud, GeometryError> {
+    let Wanted { spacing, refinements, growth } = *wanted;
     positive("the nodal spacing", spacing)?;
     for refinement in refinements {
         positive("the size of a refinement", refinement.size)?;
@@ -108,7 +119,13 @@ pub(super) fn graded(
     boundary.points.iter().for_each(|X| hash.insert(*X));
     let count = boundary.points.len();
     let mut positions = boundary.points;
-    let (lower, upper) = body.finite_bounds(dimension)?;
+    let (mut lower, mut upper) = body.finite_bounds(dimension)?;
+    if seed > 0 {
+        // The lattices are centred in this box: moved by up to half a spacing, and
+        // as much larger, it still covers the body.
+        let by = 0.5 * spacing * in_dimension(SplitMix64(seed).vector(), dimension);
+        (lower, upper) = (lower + by - by.abs(), upper + by + by.abs());
+    }
     candidates(body, &field, lower, upper, dimension, &mut |X, size| {
         if !hash.any_within(&X, APART * size) {
             hash.insert(X);

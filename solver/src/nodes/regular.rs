@@ -107,7 +107,7 @@ pub(super) fn in_solid(
     Ok(NodeCloud { positions, spacing, on_boundary })
 }
 
-fn in_dimension(mut v: Vector3, dimension: &Dimension) -> Vector3 {
+pub(super) fn in_dimension(mut v: Vector3, dimension: &Dimension) -> Vector3 {
     if let Dimension::PlaneStrain { .. } = dimension {
         v.z = 0.0;
     }

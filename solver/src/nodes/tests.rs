@@ -83,7 +83,8 @@ fn nodes_keep_their_distance_and_leave_no_holes() {
         for (kind, cloud, least, hole) in [
             ("regular", Cloud::Regular { spacing: 0.06 }, 0.49, 1.1),
             ("jittered", Cloud::Jittered { spacing: 0.06, jitter: 0.2, seed: 5 }, 0.2, 1.3),
-            ("graded", Cloud::Graded { spacing: 0.06, refinements: vec![], growth: 0.5 }, 0.5, 1.2),
+            ("graded", Cloud::Graded { spacing: 0.06, refinements: vec![], growth: 0.5, seed: 0 }, 0.5, 1.2),
+            ("graded, moved", Cloud::Graded { spacing: 0.06, refinements: vec![], growth: 0.5, seed: 7 }, 0.5, 1.2),
         ] {
             let nodes = node_cloud(&body, &cloud, &dimension).unwrap();
             let closest = nearest(&nodes).into_iter().fold(f64::INFINITY, f64::min);
@@ -128,7 +129,7 @@ fn a_graded_cloud_follows_the_wanted_size() {
         tolerance: 0.0,
     };
     let refinements = vec![Refinement { part, size: 0.03 }];
-    let graded = Cloud::Graded { spacing: 0.1, refinements, growth: 0.3 };
+    let graded = Cloud::Graded { spacing: 0.1, refinements, growth: 0.3, seed: 0 };
     for dimension in [PLANE, Dimension::Three] {
         let cloud = node_cloud(&l_shape(), &graded, &dimension).unwrap();
         for (X, spacing) in cloud.positions.iter().zip(&cloud.spacing) {
@@ -189,6 +190,6 @@ fn clouds_that_are_none_are_refused() {
         tolerance: 0.0,
     };
     let refinements = vec![Refinement { part: nowhere, size: 0.05 }];
-    let error = refused(Cloud::Graded { spacing: 0.1, refinements, growth: 0.2 });
+    let error = refused(Cloud::Graded { spacing: 0.1, refinements, growth: 0.2, seed: 0 });
     assert_eq!(error, GeometryError::RefinementEmpty { refinement: 0, size: 0.05 });
 }

@@ -150,7 +150,7 @@ impl Builder<'_> {
         let cloud = format.cloud;
         let keys = [
             ("jitter", format.jitter.is_some(), cloud == Jittered, "jittered"),
-            ("seed", format.seed.is_some(), cloud == Jittered, "jittered"),
+            ("seed", format.seed.is_some(), matches!(cloud, Jittered | Graded), "jittered"),
             ("file", format.file.is_some(), cloud == File, "file"),
             ("refine", format.refine.is_some(), cloud == Graded, "graded"),
             ("growth", format.growth.is_some(), cloud == Graded, "graded"),
@@ -202,7 +202,8 @@ impl Builder<'_> {
             let part = self.selector(&format!("{key}.where"), &row.part);
             refinements.extend(part.map(|part| Refinement { part, size: row.spacing }));
         }
-        Some(Cloud::Graded { spacing: format.spacing?, refinements, growth })
+        let seed = format.seed.unwrap_or(0);
+        Some(Cloud::Graded { spacing: format.spacing?, refinements, growth, seed })
     }
 
     fn given(&mut self, format: &DiscretisationFormat) -> Option<Cloud> {

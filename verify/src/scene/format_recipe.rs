@@ -14,7 +14,8 @@ pub struct DiscretisationFormat {
     pub spacing: Option<f64>,
     /// Largest random move over the spacing [–], in [0, 0.5); for "jittered".
     pub jitter: Option<f64>,
-    /// Of the random numbers; for "jittered", 1 if left out.
+    /// Of the random numbers; for "jittered", 1 if left out, and for "graded", 0 if
+    /// left out, which moves nothing.
     pub seed: Option<u64>,
     /// Node positions [m] (CSV, NPY, VTU, VTK), path relative to the case
     /// file; for "file".

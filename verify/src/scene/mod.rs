@@ -9,6 +9,7 @@ mod build_recipe;
 mod build_time;
 mod diagnostic;
 mod document;
+mod edit;
 mod format;
 mod format_geometry;
 mod format_recipe;
@@ -17,6 +18,7 @@ mod reading;
 
 pub use build_recipe::defaults;
 pub use diagnostic::{Diagnostic, Location};
+pub use edit::{EditError, KNOBS, Knob, Level, Setting, edited};
 pub use problem_hash::problem_hash;
 
 use document::Document;
@@ -99,6 +101,11 @@ impl Case {
     /// tables can be entered by name too, as in `prescribe.top`.
     pub fn locate(&self, key: &str) -> Option<Location> {
         self.document.locate(key)
+    }
+
+    /// The file as it was read.
+    pub fn text(&self) -> &str {
+        self.document.text()
     }
 
     /// A mistake that shows only after reading, such as a condition that

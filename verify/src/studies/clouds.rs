@@ -115,7 +115,7 @@ fn grade(problem: &mut Problem, random: &mut Random, spacing: f64) {
     let refinements = vec![Refinement { part, size }];
     problem.recipe.grid.refinements =
         vec![Refinement { size: size / 1.26, ..refinements[0].clone() }];
-    problem.recipe.cloud = Cloud::Graded { spacing, refinements, growth: 0.5 };
+    problem.recipe.cloud = Cloud::Graded { spacing, refinements, growth: 0.5, seed: 0 };
 }
 
 /// One half up to 600 times stiffer.

@@ -3,22 +3,15 @@
 use super::Workbench;
 use super::comparison_limits::{Limits, WANTED, limits};
 use super::comparison_tables::{brain_table, cost_figure, differences_table};
+use crate::accuracy::{Difference, Group, SAMPLES, difference, values};
 use crate::cases::CASES;
-use crate::reference::agreement::rms_of_points;
-use crate::reference::{Agreed, Family, Quantity, ReferenceFile, agree, is_dynamic, quantities};
-use crate::run::{Record, Sample, Solved, solve_case};
-use crate::scene::{Case, ProbeKind};
+use crate::reference::{Agreed, ReferenceFile, agree, is_dynamic};
+use crate::run::{Solved, solve_case};
+use crate::scene::Case;
 use crate::study::{Bound, Check, Figure, Kind, Study};
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use cpu_time::ThreadTime;
-use mtled::tensor::Vector3;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Samples of a dynamic run; values between them are interpolated linearly.
-const SAMPLES: usize = 1000;
-
-/// What is smaller than this share of its kind counts as zero \[–\].
-const ZERO: f64 = 1e-6;
 
 /// One case, computed and referred to.
 pub struct Compared {
@@ -30,17 +23,6 @@ pub struct Compared {
     pub references: Vec<Agreed>,
     /// Computed numbers at the instants of the reference, like its values.
     pub computed: Vec<Vec<f64>>,
-}
-
-/// A difference from the reference, relative to the largest number of its kind
-/// in the case \[–\].
-#[derive(Debug, Clone, Copy)]
-pub struct Difference {
-    /// Over points and instants.
-    pub rms: f64,
-    pub max: f64,
-    /// The reference's own error, rms.
-    pub bar: f64,
 }
 
 pub fn comparison(bench: &Workbench, study: &mut Study) -> Result<()> {
@@ -116,111 +98,24 @@ fn compare(bench: &Workbench, name: &str) -> Result<Compared> {
     });
     let (solved, record) = result?;
     let references: Vec<Agreed> = agree(&case, &file).iter().map(|a| a.reference()).collect();
-    let computed = quantities(&case)
-        .iter()
-        .map(|quantity| series(&case, &record, quantity, &file.times_s))
-        .collect::<Result<_>>()?;
+    let computed = values(&case, &record, &file.times_s)?;
     Ok(Compared { case, file, solved, cpu, references, computed })
 }
 
-/// The numbers of a quantity at `times` \[s\], instant by instant.
-fn series(case: &Case, record: &Record, quantity: &Quantity, times: &[f64]) -> Result<Vec<f64>> {
-    if !quantity.changes {
-        return numbers(case, record, quantity, record.samples.last().context("no sample")?);
-    }
-    let mut all = Vec::new();
-    for time in times {
-        let (before, after, share) = around(case, record, *time)?;
-        let before = numbers(case, record, quantity, before)?;
-        let after = numbers(case, record, quantity, after)?;
-        all.extend(before.iter().zip(&after).map(|(a, b)| a + share * (b - a)));
-    }
-    Ok(all)
-}
-
-/// The samples around a time and where it lies between them; a static case has
-/// its last sample only.
-fn around<'a>(case: &Case, record: &'a Record, time: f64) -> Result<(&'a Sample, &'a Sample, f64)> {
-    let last = record.samples.last().context("nothing was recorded")?;
-    if !is_dynamic(case) {
-        return Ok((last, last, 0.0));
-    }
-    let index = record.samples.partition_point(|sample| sample.time < time);
-    let after = record.samples.get(index).unwrap_or(last);
-    let before = &record.samples[index.saturating_sub(1)];
-    let length = after.time - before.time;
-    let share = if length > 0.0 { ((time - before.time) / length).clamp(0.0, 1.0) } else { 0.0 };
-    Ok((before, after, share))
-}
-
-/// The numbers of a quantity in one sample.
-fn numbers(case: &Case, record: &Record, quantity: &Quantity, sample: &Sample) -> Result<Vec<f64>> {
-    let name = quantity.name.split_once('/').map_or("", |(_, name)| name);
-    let probe = || case.probes.iter().position(|probe| probe.name == name);
-    let condition = || case.problem.conditions.iter().position(|c| c.name == name);
-    let flat = |vectors: &[Vector3]| vectors.iter().flat_map(|v| [v.x, v.y, v.z]).collect();
-    let found = match quantity.family {
-        Family::Displacement => probe().map(|index| flat(&sample.displacements[index])),
-        Family::Centre => probe().map(|index| flat(&record.references[index])),
-        Family::Force => condition().map(|index| flat(&[sample.reactions[index].force])),
-        Family::Moment => condition().map(|index| flat(&[sample.reactions[index].moment])),
-        Family::StrainEnergy => Some(vec![sample.energies.strain]),
-        Family::KineticEnergy => Some(vec![sample.energies.kinetic]),
-    };
-    found.ok_or_else(|| anyhow!("nothing was recorded of {}", quantity.name))
-}
-
 impl Compared {
-    /// The difference over all quantities of a family for which `wanted` holds;
-    /// none where there are none or all vanish, as moments do by symmetry.
-    pub fn difference(
-        &self,
-        family: Family,
-        wanted: impl Fn(&Quantity) -> bool,
-    ) -> Option<Difference> {
-        let components = family.components();
-        let (mut apart, mut errors) = (Vec::new(), Vec::new());
-        let (mut largest, mut max, mut zero) = (0.0f64, 0.0f64, 0.0f64);
-        for (reference, computed) in self.references.iter().zip(&self.computed) {
-            if reference.quantity.family != family || !wanted(&reference.quantity) {
-                continue;
-            }
-            let length = |vector: &[f64]| vector.iter().map(|v| v * v).sum::<f64>().sqrt();
-            let differences: Vec<f64> =
-                computed.iter().zip(&reference.values).map(|(a, b)| a - b).collect();
-            zero = zero.max(ZERO * reference.scale);
-            largest = reference.values.chunks(components).map(length).fold(largest, f64::max);
-            max = differences.chunks(components).map(length).fold(max, f64::max);
-            errors.extend(std::iter::repeat_n(reference.error, differences.len() / components));
-            apart.extend(differences);
-        }
-        (largest > zero).then(|| Difference {
-            rms: rms_of_points(&apart, components) / largest,
-            max: max / largest,
-            bar: rms_of_points(&errors, 1) / largest,
-        })
-    }
-
-    fn is_centre(&self, quantity: &Quantity) -> bool {
-        self.case.probes.iter().any(|probe| {
-            quantity.name.strip_prefix("displacement/") == Some(probe.name.as_str())
-                && matches!(probe.kind, ProbeKind::CentreOfMass { .. })
-        })
-    }
-
     /// Of points and lattices.
     pub fn displacement(&self) -> Option<Difference> {
-        self.difference(Family::Displacement, |quantity| !self.is_centre(quantity))
+        self.of(Group::Displacement)
     }
 
     /// Of centres of mass.
     pub fn centre(&self) -> Option<Difference> {
-        self.difference(Family::Displacement, |quantity| self.is_centre(quantity))
+        self.of(Group::CentreOfMass)
     }
 
-    /// Of a family as a whole.
-    pub fn of(&self, family: Family) -> Option<Difference> {
-        self.difference(family, |_| true)
+    /// Of a group as a whole.
+    pub fn of(&self, group: Group) -> Option<Difference> {
+        difference(&self.case, group, &self.references, &self.computed)
     }
 }
 
@@ -231,9 +126,9 @@ fn check(study: &mut Study, compared: &Compared) -> Result<()> {
         let (words, difference) = match *what {
             "displacement" => ("displacement of the probes, rms", compared.displacement()),
             "centre_of_mass" => ("centre of mass, rms", compared.centre()),
-            "force" => ("reaction, rms", compared.of(Family::Force)),
-            "moment" => ("reaction moment, rms", compared.of(Family::Moment)),
-            "strain_energy" => ("strain energy, rms", compared.of(Family::StrainEnergy)),
+            "force" => ("reaction, rms", compared.of(Group::Force)),
+            "moment" => ("reaction moment, rms", compared.of(Group::Moment)),
+            "strain_energy" => ("strain energy, rms", compared.of(Group::StrainEnergy)),
             other => bail!("{other} is not compared"),
         };
         let difference = difference.with_context(|| format!("{name} has no {what}"))?;

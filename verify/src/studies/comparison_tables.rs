@@ -1,6 +1,7 @@
 //! Tables and figures of the comparison with the references.
 
-use super::comparison::{Compared, Difference};
+use super::comparison::Compared;
+use crate::accuracy::{Difference, Group};
 use super::plain::{axis, number, styled, text};
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{CODES, Family, Mesh};
@@ -13,10 +14,10 @@ pub fn differences_table(compared: &[Compared]) -> Table {
         let kinds: [(&str, Option<Difference>); 6] = [
             ("displacement", case.displacement()),
             ("centre of mass", case.centre()),
-            ("force", case.of(Family::Force)),
-            ("moment", case.of(Family::Moment)),
-            ("strain energy", case.of(Family::StrainEnergy)),
-            ("kinetic energy", case.of(Family::KineticEnergy)),
+            ("force", case.of(Group::Force)),
+            ("moment", case.of(Group::Moment)),
+            ("strain energy", case.of(Group::StrainEnergy)),
+            ("kinetic energy", case.of(Group::KineticEnergy)),
         ];
         for (what, difference) in kinds {
             let Some(Difference { rms, max, bar }) = difference else { continue };

@@ -240,7 +240,7 @@ fn graded(spacing: f64) -> Result<Problem> {
         .map(|k| Refinement { part: ball(2.0 * doubled(k)), size: doubled(k) / 1.26 })
         .collect();
     let refinements = vec![Refinement { part: ball(size), size }];
-    problem.recipe.cloud = Cloud::Graded { spacing, refinements, growth: 0.5 };
+    problem.recipe.cloud = Cloud::Graded { spacing, refinements, growth: 0.5, seed: 0 };
     Ok(problem)
 }
 
