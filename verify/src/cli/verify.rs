@@ -20,9 +20,9 @@ pub struct VerifyArgs {
     /// Run only studies whose name contains this.
     #[arg(long, value_name = "PATTERN")]
     only: Option<String>,
-    /// Another family of clouds than that of the stated figures, 0: random clouds and points take
-    /// other seeds; the lattices of carried cases are jittered by 2 % of the spacing and their
-    /// graded clouds are up to 2 % coarser or finer. Counts of work keep their clouds.
+    /// Another family of clouds than that of the stated figures, 0: random clouds, their points and
+    /// graded clouds take other seeds, and the lattices of carried cases are jittered by 2 % of the
+    /// spacing. Counts of work keep their clouds.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..1_000_000))]
     seed: u64,
     /// Folder for index.html, results.json, junit.xml and summary.md.

@@ -36,7 +36,6 @@ mod time_step_runs;
 mod vibration;
 mod work;
 
-use self::problems::Random;
 use crate::reference::{ReferenceError, ReferenceFile, read_reference};
 use crate::run::{Record, Solved, solve_case};
 use crate::scene::{Case, read_case};
@@ -56,7 +55,7 @@ pub enum Suite {
 
 /// Seeds of one run do not meet those of the next.
 const SEEDS_APART: u64 = 1000;
-/// How far the clouds of carried cases move with another seed \[spacing\].
+/// Jitter of the lattices of carried cases with another seed \[spacing\].
 const VARIATION: f64 = 0.02;
 
 /// A study by name.
@@ -201,35 +200,31 @@ impl Workbench {
         stated + SEEDS_APART * self.seed
     }
 
-    /// Gives a jittered cloud the seed of this run.
+    /// Gives a jittered or graded cloud the seed of this run.
     pub fn reseed(&self, problem: &mut Problem) {
-        if let Cloud::Jittered { seed, .. } = &mut problem.recipe.cloud {
+        if let Cloud::Jittered { seed, .. } | Cloud::Graded { seed, .. } = &mut problem.recipe.cloud
+        {
             *seed = self.seed(*seed);
         }
     }
 
     /// A carried case; with another seed on a cloud that differs a little.
     pub fn case(&self, name: &str) -> Result<Case> {
-        let case = self.stated_case(name)?;
-        if self.seed == 0 { Ok(case) } else { self.varied(case) }
-    }
-
-    /// A lattice jittered by [`VARIATION`] of its spacing; a graded cloud, which
-    /// takes no seed, with up to as much more or less spacing, cells and all.
-    fn varied(&self, mut case: Case) -> Result<Case> {
-        let seed = self.seed(0);
-        match case.problem.recipe.cloud {
-            Cloud::Regular { spacing } => {
-                case.problem.recipe.cloud = Cloud::Jittered { spacing, jitter: VARIATION, seed };
-            }
-            Cloud::Graded { spacing, .. } => {
-                let share = VARIATION * Random(seed).symmetric();
-                return respaced(&case, spacing * (1.0 + share));
-            }
-            Cloud::Jittered { .. } => self.reseed(&mut case.problem),
-            Cloud::Given { .. } => {}
+        let mut case = self.stated_case(name)?;
+        if self.seed > 0 {
+            self.vary(&mut case.problem);
         }
         Ok(case)
+    }
+
+    /// A lattice jittered by [`VARIATION`] of its spacing, a graded cloud moved in
+    /// its tree of lattices.
+    fn vary(&self, problem: &mut Problem) {
+        if let Cloud::Regular { spacing } = problem.recipe.cloud {
+            let (jitter, seed) = (VARIATION, 0);
+            problem.recipe.cloud = Cloud::Jittered { spacing, jitter, seed };
+        }
+        self.reseed(problem);
     }
 
     /// A carried case on the very cloud of its file.

@@ -124,5 +124,6 @@ fn grade(problem: &mut Problem) {
     let part = Selector::Inside { shape: corner, tolerance: 0.0 };
     let refinement = Refinement { part, size: 0.5 * spacing };
     problem.recipe.grid.refinements = vec![refinement.clone()];
-    problem.recipe.cloud = Cloud::Graded { spacing, refinements: vec![refinement], growth: 0.5, seed: 0 };
+    problem.recipe.cloud =
+        Cloud::Graded { spacing, refinements: vec![refinement], growth: 0.5, seed: 0 };
 }
