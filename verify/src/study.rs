@@ -51,6 +51,10 @@ pub struct Check {
     pub pass: bool,
     /// Where the bound comes from.
     pub source: String,
+    /// Text of the smallest case file that shows what broke, for a check that
+    /// fails.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reproduce: Option<String>,
 }
 
 impl Check {
@@ -74,7 +78,15 @@ impl Check {
             unit: unit.to_string(),
             pass: bound.holds(value),
             source: source.to_string(),
+            reproduce: None,
         }
+    }
+
+    /// Where a report keeps the case file that shows the failure, relative to
+    /// its folder; None where the check passes or has no such case.
+    pub fn failure_file(&self) -> Option<String> {
+        let shown = !self.pass && self.reproduce.is_some();
+        shown.then(|| format!("failures/{}.toml", self.id.replace('/', "-")))
     }
 }
 

@@ -18,7 +18,26 @@ pub fn write_report(report: &Report, dir: &Path) -> Result<()> {
     for (name, text) in files {
         write_atomically(&dir.join(name), text.as_bytes())?;
     }
-    write_figures(report, &dir.join("figures"))
+    write_figures(report, &dir.join("figures"))?;
+    write_failures(report, dir)
+}
+
+/// The case files that show the failures; those of an earlier run that pass
+/// now are taken away.
+fn write_failures(report: &Report, dir: &Path) -> Result<()> {
+    for check in report.checks() {
+        match (check.failure_file(), &check.reproduce) {
+            (Some(file), Some(case)) => write_atomically(&dir.join(file), case.as_bytes())?,
+            _ => {
+                let old = dir.join(format!("failures/{}.toml", check.id.replace('/', "-")));
+                if old.exists() {
+                    std::fs::remove_file(&old)
+                        .with_context(|| format!("cannot remove {}", old.display()))?;
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Every figure as a picture of its own, `<study>-<number>.svg`.

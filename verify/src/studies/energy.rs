@@ -29,7 +29,7 @@ pub fn energy(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     conservation(bench, study)?;
     resonance(bench, study)?;
     balance(bench, study)?;
-    determinism(study)
+    determinism(bench, study)
 }
 
 fn conservation(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
@@ -37,8 +37,8 @@ fn conservation(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let (mut drift, mut fluctuation, mut orders) = (0.0, 0.0, Vec::new());
     let mut rows = Vec::new();
     for seed in 0..bench.pick(3, 10) {
-        let coarse = vibrate(STEPS, 0.5, seed)?;
-        let fine = vibrate(2 * STEPS, 0.25, seed)?;
+        let coarse = vibrate(STEPS, 0.5, bench.seed(seed))?;
+        let fine = vibrate(2 * STEPS, 0.25, bench.seed(seed))?;
         let kept = coarse.survived == STEPS && fine.survived == 2 * STEPS;
         anyhow::ensure!(kept, "an undamped run at half the critical step failed");
         let order = (coarse.fluctuation() / fine.fluctuation()).log2();
@@ -134,7 +134,7 @@ fn resonance(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     for share in SHARES {
         let mut survived = Vec::new();
         for seed in 0..seeds {
-            survived.push(vibrate(STEPS, share, seed)?.survived);
+            survived.push(vibrate(STEPS, share, bench.seed(seed))?.survived);
         }
         let shortest = survived.iter().copied().min().unwrap_or(0);
         let failed = survived.iter().filter(|steps| **steps < STEPS).count();
@@ -211,7 +211,7 @@ fn loaded(seed: u64, end: f64) -> anyhow::Result<Problem> {
 fn balance(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let mut worst = 0.0;
     for seed in 0..bench.pick(2, 10) {
-        let problem = loaded(seed, 0.6)?;
+        let problem = loaded(bench.seed(seed), 0.6)?;
         let mut log = Log::new(2);
         march(&problem, prepare(&problem)?, &mut log)?;
         anyhow::ensure!(log.touched > 0, "no node has touched the wall");
@@ -260,9 +260,9 @@ fn balance_figure(log: &Log) -> Plot {
 }
 
 /// The same final displacements, bit for bit, on any number of threads.
-fn determinism(study: &mut Study) -> anyhow::Result<()> {
-    let mut problem = loaded(0, 0.2)?;
-    problem.recipe = recipe(SIZE / 10.0, 0.3, 0);
+fn determinism(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+    let mut problem = loaded(bench.seed(0), 0.2)?;
+    problem.recipe = recipe(SIZE / 10.0, 0.3, bench.seed(0));
     problem.recipe.grid = grid(SIZE / 20.0);
     let (blocks, alone) = final_bits(&problem, 1)?;
     anyhow::ensure!(blocks > 4, "{blocks} blocks cannot show a dependence on threads");

@@ -22,7 +22,7 @@ pub fn hard(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
             add_error(study, case, measures);
         }
     }
-    invariance(study)?;
+    invariance(bench, study)?;
     study.notes.extend(FINDINGS.map(String::from));
     Ok(())
 }

@@ -28,12 +28,18 @@ pub fn cases(bench: &Workbench) -> Result<Vec<HardCase>> {
     let spacing = SIZE / bench.pick(6.0, 10.0);
     let mut list = Vec::new();
     moving(bench, spacing, &mut list)?;
-    clouds(spacing, &mut list)?;
+    clouds(bench, spacing, &mut list)?;
     inclusions(bench, spacing, &mut list)?;
     rolled_cubes(spacing, &mut list)?;
     bonded_cubes(bench, spacing, &mut list)?;
     twisted(bench.pick(0.01, 0.006), &mut list)?;
     thin(spacing, &mut list)?;
+    for case in &mut list {
+        bench.reseed(&mut case.problem);
+        if let Truth::Finer(problem) = &mut case.truth {
+            bench.reseed(problem);
+        }
+    }
     Ok(list)
 }
 
@@ -196,16 +202,16 @@ fn twisted(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     Ok(())
 }
 
-fn clouds(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
+fn clouds(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     for (id, words, share) in [
         ("removed_5", "5 % of the nodes removed, rollers, compressed by 20 %", 0.05),
         ("removed_20", "20 % of the nodes removed, rollers, compressed by 20 %", 0.2),
     ] {
-        let (problem, truth) = rolled(thinned(spacing, share)?, SIZE, -0.2)?;
+        let (problem, truth) = rolled(thinned(bench, spacing, share)?, SIZE, -0.2)?;
         list.push(case(id, words, problem, truth));
     }
     let words = "20 % of the nodes removed, bonded, compressed by 20 %";
-    let problem = bond(thinned(spacing, 0.2)?, -0.2);
+    let problem = bond(thinned(bench, spacing, 0.2)?, -0.2);
     list.push(against_elements("removed_20_bonded", words, problem));
     let (problem, truth) = rolled(graded(2.0 * spacing)?, SIZE, -0.2)?;
     list.push(case("graded", "spacing graded 10:1, rollers, compressed by 20 %", problem, truth));
@@ -213,9 +219,10 @@ fn clouds(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
 }
 
 /// The cube without a share of its nodes.
-fn thinned(spacing: f64, share: f64) -> Result<Problem> {
+fn thinned(bench: &Workbench, spacing: f64, share: f64) -> Result<Problem> {
     let mut problem = cube(rubber()?, spacing);
-    remove_nodes(&mut problem, share, 3)?;
+    bench.reseed(&mut problem);
+    remove_nodes(&mut problem, share, bench.seed(3))?;
     Ok(problem)
 }
 

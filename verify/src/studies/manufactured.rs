@@ -172,7 +172,7 @@ pub fn manufactured(bench: &Workbench, study: &mut Study) -> Result<()> {
         })
         .collect();
     let solve = |&(scenario, n, seed): &(Scenario, usize, u64)| {
-        errors(&scenario, n, seed)
+        errors(bench, &scenario, n, seed)
             .with_context(|| format!("{}, {n} nodes per edge, cloud {seed}", scenario.name))
     };
     let solved: Vec<Errors> =
@@ -196,7 +196,7 @@ pub fn manufactured(bench: &Workbench, study: &mut Study) -> Result<()> {
     if bench.suite == Suite::Full {
         judge_full(study, &ladders)?;
     }
-    let pairs = pairs(&ladders)?;
+    let pairs = pairs(bench, &ladders)?;
     judge_pairs(study, &pairs)?;
     study.tables.extend([table(&ladders), plain_table(&pairs)]);
     study.notes.extend(NOTES.map(String::from));
@@ -206,12 +206,18 @@ pub fn manufactured(bench: &Workbench, study: &mut Study) -> Result<()> {
     Ok(())
 }
 
-pub fn errors(scenario: &Scenario, nodes_per_edge: usize, seed: u64) -> Result<Errors> {
+/// Of one cloud, told apart by its number.
+pub fn errors(
+    bench: &Workbench,
+    scenario: &Scenario,
+    nodes_per_edge: usize,
+    cloud: u64,
+) -> Result<Errors> {
     let constants = ElasticConstants::from_young_poisson(YOUNG_MODULUS, scenario.poisson_ratio)?;
     let (field, family) = (scenario.field, scenario.family);
     let solution = Manufactured { field, family, constants, density: DENSITY };
     let placed = Placed::new(solution, scenario.place);
-    let problem = pose(placed, nodes_per_edge, seed, scenario.scheme)?;
+    let problem = pose(placed, nodes_per_edge, bench.seed(cloud), scenario.scheme)?;
     let solved = march(&problem, prepare(&problem)?, &mut Unobserved)?;
     let displacement = displacement_error(&placed, &solved)?;
     Ok(Errors { displacement, ..errors_at_points(&placed, &problem, &solved) })

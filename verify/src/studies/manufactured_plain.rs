@@ -1,5 +1,6 @@
 //! The default recipe against the plain scheme of the seed, on the same clouds.
 
+use super::Workbench;
 use super::manufactured::{CLOUDS, Errors, Place, Rung, SCENARIOS, Scenario, Scheme, errors};
 use super::plain::{number, text};
 use crate::study::{Bound, Cell, Check, Kind, Study, Table};
@@ -60,26 +61,32 @@ const RATIOS: [Ratio; 3] = [
 
 /// Solves by the plain scheme on the finer clouds of the ladders, and by both on
 /// clouds of the turned cube.
-pub fn pairs(ladders: &[(Scenario, Vec<Rung>)]) -> Result<Vec<Pair>> {
+pub fn pairs(bench: &Workbench, ladders: &[(Scenario, Vec<Rung>)]) -> Result<Vec<Pair>> {
     let mut pairs = Vec::new();
     for scenario in COMPARED.map(|index| SCENARIOS[index]) {
         let ladder = ladders.iter().find(|(other, _)| other.name == scenario.name);
         let (_, rungs) = ladder.context("a scenario is missing")?;
         for rung in rungs.iter().filter(|rung| rung.nodes_per_edge >= FROM) {
-            pairs.push(pair(scenario, rung.nodes_per_edge, rung.errors.clone())?);
+            pairs.push(pair(bench, scenario, rung.nodes_per_edge, rung.errors.clone())?);
             let turned = Scenario { place: Place::Turned, ..scenario };
-            let default = on_clouds(|cloud| errors(&turned, rung.nodes_per_edge, cloud))
+            let default = on_clouds(|cloud| errors(bench, &turned, rung.nodes_per_edge, cloud))
                 .with_context(|| format!("{}, turned", scenario.name))?;
-            pairs.push(pair(turned, rung.nodes_per_edge, default)?);
+            pairs.push(pair(bench, turned, rung.nodes_per_edge, default)?);
         }
     }
     Ok(pairs)
 }
 
-fn pair(scenario: Scenario, nodes_per_edge: usize, default: Vec<Errors>) -> Result<Pair> {
+fn pair(
+    bench: &Workbench,
+    scenario: Scenario,
+    nodes_per_edge: usize,
+    default: Vec<Errors>,
+) -> Result<Pair> {
     let plain = on_clouds(|cloud| {
         let points = default[cloud as usize].points;
-        errors(&Scenario { scheme: Scheme::Plain { points }, ..scenario }, nodes_per_edge, cloud)
+        let plain = Scenario { scheme: Scheme::Plain { points }, ..scenario };
+        errors(bench, &plain, nodes_per_edge, cloud)
             .with_context(|| format!("{}, plain scheme, cloud {cloud}", scenario.name))
     })?;
     Ok(Pair { scenario, nodes_per_edge, default, plain })

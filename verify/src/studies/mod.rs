@@ -55,6 +55,11 @@ pub enum Suite {
     Full,
 }
 
+/// Seeds of one run do not meet those of the next.
+const SEEDS_APART: u64 = 1000;
+/// Jitter of the lattices of carried cases with another seed \[spacing\].
+const VARIATION: f64 = 0.02;
+
 /// A study by name.
 pub struct Definition {
     pub id: &'static str,
@@ -67,6 +72,8 @@ pub struct Definition {
 #[derive(Debug)]
 pub struct Workbench {
     pub suite: Suite,
+    /// Which family of clouds: 0 is the one that all stated figures belong to.
+    seed: u64,
     cases: PathBuf,
 }
 
@@ -186,12 +193,44 @@ pub const STUDIES: &[Definition] = &[
 
 impl Workbench {
     /// Unpacks the carried cases into the output folder.
-    pub fn new(suite: Suite, out: &Path) -> Result<Workbench> {
-        Ok(Workbench { suite, cases: crate::cases::unpack(out)? })
+    pub fn new(suite: Suite, seed: u64, out: &Path) -> Result<Workbench> {
+        Ok(Workbench { suite, seed, cases: crate::cases::unpack(out)? })
     }
 
-    /// A carried case.
+    /// The seed of a random cloud in this run, for one that is stated.
+    pub fn seed(&self, stated: u64) -> u64 {
+        stated + SEEDS_APART * self.seed
+    }
+
+    /// Gives a jittered or graded cloud the seed of this run.
+    pub fn reseed(&self, problem: &mut Problem) {
+        if let Cloud::Jittered { seed, .. } | Cloud::Graded { seed, .. } = &mut problem.recipe.cloud
+        {
+            *seed = self.seed(*seed);
+        }
+    }
+
+    /// A carried case; with another seed on a cloud that differs a little.
     pub fn case(&self, name: &str) -> Result<Case> {
+        let mut case = self.stated_case(name)?;
+        if self.seed > 0 {
+            self.vary(&mut case.problem);
+        }
+        Ok(case)
+    }
+
+    /// A lattice jittered by [`VARIATION`] of its spacing, a graded cloud moved in
+    /// its tree of lattices.
+    fn vary(&self, problem: &mut Problem) {
+        if let Cloud::Regular { spacing } = problem.recipe.cloud {
+            let (jitter, seed) = (VARIATION, 0);
+            problem.recipe.cloud = Cloud::Jittered { spacing, jitter, seed };
+        }
+        self.reseed(problem);
+    }
+
+    /// A carried case on the very cloud of its file.
+    pub fn stated_case(&self, name: &str) -> Result<Case> {
         read_case(&self.cases.join(format!("{name}.toml"))).map_err(|mistakes| {
             let lines: Vec<String> = mistakes.iter().map(|mistake| mistake.to_string()).collect();
             anyhow!("{}", lines.join("\n"))

@@ -66,11 +66,11 @@ pub fn patch(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     for body in &bodies(bench)? {
         for poisson_ratio in [0.3, 0.49] {
             let case = format!("{}-nu{:.0}", body.name, 100.0 * poisson_ratio);
-            exact_checks(study, body, &case, poisson_ratio)?;
+            exact_checks(bench, study, body, &case, poisson_ratio)?;
             let mut worst = Errors::default();
             for seed in 0..bench.pick(1, 10) {
                 let scheme = Scheme { seed, ..EXACT };
-                let errors = solve(body, poisson_ratio, &scheme)?;
+                let errors = solve(bench, body, poisson_ratio, &scheme)?;
                 worst = worst.or(&errors);
             }
             static_checks(study, &case, &worst);
@@ -86,14 +86,14 @@ pub fn patch(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
             &format!("patch/free-cube-nu{:.0}/stretch", 100.0 * poisson_ratio),
             "largest error of the stretch of a free body under tractions all around",
             Kind::Exact,
-            stretch_error(poisson_ratio, &free)?,
+            stretch_error(bench, poisson_ratio, &free)?,
             Bound::AtMost(BOUND_FREE),
             "1",
             "Consistent gradients: a uniform stress balances its tractions; round-off",
         ));
     }
-    study.tables.push(comparison(cube)?);
-    study.figures.push(Figure::Plot(quadrature_figure(cube)?));
+    study.tables.push(comparison(bench, cube)?);
+    study.figures.push(Figure::Plot(quadrature_figure(bench, cube)?));
     study.notes.push(
         "Plain gradients do not pass: shape functions of interior nodes do not vanish on the \
          boundary and the quadrature does not integrate their gradients exactly, so \
@@ -153,8 +153,13 @@ fn affine(dimension: Dimension) -> Matrix3 {
     H
 }
 
-pub(super) fn problem(body: &Body, poisson_ratio: f64, scheme: &Scheme) -> anyhow::Result<Problem> {
-    let mut recipe = recipe(body.spacing, JITTER, scheme.seed);
+pub(super) fn problem(
+    bench: &Workbench,
+    body: &Body,
+    poisson_ratio: f64,
+    scheme: &Scheme,
+) -> anyhow::Result<Problem> {
+    let mut recipe = recipe(body.spacing, JITTER, bench.seed(scheme.seed));
     recipe.grid = grid(body.spacing / scheme.cells_per_spacing);
     recipe.enforcement = scheme.enforcement;
     recipe.gradients = scheme.gradients;
@@ -197,8 +202,8 @@ fn push_faces(problem: &mut Problem, body: &Body) {
 
 /// Largest error of C = FᵀF at any point over the size of H: a free body may
 /// turn.
-fn stretch_error(poisson_ratio: f64, body: &Body) -> anyhow::Result<f64> {
-    let mut problem = problem(body, poisson_ratio, &EXACT)?;
+fn stretch_error(bench: &Workbench, poisson_ratio: f64, body: &Body) -> anyhow::Result<f64> {
+    let mut problem = problem(bench, body, poisson_ratio, &EXACT)?;
     push_faces(&mut problem, body);
     // Without a hold it swings more.
     problem.motion = relaxation(1000, 1e-12);
@@ -213,8 +218,13 @@ fn stretch_error(poisson_ratio: f64, body: &Body) -> anyhow::Result<f64> {
     Ok((0..rows.len()).map(error).fold(0.0, larger))
 }
 
-fn solve(body: &Body, poisson_ratio: f64, scheme: &Scheme) -> anyhow::Result<Errors> {
-    let mut problem = problem(body, poisson_ratio, scheme)?;
+fn solve(
+    bench: &Workbench,
+    body: &Body,
+    poisson_ratio: f64,
+    scheme: &Scheme,
+) -> anyhow::Result<Errors> {
+    let mut problem = problem(bench, body, poisson_ratio, scheme)?;
     prescribe_affine(&mut problem, body);
     let prepared = prepare(&problem)?;
     let solved = march(&problem, prepared, &mut Unobserved)?;
@@ -277,7 +287,7 @@ fn static_checks(study: &mut Study, case: &str, errors: &Errors) {
 }
 
 /// The four schemes on the jittered cube.
-fn comparison(cube: &Body) -> anyhow::Result<Table> {
+fn comparison(bench: &Workbench, cube: &Body) -> anyhow::Result<Table> {
     let mut rows = Vec::new();
     for poisson_ratio in [0.3, 0.49] {
         for (gradients, name) in [(Gradients::Plain, "plain"), (EXACT.gradients, "consistent")] {
@@ -285,7 +295,7 @@ fn comparison(cube: &Body) -> anyhow::Result<Table> {
                 [(Enforcement::Direct, "direct"), (Enforcement::Collocation, "collocation")]
             {
                 let scheme = Scheme { gradients, enforcement, ..EXACT };
-                let errors = solve(cube, poisson_ratio, &scheme)?;
+                let errors = solve(bench, cube, poisson_ratio, &scheme)?;
                 rows.push(vec![
                     Cell::Number(poisson_ratio),
                     Cell::Text(name.into()),
@@ -310,13 +320,13 @@ fn comparison(cube: &Body) -> anyhow::Result<Table> {
 }
 
 /// More quadrature points do not make the error of plain gradients vanish.
-fn quadrature_figure(cube: &Body) -> anyhow::Result<Plot> {
+fn quadrature_figure(bench: &Workbench, cube: &Body) -> anyhow::Result<Plot> {
     let mut series = Vec::new();
     for poisson_ratio in [0.3, 0.49] {
         let mut points = Vec::new();
         for cells_per_spacing in [1.26, 1.6, 2.0] {
             let scheme = Scheme { gradients: Gradients::Plain, cells_per_spacing, ..EXACT };
-            let errors = solve(cube, poisson_ratio, &scheme)?;
+            let errors = solve(bench, cube, poisson_ratio, &scheme)?;
             points.push((cells_per_spacing, errors.displacement));
         }
         series.push(curve(&format!("ν = {poisson_ratio}"), points));

@@ -1,6 +1,7 @@
 //! What an affine field obeys on any cloud, without solving anything.
 #![allow(non_snake_case)]
 
+use super::Workbench;
 use super::patch::{Body, EXACT, problem};
 use super::plain::larger;
 use super::problems::Random;
@@ -11,12 +12,13 @@ use mtled::tensor::{Matrix3, Vector3, rotation};
 
 /// What holds on any cloud, jittered too.
 pub(super) fn exact_checks(
+    bench: &Workbench,
     study: &mut Study,
     body: &Body,
     case: &str,
     poisson_ratio: f64,
 ) -> anyhow::Result<()> {
-    let problem = problem(body, poisson_ratio, &EXACT)?;
+    let problem = problem(bench, body, poisson_ratio, &EXACT)?;
     let prepared = prepare(&problem)?;
     let (H, centre) = (body.H, body.centre);
     let stretched = field(&prepared, |X| H * (X - centre));

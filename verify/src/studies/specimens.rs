@@ -96,6 +96,7 @@ pub fn specimens(bench: &Workbench) -> anyhow::Result<Vec<Specimen>> {
             }));
         }
     }
+    list.iter_mut().for_each(|specimen| bench.reseed(&mut specimen.problem));
     Ok(list)
 }
 

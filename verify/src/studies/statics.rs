@@ -76,7 +76,7 @@ pub fn statics(bench: &Workbench, study: &mut Study) -> Result<()> {
         let case = bench.case(name)?;
         // As stated in the full suite, coarser in the quick one.
         let spacing = spacing_of(&case.problem)? * bench.pick(1.5, 1.0);
-        compare(&jittered(respaced(&case, spacing)?), name, words)
+        compare(&jittered(bench, respaced(&case, spacing)?), name, words)
             .with_context(|| format!("case \"{name}\""))
     };
     let compared: Vec<Compared> = CASES.par_iter().map(run).collect::<Result<_>>()?;
@@ -107,10 +107,10 @@ pub fn statics(bench: &Workbench, study: &mut Study) -> Result<()> {
 }
 
 /// A cloud without the regularity that would flatter lumped masses.
-fn jittered(mut case: Case) -> Case {
+fn jittered(bench: &Workbench, mut case: Case) -> Case {
     let cloud = &mut case.problem.recipe.cloud;
-    if let Cloud::Regular { spacing } = *cloud {
-        *cloud = Cloud::Jittered { spacing, jitter: 0.3, seed: 1 };
+    if let Cloud::Regular { spacing } | Cloud::Jittered { spacing, .. } = *cloud {
+        *cloud = Cloud::Jittered { spacing, jitter: 0.3, seed: bench.seed(1) };
     }
     case
 }

@@ -28,7 +28,7 @@ pub fn random_clouds(bench: &Workbench, study: &mut Study) -> anyhow::Result<()>
     let mut all = Vec::new();
     for family in &FAMILIES {
         let measured: anyhow::Result<Vec<Ratios>> =
-            (0..seeds).into_par_iter().map(|seed| measure(family, seed)).collect();
+            (0..seeds).into_par_iter().map(|seed| measure(family, bench.seed(seed))).collect();
         let measured = measured?;
         rows.push(row(family.words, &measured));
         all.extend(measured);

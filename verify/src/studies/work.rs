@@ -74,7 +74,7 @@ struct Now {
 
 pub fn work(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let measure = |earlier: &Earlier| -> anyhow::Result<Now> {
-        let (solved, _) = solve_case(&bench.case(earlier.case)?)?;
+        let (solved, _) = solve_case(&bench.stated_case(earlier.case)?)?;
         let supports = &solved.prepared.discretisation.supports;
         Ok(Now {
             components: solved.prepared.model.components,
