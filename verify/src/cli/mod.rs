@@ -8,9 +8,12 @@ mod python;
 mod reference;
 mod reference_solve;
 mod reference_table;
+mod report;
 mod solve;
 mod study;
 mod verify;
+mod verify_gate;
+mod verify_progress;
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::io::{IsTerminal, Write};
@@ -33,6 +36,8 @@ struct Cli {
 const EXAMPLES: &str = "Examples:
   mtled verify                                  check the solver, write reports/verify/index.html
   mtled verify --only brain --out brain_report  one study
+  mtled verify --baseline baseline.json         has anything got worse?
+  mtled report last_week reports/verify         compare two runs
   mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON
   mtled inspect my_case.toml                    are its nodes and supports sound?
   mtled case check my_case.toml                 find the mistakes in a case file
@@ -70,6 +75,8 @@ enum Command {
     Inspect(inspect::InspectArgs),
     /// Run the verification studies and write their report (the main job).
     Verify(verify::VerifyArgs),
+    /// Write a report anew from its results.json, or compare two runs.
+    Report(report::ReportArgs),
     /// Compare at length what depends on the machine.
     #[command(subcommand)]
     Study(study::StudyCommand),
@@ -123,6 +130,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Solve(arguments) => solve::solve(arguments, &cli.common),
         Command::Inspect(arguments) => inspect::inspect(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
+        Command::Report(arguments) => report::report(arguments, &cli.common),
         Command::Study(command) => study::study(command, &cli.common),
         Command::Case(command) => case::case(command),
         Command::Reference(command) => reference::reference(command, &cli.common),
