@@ -11,6 +11,7 @@ pub mod measure;
 pub mod reference;
 pub mod study;
 
+pub mod gate;
 pub mod report;
 
 pub mod cases;

@@ -1,6 +1,11 @@
 //! What a study returns: plain data that a report can be built from, with no
 //! mechanics in it.
 
+mod comparison;
+mod lost;
+
+pub use comparison::{Band, BandSource, Change, Comparison, Scale, Spread, Verdict};
+
 use serde::{Deserialize, Serialize};
 
 /// Where a bound comes from. The three kinds never mix.
@@ -19,9 +24,12 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
-    AtMost(f64),
-    AtLeast(f64),
-    Between(f64, f64),
+    AtMost(#[serde(deserialize_with = "lost::number")] f64),
+    AtLeast(#[serde(deserialize_with = "lost::number")] f64),
+    Between(
+        #[serde(deserialize_with = "lost::number")] f64,
+        #[serde(deserialize_with = "lost::number")] f64,
+    ),
 }
 
 impl Bound {
@@ -44,6 +52,7 @@ pub struct Check {
     /// In words, for people.
     pub quantity: String,
     pub kind: Kind,
+    #[serde(deserialize_with = "lost::number")]
     pub value: f64,
     pub bound: Bound,
     /// SI, or `1` for a pure number.
@@ -55,6 +64,10 @@ pub struct Check {
     /// fails.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reproduce: Option<String>,
+    /// Error bar of the reference that the value is measured against, in the
+    /// unit of the value: smaller changes cannot be told for better or worse.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference_error: Option<f64>,
 }
 
 impl Check {
@@ -79,6 +92,7 @@ impl Check {
             pass: bound.holds(value),
             source: source.to_string(),
             reproduce: None,
+            reference_error: None,
         }
     }
 
@@ -106,6 +120,7 @@ pub struct Study {
     pub notes: Vec<String>,
     /// A reason why it could not run; a skip is not a pass.
     pub failure: Option<String>,
+    #[serde(deserialize_with = "lost::number")]
     pub wall_seconds: f64,
 }
 
@@ -128,6 +143,7 @@ pub struct Column {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Cell {
+    #[serde(deserialize_with = "lost::number")]
     Number(f64),
     Text(String),
 }
@@ -149,6 +165,7 @@ pub struct Plot {
     pub y: Axis,
     pub series: Vec<Series>,
     /// Slopes drawn as triangles on log-log axes.
+    #[serde(deserialize_with = "lost::numbers")]
     pub slopes: Vec<f64>,
 }
 
@@ -162,8 +179,10 @@ pub struct Axis {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Series {
     pub name: String,
+    #[serde(deserialize_with = "lost::points")]
     pub points: Vec<(f64, f64)>,
     /// Half-lengths of vertical error bars; empty for none.
+    #[serde(deserialize_with = "lost::numbers")]
     pub error_bars: Vec<f64>,
     pub style: SeriesStyle,
 }
@@ -194,6 +213,7 @@ pub struct Layer {
     /// Index into the palette: layers with the same number share a colour.
     pub colour: usize,
     pub closed: bool,
+    #[serde(deserialize_with = "lost::lines")]
     pub lines: Vec<Vec<[f64; 2]>>,
 }
 
@@ -213,7 +233,10 @@ pub struct Report {
     pub suite: String,
     pub provenance: Provenance,
     pub studies: Vec<Study>,
+    #[serde(deserialize_with = "lost::number")]
     pub wall_seconds: f64,
+    /// With a baseline, where one was given.
+    pub comparison: Option<Comparison>,
 }
 
 /// Which code ran where.
@@ -234,8 +257,13 @@ impl Report {
         self.studies.iter().flat_map(|study| &study.checks)
     }
 
-    /// Whether every check passed and every study ran.
+    /// Whether every study ran, every bound is kept and nothing got worse.
     pub fn passed(&self) -> bool {
+        self.bounds_hold() && self.comparison.as_ref().is_none_or(Comparison::holds)
+    }
+
+    /// Whether every study ran and every bound is kept.
+    pub fn bounds_hold(&self) -> bool {
         self.studies.iter().all(|study| study.failure.is_none())
             && self.checks().all(|check| check.pass)
     }

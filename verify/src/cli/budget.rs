@@ -55,11 +55,12 @@ pub fn budget_of(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
     };
     runs.finish();
     let report = Report {
-        schema_version: 1,
+        schema_version: json::SCHEMA_VERSION,
         suite: "budget".into(),
         provenance: provenance(),
         studies: vec![budget_study(&found, &wanted.command)],
         wall_seconds: start.elapsed().as_secs_f64(),
+        comparison: None,
     };
     let preset = || PathBuf::from("reports").join("budget").join(&source.name);
     let out = arguments.out.clone().unwrap_or_else(preset);

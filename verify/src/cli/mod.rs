@@ -11,11 +11,14 @@ mod reference;
 mod reference_solve;
 mod reference_table;
 mod runs;
+mod report;
 mod solve;
 mod study;
 mod sweep;
 mod tune;
 mod verify;
+mod verify_gate;
+mod verify_progress;
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::io::{IsTerminal, Write};
@@ -38,6 +41,8 @@ struct Cli {
 const EXAMPLES: &str = "Examples:
   mtled verify                                  check the solver, write reports/verify/index.html
   mtled verify --only brain --out brain_report  one study
+  mtled verify --baseline baseline.json         has anything got worse?
+  mtled report last_week reports/verify         compare two runs
   mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON
   mtled inspect my_case.toml                    are its nodes and supports sound?
   mtled budget my_case.toml                     how wrong is it, why, and at what price?
@@ -82,6 +87,8 @@ enum Command {
     Budget(budget::BudgetArgs),
     /// Find the cheapest recipe that meets a wanted error, or the best for a cost.
     Tune(tune::TuneArgs),
+    /// Write a report anew from its results.json, or compare two runs.
+    Report(report::ReportArgs),
     /// Study a case over ranges of its recipe, or race against finite elements.
     #[command(subcommand)]
     Study(study::StudyCommand),
@@ -142,6 +149,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
         Command::Budget(arguments) => budget::budget_of(arguments, &cli.common),
         Command::Tune(arguments) => tune::tune_cases(arguments, &cli.common),
+        Command::Report(arguments) => report::report(arguments, &cli.common),
         Command::Study(command) => study::study(command, &cli.common),
         Command::Runs(command) => runs::runs(command, &cli.common),
         Command::Merge(arguments) => runs::merge(arguments),

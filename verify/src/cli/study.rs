@@ -89,6 +89,7 @@ fn race_study(arguments: &RaceArgs, common: &Common) -> Result<u8> {
         provenance: provenance(),
         wall_seconds: outcome.study.wall_seconds,
         studies: vec![outcome.study],
+        comparison: None,
     };
     write_report(&report, &arguments.out)?;
     let tables = markdown_tables(&report.studies[0], &report.provenance);

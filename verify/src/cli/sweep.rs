@@ -177,11 +177,12 @@ pub fn sweep(subject: Subject, arguments: &SweepArgs, common: &Common) -> Result
     let out =
         arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(subject.name()));
     let report = Report {
-        schema_version: 1,
+        schema_version: json::SCHEMA_VERSION,
         suite: subject.name().into(),
         provenance: provenance(),
         studies: vec![study],
         wall_seconds: start.elapsed().as_secs_f64(),
+        comparison: None,
     };
     publish(&report, &out, common)
 }

@@ -190,10 +190,11 @@ fn tune_many(
 fn report(study: Study, start: Instant) -> Report {
     let wall_seconds = start.elapsed().as_secs_f64();
     Report {
-        schema_version: 1,
+        schema_version: json::SCHEMA_VERSION,
         suite: "tune".into(),
         provenance: provenance(),
         studies: vec![Study { wall_seconds, ..study }],
         wall_seconds,
+        comparison: None,
     }
 }

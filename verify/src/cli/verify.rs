@@ -1,15 +1,16 @@
 //! `mtled verify`.
 
+use super::verify_gate::{GateArgs, tell_github};
+use super::verify_progress::Progress;
 use super::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
 use crate::machine::provenance;
-use crate::report::{human, json, write_report};
-use crate::studies::{STUDIES, Suite, Workbench};
+use crate::report::{human, json, read, read_report, write_report};
+use crate::studies::{Definition, STUDIES, Suite, Workbench};
 use crate::study::{Report, Study};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 #[derive(Debug, Args)]
@@ -28,6 +29,8 @@ pub struct VerifyArgs {
     /// Folder for index.html, results.json, junit.xml and summary.md.
     #[arg(long, default_value = "reports/verify")]
     out: PathBuf,
+    #[command(flatten)]
+    gate: GateArgs,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -37,47 +40,23 @@ enum SuiteName {
 }
 
 pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
-    let start = Instant::now();
-    let wanted = |id: &str| arguments.only.as_deref().is_none_or(|pattern| id.contains(pattern));
-    let chosen: Vec<_> = STUDIES.iter().filter(|study| wanted(study.id)).collect();
-    if chosen.is_empty() {
-        let names: Vec<&str> = STUDIES.iter().map(|study| study.id).collect();
-        bail!("no study matches; there are {}", names.join(", "));
-    }
-    let suite = match arguments.suite {
-        SuiteName::Quick => Suite::Quick,
-        SuiteName::Full => Suite::Full,
-    };
-    let bench = Workbench::new(suite, arguments.seed, &arguments.out)?;
-    let done = AtomicUsize::new(0);
-    let run = |definition: &&crate::studies::Definition| {
-        let study = definition.run(&bench);
-        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-        if !common.quiet {
-            eprintln!("[{count}/{}] {} ({:.1} s)", chosen.len(), study.title, study.wall_seconds);
-        }
-        study
-    };
-    let studies: Vec<Study> = chosen.par_iter().with_max_len(1).map(run).collect();
+    let chosen = chosen(arguments.only.as_deref())?;
+    let gate = arguments.gate.read()?;
+    let whole = chosen.len() == STUDIES.len();
+    let mut report = run(&chosen, arguments, common)?;
     if crate::run::interrupted() {
         return Ok(STOPPED);
     }
-    let report = Report {
-        schema_version: 1,
-        suite: format!("{:?}", arguments.suite).to_lowercase(),
-        provenance: provenance(),
-        studies,
-        wall_seconds: start.elapsed().as_secs_f64(),
-    };
+    gate.judge(&mut report, whole)?;
+    // What is shown is what the file holds: `mtled report` makes the same pages.
+    let report = read::from_json(&json::to_json(&report), &arguments.out.join("results.json"))?;
     write_report(&report, &arguments.out)?;
-    match common.format {
-        Format::Json => print_data(&json::to_json(&report))?,
-        Format::Human if !common.quiet => {
-            let table = human::to_table(&report, common.colours());
-            let page = arguments.out.join("index.html");
-            print_data(&format!("{table}\nreport: {}\n", page.display()))?;
+    tell(&report, arguments, common)?;
+    tell_github(&report, &arguments.out)?;
+    for line in gate.write(&report, whole)? {
+        if !common.quiet {
+            eprintln!("{line}");
         }
-        Format::Human => {}
     }
     let could_run = report.studies.iter().all(|study| study.failure.is_none());
     Ok(match (report.passed(), could_run) {
@@ -85,4 +64,57 @@ pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
         (false, true) => 1,
         (false, false) => COULD_NOT_RUN,
     })
+}
+
+fn chosen(only: Option<&str>) -> anyhow::Result<Vec<&'static Definition>> {
+    let wanted = |id: &str| only.is_none_or(|pattern| id.contains(pattern));
+    let chosen: Vec<_> = STUDIES.iter().filter(|study| wanted(study.id)).collect();
+    if chosen.is_empty() {
+        let names: Vec<&str> = STUDIES.iter().map(|study| study.id).collect();
+        bail!("no study matches; there are {}", names.join(", "));
+    }
+    Ok(chosen)
+}
+
+/// Runs the studies side by side.
+fn run(chosen: &[&Definition], arguments: &VerifyArgs, common: &Common) -> anyhow::Result<Report> {
+    let start = Instant::now();
+    let suite = match arguments.suite {
+        SuiteName::Quick => Suite::Quick,
+        SuiteName::Full => Suite::Full,
+    };
+    let name = format!("{:?}", arguments.suite).to_lowercase();
+    let bench = Workbench::new(suite, arguments.seed, &arguments.out)?;
+    let ids: Vec<&str> = chosen.iter().map(|study| study.id).collect();
+    let earlier = read_report(&arguments.out).ok().filter(|earlier| earlier.suite == name);
+    let progress = Progress::new(&ids, earlier.as_ref(), common);
+    let one = |definition: &&Definition| {
+        progress.begin(definition.id);
+        let study = definition.run(&bench);
+        progress.end(&study);
+        study
+    };
+    let studies: Vec<Study> = chosen.par_iter().with_max_len(1).map(one).collect();
+    progress.clear();
+    Ok(Report {
+        schema_version: json::SCHEMA_VERSION,
+        suite: name,
+        provenance: provenance(),
+        studies,
+        wall_seconds: start.elapsed().as_secs_f64(),
+        comparison: None,
+    })
+}
+
+fn tell(report: &Report, arguments: &VerifyArgs, common: &Common) -> anyhow::Result<()> {
+    match common.format {
+        Format::Json => print_data(&json::to_json(report))?,
+        Format::Human if !common.quiet => {
+            let table = human::to_table(report, common.colours());
+            let page = arguments.out.join("index.html");
+            print_data(&format!("{table}\nreport: {}\n", page.display()))?;
+        }
+        Format::Human => {}
+    }
+    Ok(())
 }

@@ -1,27 +1,46 @@
 //! One page for people: offline, printable, for phones and desks.
 
+use super::change::{breakable, change_values, gate_words};
 use super::number::{bound_text, four_digits};
 use super::svg;
 use super::words::{
     counts, duration, kind_name, plural, study_counts, study_passed, unit_text, verdict,
 };
-use crate::study::{Bound, Cell, Check, Figure, Kind, Report, Study, Table};
+use crate::study::{
+    Bound, Cell, Change, Check, Comparison, Figure, Kind, Provenance, Report, Study, Table, Verdict,
+};
 use minijinja::{Environment, Value, context};
 
 /// The study whose drawings stand on top of the page.
-const HERO: &str = "brain";
+const DRAWN: &str = "brain";
+/// Studies whose first plot does: error against cost.
+const PARETO: [&str; 2] = ["race", "tune"];
+
+/// Style and script of every page.
+pub(super) const STYLE: &str = include_str!("page/page.css");
+pub(super) const SCRIPT: &str = include_str!("page/page.js");
+
+/// The pages by name, with what they share.
+pub(super) fn pages() -> anyhow::Result<Environment<'static>> {
+    let mut pages = Environment::new();
+    pages.add_template("shared.html", include_str!("page/shared.html"))?;
+    pages.add_template("index.html", include_str!("page/index.html"))?;
+    pages.add_template("compare.html", include_str!("page/compare.html"))?;
+    Ok(pages)
+}
 
 /// The page as one file without any link to the outside.
 pub fn to_html(report: &Report) -> anyhow::Result<String> {
-    let mut environment = Environment::new();
-    environment.add_template("index.html", include_str!("template.html"))?;
     let studies: Vec<Value> = report.studies.iter().map(study_value).collect();
     let failures: Vec<Value> =
         report.checks().filter(|check| !check.pass).map(check_value).collect();
     let page = context! {
-        style => Value::from_safe_string(svg::STYLE.to_string()),
+        style => Value::from_safe_string(format!("{STYLE}{}", svg::STYLE)),
+        script => Value::from_safe_string(SCRIPT.to_string()),
         suite => report.suite.as_str(),
         passed => report.passed(),
+        failed => !report.bounds_hold(),
+        compared => report.comparison.as_ref().map(compared_value),
         verdict => verdict(report),
         kinds => kind_values(report),
         failures => failures,
@@ -32,8 +51,9 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
         version => report.provenance.version.as_str(),
         commit => report.provenance.commit.as_str(),
         wall => duration(report.wall_seconds),
+        machine => machine(&report.provenance),
     };
-    Ok(environment.get_template("index.html")?.render(page)?)
+    Ok(pages()?.get_template("index.html")?.render(page)?)
 }
 
 fn study_value(study: &Study) -> Value {
@@ -62,10 +82,9 @@ fn check_value(check: &Check) -> Value {
         Bound::AtMost(limit) | Bound::AtLeast(limit) => limit,
         Bound::Between(low, high) => 0.5 * (low + high),
     };
-    let breakable_id = svg::escape(&check.id).replace('/', "/<wbr>");
     context! {
         id => check.id.as_str(),
-        breakable_id => Value::from_safe_string(breakable_id),
+        breakable_id => breakable(&check.id),
         study => check.study.as_str(),
         quantity => check.quantity.as_str(),
         kind => kind_name(check.kind),
@@ -76,6 +95,19 @@ fn check_value(check: &Check) -> Value {
         unit => unit_text(&check.unit),
         pass => check.pass,
         source => check.source.as_str(),
+        file => check.failure_file().map(|file| Value::from_safe_string(svg::escape(&file))),
+    }
+}
+
+fn compared_value(comparison: &Comparison) -> Value {
+    let (same, changes): (Vec<&Change>, Vec<&Change>) =
+        comparison.changes.iter().partition(|change| change.verdict == Verdict::Same);
+    context! {
+        with => comparison.with.as_str(),
+        summary => gate_words(comparison),
+        holds => comparison.holds(),
+        changes => change_values(&changes),
+        same => change_values(&same),
     }
 }
 
@@ -127,12 +159,21 @@ fn figure_value(figure: &Figure) -> Value {
 fn hero_values<'a>(report: &'a Report) -> Vec<Value> {
     let of_study =
         |study: &'a Study| study.figures.iter().filter(move |figure| is_hero(study, figure));
-    report.studies.iter().flat_map(of_study).map(figure_value).collect()
+    let mut heroes: Vec<&Figure> = report.studies.iter().flat_map(of_study).collect();
+    heroes.sort_by_key(|figure| matches!(figure, Figure::Drawing(_)));
+    heroes.into_iter().map(figure_value).collect()
 }
 
-/// Heavy drawings stand once on the page, on top.
+/// What costs least for an error, and heavy drawings, stand once on the page,
+/// on top.
 fn is_hero(study: &Study, figure: &Figure) -> bool {
-    study.id == HERO && matches!(figure, Figure::Drawing(_))
+    match figure {
+        Figure::Drawing(_) => study.id == DRAWN,
+        Figure::Plot(_) => {
+            let first = study.figures.iter().find(|f| matches!(f, Figure::Plot(_)));
+            PARETO.contains(&study.id.as_str()) && first.is_some_and(|f| std::ptr::eq(f, figure))
+        }
+    }
 }
 
 /// How many checks of each kind hold, with what the kind means.
@@ -152,14 +193,18 @@ fn kind_values(report: &Report) -> Vec<Value> {
         .collect()
 }
 
+/// `AMD EPYC, 2 threads`.
+pub(super) fn machine(p: &Provenance) -> String {
+    format!("{}, {} {}", p.processor, p.threads, plural(p.threads, "thread", "threads"))
+}
+
 fn provenance_values(report: &Report) -> Vec<Value> {
     let p = &report.provenance;
-    let threads = format!("{} {}", p.threads, plural(p.threads, "thread", "threads"));
     let rows = [
         ("Version", p.version.clone()),
         ("Commit", p.commit.clone()),
         ("Compiler", p.compiler.clone()),
-        ("Processor", format!("{}, {threads}", p.processor)),
+        ("Processor", machine(p)),
         ("Features", p.processor_features.clone()),
         ("Date", p.date.clone()),
         ("Wall time", duration(report.wall_seconds)),
@@ -189,6 +234,27 @@ mod tests {
         assert!(at("9 of 11 checks passed") < at("id=\"failures\""));
         assert!(at("id=\"failures\"") < at("id=\"contents\""));
         assert!(at("id=\"contents\"") < at("id=\"study-patch\""));
+    }
+
+    #[test]
+    fn what_got_worse_comes_first_and_a_failure_links_its_case_file() {
+        let page = to_html(&sample::compared()).unwrap();
+        let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("{text} is missing"));
+        assert!(at("failures/brain-tumour-shift.toml") < at("id=\"compared\""));
+        assert!(at("1 worse, 1 missing, 1 new, 1 improved, 1 the same") < at("id=\"failures\""));
+        let verdicts = ["worse", "missing", "new", "improved", "same"];
+        let places = verdicts.map(|verdict| at(&format!("<span class=\"chip {verdict}\">")));
+        assert!(places.is_sorted(), "{places:?}");
+        assert!(at("id=\"compared\"") < at("id=\"pictures\""));
+    }
+
+    #[test]
+    fn without_scripts_there_is_no_button_that_does_nothing() {
+        let page = to_html(&sample::compared()).unwrap();
+        assert!(!page.split("<script>").next().unwrap().contains("<button"));
+        let tables = page.matches("<table").count();
+        assert_eq!(page.matches("<table data-file=").count(), tables);
+        assert_eq!(page.matches("<caption>").count(), tables);
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The table for the terminal.
 
+use super::change::{band_text, change_text, gate_words, verdict_name};
 use super::number::{bound_text, four_digits};
 use super::words::{duration, kind_name, unit_text, verdict};
-use crate::study::{Check, Report, Study};
+use crate::study::{Check, Comparison, Report, Study, Verdict};
 use comfy_table::{
     Attribute, Cell, CellAlignment, Color, ContentArrangement, LineStyle, Table, presets,
 };
@@ -28,8 +29,50 @@ fn render(report: &Report, colour: bool, width: Option<u16>) -> String {
         }
         text.push('\n');
     }
+    text += &attention(report, colour);
     let code = if report.passed() { "1;32" } else { "1;31" };
     let _ = writeln!(text, "{}", paint(&verdict(report), colour.then_some(code)));
+    text
+}
+
+/// What a reader must not miss in a long list: failures with their cases, and
+/// what changed.
+fn attention(report: &Report, colour: bool) -> String {
+    let mut text = String::new();
+    for check in report.checks().filter(|check| !check.pass) {
+        let (value, bound) = (four_digits(check.value), bound_text(&check.bound));
+        let line = format!("FAIL {}: {value}, must be {bound}: {}", check.id, check.quantity);
+        let _ = writeln!(text, "{}", paint(&line, colour.then_some("1;31")));
+        if let Some(file) = check.failure_file() {
+            let _ = writeln!(text, "     the smallest case that shows it: {file}");
+        }
+    }
+    let Some(comparison) = &report.comparison else { return text };
+    text += &changed_lines(comparison, colour);
+    let _ = writeln!(text, "{}", compared_with(comparison));
+    text
+}
+
+/// `beside the baseline of …: 1 worse, 454 the same`.
+pub fn compared_with(comparison: &Comparison) -> String {
+    format!("beside {}: {}", comparison.with, gate_words(comparison))
+}
+
+/// A line per check that is not the same, the worst first.
+pub fn changed_lines(comparison: &Comparison, colour: bool) -> String {
+    let mut text = String::new();
+    for change in comparison.changes.iter().filter(|c| c.verdict != Verdict::Same) {
+        let code = match change.verdict {
+            Verdict::Worse | Verdict::Missing => "1;31",
+            Verdict::Improved => "32",
+            _ => "2",
+        };
+        let remark = change.remark.as_ref().map_or(String::new(), |r| format!("; {r}"));
+        let name = verdict_name(change.verdict);
+        let (values, band) = (change_text(change), band_text(&change.band));
+        let line = format!("{name:8} {}: {values} (same: {band}){remark}", change.id);
+        let _ = writeln!(text, "{}", paint(&line, colour.then_some(code)));
+    }
     text
 }
 
@@ -98,6 +141,17 @@ mod tests {
         {
             assert!(line.contains(text), "{text} in {line}");
         }
+    }
+
+    #[test]
+    fn failures_and_what_got_worse_are_repeated_below_the_tables() {
+        let plain = render(&sample::compared(), false, Some(200));
+        let at = |words: &str| plain.find(words).unwrap_or_else(|| panic!("{words}: {plain}"));
+        assert!(
+            at("failures/brain-tumour-shift.toml") < at("worse    brain/tumour/shift: 0.01010 mm")
+        );
+        assert!(at("worse    ") < at("missing  brain/lost"));
+        assert!(!plain.contains("\nsame     "));
     }
 
     #[test]

@@ -1,7 +1,10 @@
 //! results.json: everything that was found, one check and one study per line.
 
-use crate::study::{Figure, Report, Study, Table};
+use crate::study::{Comparison, Figure, Report, Study, Table};
 use serde::Serialize;
+
+/// Version of the file, which every [`Report`] carries.
+pub const SCHEMA_VERSION: u32 = 1;
 
 /// A study without its checks, which stand in a list of their own.
 #[derive(Serialize)]
@@ -22,7 +25,7 @@ struct StudyLine<'a> {
 pub fn to_json(report: &Report) -> String {
     let studies: Vec<String> = report.studies.iter().map(|s| value(&line(s))).collect();
     let checks: Vec<String> = report.checks().map(value).collect();
-    let fields = [
+    let mut fields = vec![
         ("schema_version", value(&report.schema_version)),
         ("suite", value(&report.suite)),
         ("provenance", value(&report.provenance)),
@@ -31,9 +34,18 @@ pub fn to_json(report: &Report) -> String {
         ("checks", list(&checks)),
         ("studies", list(&studies)),
     ];
+    if let Some(comparison) = &report.comparison {
+        fields.push(("comparison", comparison_text(comparison)));
+    }
     let body: Vec<String> =
         fields.iter().map(|(name, text)| format!("  \"{name}\": {text}")).collect();
     format!("{{\n{}\n}}\n", body.join(",\n"))
+}
+
+/// One change per line.
+fn comparison_text(comparison: &Comparison) -> String {
+    let changes: Vec<String> = comparison.changes.iter().map(value).collect();
+    format!("{{\"with\": {}, \"changes\": {}}}", value(&comparison.with), list(&changes))
 }
 
 fn line(study: &Study) -> StudyLine<'_> {

@@ -1,8 +1,9 @@
 //! junit.xml: a test suite per study, a test case per check.
 
+use super::change::{band_text, change_text, verdict_name};
 use super::number::{bound_text, four_digits};
 use super::words::{kind_name, unit_text};
-use crate::study::{Check, Report, Study};
+use crate::study::{Check, Comparison, Report, Study, Verdict};
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use std::time::Duration;
 
@@ -13,6 +14,7 @@ pub fn to_junit(report: &Report) -> anyhow::Result<String> {
         junit.set_time(time);
     }
     junit.add_test_suites(report.studies.iter().map(suite));
+    junit.add_test_suites(report.comparison.iter().map(compared));
     Ok(junit.to_string()?)
 }
 
@@ -38,12 +40,41 @@ fn case(check: &Check) -> TestCase {
     } else {
         let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
         status.set_message(failure_message(check)).set_type(kind_name(check.kind));
-        status.set_description(format!("{}\nbound from: {}", check.quantity, check.source));
+        let case = check
+            .failure_file()
+            .map_or(String::new(), |file| format!("\nthe smallest case that shows it: {file}"));
+        let (quantity, source) = (&check.quantity, &check.source);
+        status.set_description(format!("{quantity}\nbound from: {source}{case}"));
         status
     };
     let mut case = TestCase::new(check.id.as_str(), status);
     case.set_classname(check.study.as_str());
     case
+}
+
+/// A test case per check that has a baseline: nothing got worse.
+fn compared(comparison: &Comparison) -> TestSuite {
+    let mut suite = TestSuite::new("baseline");
+    let known = comparison.changes.iter().filter(|change| change.verdict != Verdict::New);
+    suite.add_test_cases(known.map(|change| {
+        let status = match change.verdict {
+            Verdict::Worse | Verdict::Missing => {
+                let name = verdict_name(change.verdict);
+                let remark = change.remark.as_ref().map_or(String::new(), |r| format!("; {r}"));
+                let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+                let message = format!("{name}: {}{remark}", change_text(change));
+                status.set_message(message).set_type(name);
+                let band = band_text(&change.band);
+                status.set_description(format!("counts as the same: {band}"));
+                status
+            }
+            _ => TestCaseStatus::success(),
+        };
+        let mut case = TestCase::new(format!("baseline/{}", change.id), status);
+        case.set_classname("baseline");
+        case
+    }));
+    suite
 }
 
 fn failure_message(check: &Check) -> String {
@@ -71,5 +102,13 @@ mod tests {
         assert!(xml.contains("breaks ≤ 0.02"), "{xml}");
         assert!(xml.contains("could not run: reference/cook.csv: no such file"), "{xml}");
         assert!(xml.contains("tumour&apos;s"), "a quantity must be escaped: {xml}");
+    }
+
+    #[test]
+    fn what_got_worse_or_is_missing_is_a_failed_test_of_the_baseline() {
+        let xml = to_junit(&sample::compared()).unwrap();
+        let back = quick_junit::Report::deserialize_from_str(&xml).unwrap();
+        assert_eq!((back.tests, back.failures, back.errors), (16, 4, 1));
+        assert!(xml.contains("worse: 0.01010 mm → 0.03120 mm; its bound was loosened"), "{xml}");
     }
 }

@@ -1,21 +1,29 @@
 //! A summary in Markdown, made for the step summary of a CI job.
 
+use super::change::gate_words;
 use super::number::{bound_text, four_digits};
+use super::versus::change_table;
 use super::words::{duration, kind_name, study_counts, study_passed, unit_text, verdict};
-use crate::study::{Cell, Check, Provenance, Report, Study};
+use crate::study::{Cell, Check, Comparison, Provenance, Report, Study, Verdict};
 use std::fmt::Write;
 
-/// Verdict, failures, one line per study, and all checks folded away.
+const DETAILS: &str = "<details>";
+const DETAILS_END: &str = "</details>";
+
+/// Verdict, failures, what got worse, one line per study, and all checks folded away.
 pub fn to_markdown(report: &Report) -> String {
     let mut text = String::new();
     let mark = mark(report.passed());
     let _ = writeln!(text, "## {mark} mtled {}: {}\n", report.suite, verdict(report));
     failures(&mut text, report);
+    if let Some(comparison) = &report.comparison {
+        compared(&mut text, comparison);
+    }
     studies(&mut text, report);
     if report.checks().next().is_some() {
-        text.push_str("<details><summary>All checks</summary>\n\n");
+        let _ = writeln!(text, "{DETAILS}<summary>All checks</summary>\n");
         checks(&mut text, report.checks());
-        text.push_str("\n</details>\n\n");
+        let _ = writeln!(text, "\n{DETAILS_END}\n");
     }
     let p = &report.provenance;
     let _ = writeln!(
@@ -30,6 +38,25 @@ pub fn to_markdown(report: &Report) -> String {
         p.date
     );
     text
+}
+
+/// A summary without what is folded away.
+pub(super) fn without_details(text: &str) -> String {
+    let Some((before, rest)) = text.split_once(DETAILS) else { return text.to_string() };
+    let after = rest.split_once(DETAILS_END).map_or("", |(_, after)| after.trim_start());
+    format!("{before}{after}")
+}
+
+/// What changed beside a baseline, the worst first.
+fn compared(text: &mut String, comparison: &Comparison) {
+    let mark = mark(comparison.holds());
+    let (with, words) = (&comparison.with, gate_words(comparison));
+    let _ = writeln!(text, "### {mark} Beside {with}: {words}\n");
+    let changes = || comparison.changes.iter().filter(|c| c.verdict != Verdict::Same);
+    if changes().next().is_some() {
+        change_table(text, changes());
+        text.push('\n');
+    }
 }
 
 fn failures(text: &mut String, report: &Report) {
@@ -47,8 +74,11 @@ fn failures(text: &mut String, report: &Report) {
             "- ❌ `{}`: {quantity} is {value}{unit}, must be {bound}{unit}",
             check.id
         );
+        if let Some(file) = check.failure_file() {
+            let _ = writeln!(text, "  The smallest case that shows it: [`{file}`]({file})");
+        }
     }
-    if !report.passed() {
+    if !report.bounds_hold() {
         text.push('\n');
     }
 }
@@ -120,7 +150,7 @@ pub fn markdown_tables(study: &Study, provenance: &Provenance) -> String {
 }
 
 /// Keeps a text inside its cell.
-fn cell(text: &str) -> String {
+pub(super) fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('<', "&lt;").replace(['\r', '\n'], " ")
 }
 
@@ -138,8 +168,18 @@ mod tests {
     }
 
     #[test]
+    fn what_got_worse_stands_before_the_studies() {
+        let text = to_markdown(&sample::compared());
+        let at = |words: &str| text.find(words).unwrap_or_else(|| panic!("{words}: {text}"));
+        assert!(at("[`failures/brain-tumour-shift.toml`]") < at("### ❌ Beside the baseline"));
+        assert!(at("| worse (its bound was loosened) |") < at("| missing |"));
+        assert!(at("| improved |") < at("| | Study |"));
+        assert!(!text.contains("| same |"));
+    }
+
+    #[test]
     fn every_row_of_a_table_has_as_many_cells_as_its_heading() {
-        let text = to_markdown(&sample::report());
+        let text = to_markdown(&sample::compared());
         let bars = |line: &str| line.replace("\\|", "").matches('|').count();
         for line in text.lines().filter(|line| line.starts_with("| ")) {
             assert!([5, 8].contains(&bars(line)), "{line}");

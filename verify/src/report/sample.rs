@@ -1,8 +1,9 @@
 //! A made-up report that uses every feature, for the tests of this folder.
 
 use crate::study::{
-    Axis, Bound, Cell, Check, Column, Drawing, Figure, Kind, Layer, LayerStyle, Plot, Provenance,
-    Report, Series, SeriesStyle, Study, Table,
+    Axis, Band, BandSource, Bound, Cell, Change, Check, Column, Comparison, Drawing, Figure, Kind,
+    Layer, LayerStyle, Plot, Provenance, Report, Scale, Series, SeriesStyle, Spread, Study, Table,
+    Verdict,
 };
 use std::f64::consts::TAU;
 
@@ -20,6 +21,37 @@ pub(crate) fn report() -> Report {
     Report { studies, ..empty() }
 }
 
+/// The same beside a baseline: one check of each verdict.
+pub(crate) fn compared() -> Report {
+    let change = |id: &str, verdict: Verdict, before: f64, now: f64| Change {
+        id: id.into(),
+        quantity: "shift, h < 1 & more".into(),
+        unit: "mm".into(),
+        verdict,
+        before,
+        now,
+        band: Some(Band {
+            low: 0.5 * before,
+            high: 2.0 * before,
+            source: BandSource::Scatter,
+            spread: Some(Spread { scale: Scale::Logarithmic, deviation: 0.1, samples: 20 }),
+        })
+        .filter(|band| band.low.is_finite()),
+        remark: (verdict == Verdict::Worse).then(|| "its bound was loosened".to_string()),
+    };
+    let changes = vec![
+        change("brain/tumour/shift", Verdict::Worse, 0.0101, 0.0312),
+        change("brain/lost", Verdict::Missing, 0.02, f64::NAN),
+        change("patch/cube/moment", Verdict::New, f64::NAN, 4.4e-15),
+        change("brain/ventricle/shift", Verdict::Improved, 0.05, 0.0101),
+        change("brain/step", Verdict::Same, 1.2e-5, 1.234e-5),
+    ];
+    let with = "the baseline of 2026-11-20 (commit d97a856)".to_string();
+    let mut report = Report { comparison: Some(Comparison { with, changes }), ..report() };
+    report.studies[3].checks[0].reproduce = Some("# smallest\nname = \"brain\"\n".into());
+    report
+}
+
 pub(crate) fn empty() -> Report {
     Report {
         schema_version: 1,
@@ -35,6 +67,7 @@ pub(crate) fn empty() -> Report {
         },
         studies: vec![],
         wall_seconds: 191.3,
+        comparison: None,
     }
 }
 

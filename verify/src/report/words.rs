@@ -1,16 +1,23 @@
 //! The few phrases that every kind of report shares.
 
-use crate::study::{Kind, Report, Study};
+use crate::study::{Kind, Report, Study, Verdict};
 
-/// «48 of 50 checks passed», with the studies that could not run.
+/// «48 of 50 checks passed», with the studies that could not run and what got
+/// worse.
 pub(super) fn verdict(report: &Report) -> String {
     let (passed, all) = counts(report.checks().map(|check| check.pass));
     let broken = report.studies.iter().filter(|study| study.failure.is_some()).count();
-    let checks = format!("{passed} of {all} {} passed", plural(all, "check", "checks"));
-    match broken {
-        0 => checks,
-        n => format!("{checks}, {n} {} could not run", plural(n, "study", "studies")),
+    let mut words = format!("{passed} of {all} {} passed", plural(all, "check", "checks"));
+    if broken > 0 {
+        words += &format!(", {broken} {} could not run", plural(broken, "study", "studies"));
     }
+    for (verdict, told) in [(Verdict::Worse, "got worse"), (Verdict::Missing, "missing")] {
+        match report.comparison.as_ref().map_or(0, |comparison| comparison.count(verdict)) {
+            0 => {}
+            count => words += &format!(", {count} {told}"),
+        }
+    }
+    words
 }
 
 /// How many hold, out of how many.
@@ -71,6 +78,7 @@ mod tests {
         let report = sample::report();
         assert_eq!(verdict(&report), "9 of 11 checks passed, 1 study could not run");
         assert_eq!(verdict(&sample::empty()), "0 of 0 checks passed");
+        assert!(verdict(&sample::compared()).ends_with(", 1 got worse, 1 missing"));
     }
 
     #[test]

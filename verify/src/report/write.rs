@@ -101,6 +101,31 @@ mod tests {
     }
 
     #[test]
+    fn the_case_of_a_failure_lies_beside_the_report_until_the_check_passes() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut report = sample::compared();
+        write_report(&report, folder.path()).unwrap();
+        let case = folder.path().join("failures/brain-tumour-shift.toml");
+        assert_eq!(std::fs::read_to_string(&case).unwrap(), "# smallest\nname = \"brain\"\n");
+        report.studies[3].checks[0].pass = true;
+        write_report(&report, folder.path()).unwrap();
+        assert!(!case.exists());
+    }
+
+    #[test]
+    fn a_report_that_is_read_back_makes_the_same_files() {
+        let (first, second) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        write_report(&sample::compared(), first.path()).unwrap();
+        let back = crate::report::read_report(first.path()).unwrap();
+        write_report(&back, second.path()).unwrap();
+        for file in ["results.json", "junit.xml", "index.html", "summary.md"] {
+            let read =
+                |folder: &tempfile::TempDir| std::fs::read(folder.path().join(file)).unwrap();
+            assert!(read(&first) == read(&second), "{file}");
+        }
+    }
+
+    #[test]
     fn a_path_that_cannot_be_written_is_named_in_the_error() {
         let folder = tempfile::tempdir().unwrap();
         let error = write_atomically(&folder.path().join(".."), b"x").unwrap_err();

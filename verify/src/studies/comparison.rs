@@ -136,7 +136,7 @@ fn check(study: &mut Study, compared: &Compared) -> Result<()> {
             true => (Kind::Regression, why),
             false => (Kind::Reference, "2 % of the largest value"),
         };
-        study.checks.push(Check::new(
+        let mut check = Check::new(
             &format!("comparison/{name}/{what}"),
             &format!("{}: {words}, relative difference", compared.case.title),
             kind,
@@ -144,7 +144,9 @@ fn check(study: &mut Study, compared: &Compared) -> Result<()> {
             Bound::AtMost(limit + difference.bar),
             "1",
             &format!("{source}: {limit}, and {:.1e} of the reference itself", difference.bar),
-        ));
+        );
+        check.reference_error = Some(difference.bar);
+        study.checks.push(check);
     }
     Ok(())
 }

@@ -1,0 +1,67 @@
+//! `mtled report`.
+
+use super::{Common, Format, print_data};
+use crate::gate::compare_runs;
+use crate::report::{human, json, read_report, versus, write_atomically, write_report};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub struct ReportArgs {
+    /// Folder of a report, or its results.json.
+    run: PathBuf,
+    /// A later run: both are compared instead.
+    later: Option<PathBuf>,
+    /// Where to write [default: into the folder of the report; of two,
+    /// reports/compare].
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+pub fn report(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
+    match &arguments.later {
+        None => rebuild(arguments, common),
+        Some(later) => compare(arguments, later, common),
+    }
+}
+
+/// Pages, figures and the rest from the one file that holds everything.
+fn rebuild(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
+    let report = read_report(&arguments.run)?;
+    let beside = || match arguments.run.is_dir() {
+        true => arguments.run.clone(),
+        false => arguments.run.parent().map(PathBuf::from).unwrap_or_default(),
+    };
+    let out = arguments.out.clone().unwrap_or_else(beside);
+    write_report(&report, &out)?;
+    match common.format {
+        Format::Json => print_data(&json::to_json(&report))?,
+        Format::Human if !common.quiet => {
+            let table = human::to_table(&report, common.colours());
+            print_data(&format!("{table}\nreport: {}\n", out.join("index.html").display()))?;
+        }
+        Format::Human => {}
+    }
+    Ok(0)
+}
+
+fn compare(arguments: &ReportArgs, later: &Path, common: &Common) -> anyhow::Result<u8> {
+    let before = read_report(&arguments.run)?;
+    let now = read_report(later)?;
+    let comparison = compare_runs(&before, &now);
+    let out = arguments.out.clone().unwrap_or_else(|| "reports/compare".into());
+    let page = out.join("index.html");
+    let text = versus::to_markdown(&before, &now, &comparison);
+    write_atomically(&page, versus::to_html(&before, &now, &comparison)?.as_bytes())?;
+    write_atomically(&out.join("summary.md"), text.as_bytes())?;
+    match common.format {
+        Format::Json => print_data(&(serde_json::to_string_pretty(&comparison)? + "\n"))?,
+        Format::Human if !common.quiet => {
+            let changed = human::changed_lines(&comparison, common.colours());
+            let words = human::compared_with(&comparison);
+            print_data(&format!("{changed}{words}\nreport: {}\n", page.display()))?;
+        }
+        Format::Human => {}
+    }
+    Ok(0)
+}

@@ -1,0 +1,187 @@
+//! Which values count as the same, and why.
+
+use super::student::two_sided_quantile;
+use crate::study::{Band, BandSource, Bound, Check, Kind, Scale, Spread};
+
+/// Chance that a run of unchanged code over other clouds fails \[–\]; it is
+/// shared evenly by the checks that scatter (Bonferroni 1936).
+pub const FALSE_ALARMS: f64 = 0.01;
+
+/// Half the digits: what is left of a figure whose computation loses no more
+/// than that to round-off. √ε \[–\].
+pub const HALF_THE_DIGITS: f64 = 1.490_116_119_384_765_6e-8;
+
+/// Bounds as narrow as this leave room for arithmetic, differences of functions
+/// and tolerances of iterations, and for no error of a discretisation. ∛ε \[–\].
+const ARITHMETIC: f64 = 6.055_454_452_393_343e-6;
+
+/// The chance left to each of `count` checks.
+pub fn tail(count: usize) -> f64 {
+    FALSE_ALARMS / count.max(1) as f64
+}
+
+/// The band of a check that no cloud moves, and of any check before its scatter
+/// is known.
+pub fn still(check: &Check) -> Band {
+    if let Some(band) = arithmetic(check) {
+        return band;
+    }
+    let half_width = round_off(check.value, &check.unit);
+    widened(theory(check.value - half_width, check.value + half_width), check)
+}
+
+/// All that the bound of a theorem allows, where it allows for arithmetic alone.
+fn arithmetic(check: &Check) -> Option<Band> {
+    if check.kind != Kind::Exact || check.unit != "1" {
+        return None;
+    }
+    match check.bound {
+        Bound::AtMost(limit) if (0.0..=ARITHMETIC).contains(&limit) => {
+            Some(theory(check.value.min(0.0), limit))
+        }
+        Bound::Between(low, high) if high - low <= 2.0 * ARITHMETIC * high.abs() => {
+            Some(theory(low, high))
+        }
+        _ => None,
+    }
+}
+
+/// Round-off of a figure. What has no unit is relative to something of order
+/// one, except for counts, which are whole.
+pub fn round_off(value: f64, unit: &str) -> f64 {
+    let relative = unit == "1" && value.fract() != 0.0;
+    HALF_THE_DIGITS * if relative { value.abs().max(1.0) } else { value.abs() }
+}
+
+fn theory(low: f64, high: f64) -> Band {
+    Band { low, high, source: BandSource::Theory, spread: None }
+}
+
+/// At least the error bar of the reference to either side.
+fn widened(band: Band, check: &Check) -> Band {
+    let Some(bar) = check.reference_error else { return band };
+    let (low, high) = (check.value - bar, check.value + bar);
+    if low >= band.low && high <= band.high {
+        return band;
+    }
+    let (low, high) = (low.min(band.low), high.max(band.high));
+    Band { low, high, source: BandSource::Reference, ..band }
+}
+
+/// Mean and spread of the figures of other clouds, on a logarithmic scale where
+/// all are positive: errors are products of factors, and their logarithms are
+/// closer to normal. None where no cloud moves the figure.
+pub fn spread(samples: &[f64], unit: &str) -> Option<(f64, Spread)> {
+    if samples.len() < 2 || samples.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    let least = |value: f64| round_off(value, unit);
+    let (low, high) = samples.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+    if high - low <= least(high).max(least(low)) {
+        return None;
+    }
+    let scale = if low > 0.0 { Scale::Logarithmic } else { Scale::Linear };
+    let moved: Vec<f64> = samples.iter().map(|value| on(scale, *value)).collect();
+    let count = moved.len() as f64;
+    let mean = moved.iter().sum::<f64>() / count;
+    let squares: f64 = moved.iter().map(|value| (value - mean).powi(2)).sum();
+    let deviation = (squares / (count - 1.0)).sqrt();
+    Some((mean, Spread { scale, deviation, samples: samples.len() }))
+}
+
+/// Where one more run falls, but for a chance of `tail`:
+/// x̄ ± t(n − 1, tail) s √(1 + 1/n).
+pub fn around_mean(check: &Check, mean: f64, spread: Spread, tail: f64) -> Band {
+    let n = spread.samples as f64;
+    scattered(check, mean, spread, tail, (1.0 + 1.0 / n).sqrt())
+}
+
+/// How far apart two runs fall, but for a chance of `tail`, where only one of
+/// them is known: x ± t(n − 1, tail) s √2.
+pub fn around_value(check: &Check, spread: Spread, tail: f64) -> Band {
+    match spread.scale {
+        Scale::Logarithmic if check.value <= 0.0 => still(check),
+        scale => scattered(check, on(scale, check.value), spread, tail, std::f64::consts::SQRT_2),
+    }
+}
+
+fn scattered(check: &Check, centre: f64, spread: Spread, tail: f64, factor: f64) -> Band {
+    if let Some(band) = arithmetic(check) {
+        return band;
+    }
+    let width = two_sided_quantile(tail, spread.samples - 1) * spread.deviation * factor;
+    let back = |value: f64| match spread.scale {
+        Scale::Linear => value,
+        Scale::Logarithmic => value.exp(),
+    };
+    // The run that the baseline is made of is no alarm.
+    let low = back(centre - width).min(check.value);
+    let high = back(centre + width).max(check.value);
+    let band = Band { low, high, source: BandSource::Scatter, spread: Some(spread) };
+    widened(band, check)
+}
+
+fn on(scale: Scale, value: f64) -> f64 {
+    match scale {
+        Scale::Linear => value,
+        Scale::Logarithmic => value.ln(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(kind: Kind, value: f64, bound: Bound) -> Check {
+        Check::new("a/b", "", kind, value, bound, "1", "")
+    }
+
+    #[test]
+    fn a_theorem_met_to_round_off_may_use_all_of_its_bound() {
+        let band = still(&check(Kind::Exact, 3e-16, Bound::AtMost(1e-12)));
+        assert_eq!((band.low, band.high, band.source), (0.0, 1e-12, BandSource::Theory));
+    }
+
+    #[test]
+    fn a_discretisation_error_may_not_use_its_bound_even_where_the_truth_is_exact() {
+        let band = still(&check(Kind::Exact, 1e-3, Bound::AtMost(1e-2)));
+        assert!(band.high < 1.000_02e-3 && band.high > 1e-3, "{band:?}");
+    }
+
+    #[test]
+    fn a_count_that_no_cloud_moves_may_not_change_by_one() {
+        let band = still(&check(Kind::Regression, 651.0, Bound::AtMost(665.0)));
+        assert!(band.low > 650.0 && band.high < 652.0, "{band:?}");
+    }
+
+    #[test]
+    fn a_difference_is_not_judged_below_the_error_bar_of_its_reference() {
+        let mut difference = check(Kind::Reference, 0.008, Bound::AtMost(0.03));
+        difference.reference_error = Some(0.01);
+        let band = still(&difference);
+        assert_eq!((band.low, band.high, band.source), (-0.002, 0.018, BandSource::Reference));
+        let spread = Spread { scale: Scale::Logarithmic, deviation: 1e-3, samples: 20 };
+        assert_eq!(around_value(&difference, spread, 0.01).source, BandSource::Reference);
+    }
+
+    #[test]
+    fn the_prediction_interval_is_that_of_the_textbook() {
+        // x̄ = 3, s = √2.5, n = 5, t(4, 5 %) = 2.776.
+        let (mean, spread) = spread(&[-1.0 + 2.0, 2.0, 3.0, 4.0, 5.0], "1").unwrap();
+        assert_eq!(spread.scale, Scale::Logarithmic);
+        assert!(mean < 3f64.ln());
+        let (mean, spread) = super::spread(&[-2.0, -1.0, 0.0, 1.0, 2.0], "1").unwrap();
+        assert_eq!((mean, spread.scale, spread.samples), (0.0, Scale::Linear, 5));
+        let one = check(Kind::Regression, 0.5, Bound::Between(-9.0, 9.0));
+        let band = around_mean(&one, mean, spread, 0.05);
+        let half_width = 2.776_445 * 2.5f64.sqrt() * 1.2f64.sqrt();
+        assert!((band.high - half_width).abs() < 1e-5 && band.low == -band.high, "{band:?}");
+    }
+
+    #[test]
+    fn figures_that_are_the_same_on_every_cloud_have_no_scatter() {
+        assert!(spread(&[14.0; 20], "1").is_none());
+        assert!(spread(&[0.3, 0.3 + 1e-12, 0.3], "1").is_none());
+        assert!(spread(&[14.0, 15.0, 14.0], "1").is_some());
+    }
+}

@@ -1,0 +1,124 @@
+//! The committed figures, one check per line so that a diff can be read.
+
+use crate::study::{Band, Bound, Kind};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Version of the file that this program writes and reads.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// What the figures were when somebody last said why they may be so.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Baseline {
+    pub schema_version: u32,
+    pub suite: String,
+    /// Chance that a run of unchanged code over other clouds fails \[–\].
+    pub false_alarms: f64,
+    /// Oldest first.
+    pub history: Vec<Entry>,
+    /// In the order of their ids.
+    pub checks: Vec<Stored>,
+}
+
+/// Why the baseline was written.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    pub date: String,
+    pub commit: String,
+    pub processor: String,
+    pub reason: String,
+    /// In words, such as `3 worse, 1 new`.
+    pub changes: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stored {
+    pub id: String,
+    pub value: f64,
+    pub unit: String,
+    pub kind: Kind,
+    pub bound: Bound,
+    pub band: Band,
+}
+
+/// What keeps the gate from judging.
+#[derive(Debug, Error)]
+pub enum GateError {
+    #[error(
+        "there is no baseline {}: write one with `mtled verify --update-baseline --reason …`", path.display()
+    )]
+    Absent { path: PathBuf },
+    #[error("cannot read the baseline {}: {source}", path.display())]
+    Unreadable { path: PathBuf, source: std::io::Error },
+    #[error("{} is no baseline: {source}", path.display())]
+    Malformed { path: PathBuf, source: serde_json::Error },
+    #[error(
+        "the baseline {} has schema version {found}, this program reads {SCHEMA_VERSION}: write it anew \
+         with --update-baseline", path.display()
+    )]
+    Version { path: PathBuf, found: u64 },
+    #[error(
+        "the baseline is of the suite {baseline}, the run of the suite {run}: run `mtled verify --suite \
+         {baseline}` or name another file"
+    )]
+    Suite { baseline: String, run: String },
+    #[error("a baseline is written with a reason for whoever reads its diff: --reason is empty")]
+    NoReason,
+    #[error(
+        "the run breaks its own bounds ({failed} checks failed, {broken} studies could not run): \
+         only a run that passes becomes a baseline"
+    )]
+    RunFails { failed: usize, broken: usize },
+    #[error("scatter needs results of at least two clouds, there is {0}")]
+    TooFewClouds(usize),
+}
+
+/// Reads a baseline.
+pub fn read_baseline(path: &Path) -> Result<Baseline, GateError> {
+    let at = || path.to_path_buf();
+    let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
+        std::io::ErrorKind::NotFound => GateError::Absent { path: at() },
+        _ => GateError::Unreadable { path: at(), source },
+    })?;
+    let malformed = |source| GateError::Malformed { path: at(), source };
+    #[derive(Deserialize)]
+    struct Head {
+        schema_version: u64,
+    }
+    let head: Head = serde_json::from_str(&text).map_err(malformed)?;
+    if head.schema_version != u64::from(SCHEMA_VERSION) {
+        return Err(GateError::Version { path: at(), found: head.schema_version });
+    }
+    serde_json::from_str(&text).map_err(malformed)
+}
+
+impl Baseline {
+    pub fn check(&self, id: &str) -> Option<&Stored> {
+        let found = self.checks.binary_search_by(|stored| stored.id.as_str().cmp(id)).ok()?;
+        Some(&self.checks[found])
+    }
+
+    /// The file's text: an entry of the history and a check per line.
+    pub fn to_json(&self) -> String {
+        let suite = line(&self.suite);
+        let history: Vec<String> = self.history.iter().map(line).collect();
+        let checks: Vec<String> = self.checks.iter().map(line).collect();
+        let list = |lines: Vec<String>| match lines.is_empty() {
+            true => "[]".to_string(),
+            false => format!("[\n    {}\n  ]", lines.join(",\n    ")),
+        };
+        format!(
+            "{{\n  \"schema_version\": {},\n  \"suite\": {suite},\n  \"false_alarms\": {},\n  \
+             \"history\": {},\n  \"checks\": {}\n}}\n",
+            self.schema_version,
+            self.false_alarms,
+            list(history),
+            list(checks)
+        )
+    }
+}
+
+fn line<T: Serialize>(item: &T) -> String {
+    serde_json::to_string(item).expect("plain data with string keys always serialises")
+}

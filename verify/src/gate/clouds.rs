@@ -1,0 +1,80 @@
+//! What the same code finds on other clouds.
+
+use super::band::{around_mean, spread, tail};
+use super::baseline::GateError;
+use super::judge::verdict;
+use crate::study::{Band, Check, Report, Spread, Verdict};
+use std::collections::BTreeMap;
+
+/// The figures of every check over other clouds; may be empty.
+#[derive(Debug, Clone, Default)]
+pub struct Clouds<'a> {
+    samples: BTreeMap<&'a str, Vec<f64>>,
+    runs: &'a [Report],
+}
+
+/// What a run would have been told by the band of all the others.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Place of the run in the list.
+    pub run: usize,
+    /// Checks that would have been called worse.
+    pub worse: Vec<String>,
+}
+
+impl<'a> Clouds<'a> {
+    /// From runs of the same code over other clouds: none, or at least two.
+    pub fn new(runs: &'a [Report]) -> Result<Clouds<'a>, GateError> {
+        if runs.len() == 1 {
+            return Err(GateError::TooFewClouds(1));
+        }
+        let mut samples: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+        for check in runs.iter().flat_map(Report::checks) {
+            samples.entry(&check.id).or_default().push(check.value);
+        }
+        Ok(Clouds { samples, runs })
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.runs.is_empty()
+    }
+
+    pub fn runs(&self) -> usize {
+        self.runs.len()
+    }
+
+    /// Mean and spread of a check over the other clouds and its own; None
+    /// where no cloud moves it.
+    pub fn spread(&self, check: &Check) -> Option<(f64, Spread)> {
+        let mut samples = self.samples.get(check.id.as_str())?.clone();
+        samples.push(check.value);
+        spread(&samples, &check.unit)
+    }
+
+    /// Leaves out one run after the other and judges it by the rest: the bands
+    /// hold what they promise if nearly none is called worse.
+    pub fn left_out(&self, report: &Report) -> Vec<LeftOut> {
+        let moved = report.checks().filter(|check| self.spread(check).is_some()).count();
+        let of_run = |(run, left): (usize, &Report)| {
+            let rest = |check: &Check| self.without(check, run, tail(moved));
+            let worse = left.checks().filter(|check| {
+                rest(check).is_some_and(|band| verdict(check, &band) == Verdict::Worse)
+            });
+            LeftOut { run, worse: worse.map(|check| check.id.clone()).collect() }
+        };
+        self.runs.iter().enumerate().map(of_run).filter(|left| !left.worse.is_empty()).collect()
+    }
+
+    /// The band of a check from all runs but one.
+    fn without(&self, check: &Check, run: usize, tail: f64) -> Option<Band> {
+        let rest = self.runs.iter().enumerate().filter(|(index, _)| *index != run);
+        let values = rest.filter_map(|(_, report)| {
+            report.checks().find(|other| other.id == check.id).map(|other| other.value)
+        });
+        let values: Vec<f64> = values.collect();
+        let (mean, spread) = spread(&values, &check.unit)?;
+        // Its own value must not widen the band that it is judged by.
+        let other = Check { value: values[0], ..check.clone() };
+        Some(around_mean(&other, mean, spread, tail))
+    }
+}

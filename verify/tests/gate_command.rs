@@ -1,0 +1,205 @@
+//! `mtled verify --baseline` and `mtled report` as their users meet them, on
+//! the one study that takes no time.
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+struct Place {
+    folder: TempDir,
+}
+
+impl Place {
+    fn new() -> Place {
+        Place { folder: TempDir::new().unwrap() }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Exit code, standard output and standard error.
+    fn mtled(&self, arguments: &[&str]) -> (i32, String, String) {
+        self.mtled_with(arguments, &[])
+    }
+
+    fn mtled_with(&self, arguments: &[&str], more: &[(&str, &Path)]) -> (i32, String, String) {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
+        command.args(arguments).current_dir(self.folder.path());
+        command.env_remove("GITHUB_ACTIONS").env_remove("GITHUB_STEP_SUMMARY");
+        for (name, value) in more {
+            command.env(name, value);
+        }
+        let output = command.timeout(std::time::Duration::from_secs(120)).output().unwrap();
+        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+        (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+    }
+
+    fn verify(&self, more: &[&str]) -> (i32, String, String) {
+        self.mtled(&[&["verify", "--only", "references", "--out", "out"], more].concat())
+    }
+
+    /// Writes `base.json`, with a text in it replaced.
+    fn baseline(&self, edit: impl Fn(&mut serde_json::Value)) {
+        let update = ["--baseline", "base.json", "--update-baseline", "--reason", "a beginning"];
+        let (code, _, err) = self.verify(&update);
+        assert_eq!(code, 0, "{err}");
+        assert!(err.contains("+ references/") && err.contains("baseline: base.json"), "{err}");
+        let text = std::fs::read_to_string(self.path("base.json")).unwrap();
+        let mut value = serde_json::from_str(&text).unwrap();
+        edit(&mut value);
+        std::fs::write(self.path("base.json"), value.to_string()).unwrap();
+    }
+
+    fn read(&self, file: &str) -> String {
+        std::fs::read_to_string(self.path(file)).unwrap()
+    }
+}
+
+const ORDER: &str = "references/self_test/order";
+
+/// Moves the stored value and band of a check.
+fn moved(baseline: &mut serde_json::Value, id: &str, value: f64, low: f64, high: f64) {
+    let checks = baseline["checks"].as_array_mut().unwrap();
+    let check = checks.iter_mut().find(|check| check["id"] == id).unwrap();
+    check["value"] = value.into();
+    check["band"]["low"] = low.into();
+    check["band"]["high"] = high.into();
+}
+
+#[test]
+fn a_run_after_an_update_is_the_same_everywhere() {
+    let place = Place::new();
+    place.baseline(|_| {});
+    let (code, out, err) = place.verify(&["--baseline", "base.json"]);
+    assert_eq!(code, 0, "{err}");
+    let line = out.lines().find(|line| line.starts_with("beside the baseline of")).unwrap();
+    assert!(line.ends_with(" the same") && !line.contains(','), "{line}");
+}
+
+#[test]
+fn a_value_beyond_its_band_fails_the_run_and_is_named_in_every_report() {
+    let place = Place::new();
+    place.baseline(|baseline| moved(baseline, ORDER, 1.9, 1.8999, 1.9001));
+    let summary = place.path("step.md");
+    let github = [("GITHUB_ACTIONS", Path::new("true")), ("GITHUB_STEP_SUMMARY", &summary)];
+    std::fs::write(&summary, "earlier step\n").unwrap();
+    let arguments = ["verify", "--only", "references", "--out", "out", "--baseline", "base.json"];
+    let (code, out, err) = place.mtled_with(&arguments, &github);
+    assert_eq!(code, 1, "{err}");
+    assert!(out.contains(&format!("worse    {ORDER}: 1.900 → 1.786")), "{out}");
+    assert!(err.contains(&format!("::error title={ORDER} got worse::1.900 → 1.786")), "{err}");
+    for file in ["out/index.html", "out/summary.md", "out/junit.xml", "out/results.json"] {
+        let text = place.read(file);
+        assert!(text.contains("worse") && text.contains("self_test"), "{file}");
+    }
+    let step = place.read("step.md");
+    assert!(step.starts_with("earlier step\n## ❌") && step.contains(ORDER), "{step}");
+}
+
+#[test]
+fn improved_new_and_missing_checks_are_told_apart() {
+    let place = Place::new();
+    let agree = "references/cook_membrane/codes_agree";
+    place.baseline(|baseline| {
+        moved(baseline, agree, 0.9, 0.89, 0.91);
+        let checks = baseline["checks"].as_array_mut().unwrap();
+        checks.retain(|check| check["id"] != ORDER);
+    });
+    let (code, out, _) = place.verify(&["--baseline", "base.json"]);
+    assert_eq!(code, 0, "{out}");
+    assert!(out.contains(&format!("improved {agree}: 0.9000 → 0.5927")), "{out}");
+    assert!(out.contains(&format!("new      {ORDER}: nothing → 1.786")), "{out}");
+    place.baseline(|baseline| {
+        let checks = baseline["checks"].as_array_mut().unwrap();
+        let mut gone = checks[0].clone();
+        gone["id"] = "references/a_case/codes_agree".into();
+        checks.insert(0, gone);
+        // A study that is not run now is not missed.
+        let mut other = checks[0].clone();
+        other["id"] = "patch/a_case/force".into();
+        checks.insert(0, other);
+    });
+    let (code, out, _) = place.verify(&["--baseline", "base.json"]);
+    assert_eq!(code, 1, "{out}");
+    assert!(out.contains("missing  references/a_case/codes_agree"), "{out}");
+    assert!(!out.contains("patch/a_case"), "{out}");
+}
+
+#[test]
+fn a_baseline_is_not_written_without_a_reason() {
+    let place = Place::new();
+    for arguments in [&["--update-baseline"][..], &["--update-baseline", "--reason", "  "]] {
+        let (code, out, err) = place.verify(arguments);
+        assert_eq!((code, out.as_str()), (2, ""), "{err}");
+        assert!(err.contains("reason"), "{err}");
+    }
+    assert!(!place.path("reports/baseline.json").exists());
+}
+
+#[test]
+fn what_is_no_baseline_is_refused_before_the_run() {
+    let place = Place::new();
+    std::fs::write(place.path("bad.json"), "{\"schema_version\": 9}").unwrap();
+    std::fs::write(place.path("text.json"), "hello").unwrap();
+    for (file, words) in [
+        ("nowhere.json", "there is no baseline nowhere.json"),
+        ("bad.json", "has schema version 9"),
+        ("text.json", "text.json is no baseline"),
+    ] {
+        let (code, out, err) = place.verify(&["--baseline", file]);
+        assert_eq!((code, out.as_str()), (2, ""), "{err}");
+        assert!(err.contains(words), "{err}");
+    }
+    assert!(!place.path("out").exists());
+}
+
+#[test]
+fn a_report_written_anew_has_the_bytes_of_the_run() {
+    let place = Place::new();
+    place.baseline(|baseline| moved(baseline, ORDER, 1.9, 1.8999, 1.9001));
+    place.verify(&["--baseline", "base.json"]);
+    let (code, _, err) = place.mtled(&["report", "out", "--out", "again"]);
+    assert_eq!(code, 0, "{err}");
+    for file in ["index.html", "summary.md", "junit.xml", "results.json"] {
+        let of = |folder: &str| place.read(&format!("{folder}/{file}"));
+        assert!(of("out") == of("again"), "{file}");
+    }
+}
+
+#[test]
+fn two_runs_are_compared_in_a_page_and_in_markdown() {
+    let place = Place::new();
+    place.verify(&[]);
+    let text = place.read("out/results.json");
+    let earlier = text.replace("\"value\":0.592", "\"value\":0.492");
+    let agree = "references/cook_membrane/codes_agree";
+    std::fs::write(place.path("earlier.json"), earlier).unwrap();
+    let (code, out, err) = place.mtled(&["report", "earlier.json", "out"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        out.contains(&format!("worse    {agree}"))
+            && out.contains("report: reports/compare/index.html"),
+        "{out}"
+    );
+    for file in ["reports/compare/index.html", "reports/compare/summary.md"] {
+        let text = place.read(file);
+        assert!(text.contains("cook_membrane") && text.contains("[s]"), "{text}");
+    }
+    let json = place.mtled(&["report", "earlier.json", "out", "--format", "json"]).1;
+    let value: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(value["changes"][0]["id"], agree);
+}
+
+#[test]
+fn what_is_no_report_is_refused() {
+    let place = Place::new();
+    std::fs::write(place.path("other.json"), "{\"schema_version\": 1}").unwrap();
+    for (path, words) in
+        [("nowhere", "there is no nowhere"), ("other.json", "is not the results.json")]
+    {
+        let (code, out, err) = place.mtled(&["report", path]);
+        assert_eq!((code, out.as_str()), (2, ""), "{err}");
+        assert!(err.contains(words), "{err}");
+    }
+}
