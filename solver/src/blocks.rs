@@ -3,10 +3,62 @@
 use crate::discretisation::Discretisation;
 use crate::material::Law;
 use crate::patches::orthonormal_basis;
-use crate::problem::{Dilatation, Problem};
+use crate::problem::{Dilatation, GradientStorage, Problem};
 use crate::projection::{Projection, Weighted};
 use crate::rows::Rows;
 use std::ops::Range;
+
+/// Grad φ as it is held, `components` per support entry \[1/m\].
+#[derive(Debug, Clone)]
+pub enum Stored {
+    Double(Vec<f64>),
+    Single(Vec<f32>),
+}
+
+/// Runs `$body` with `$held` bound to the numbers of `$stored`.
+macro_rules! with_stored {
+    ($stored:expr, $held:ident => $body:expr) => {
+        match $stored {
+            $crate::blocks::Stored::Double($held) => $body,
+            $crate::blocks::Stored::Single($held) => $body,
+        }
+    };
+}
+pub(crate) use with_stored;
+
+/// A number as it is held in memory.
+pub trait Held: Copy + Into<f64> {
+    /// Four gradients in double precision, in `room` if they are not held so: a
+    /// copy of what is would have to be made before forces are written.
+    fn wide<'a, const D: usize>(
+        four: &'a [[Self; D]; 4],
+        room: &'a mut [[f64; D]; 4],
+    ) -> &'a [[f64; D]; 4];
+}
+
+impl Held for f64 {
+    #[inline(always)]
+    fn wide<'a, const D: usize>(
+        four: &'a [[f64; D]; 4],
+        _room: &'a mut [[f64; D]; 4],
+    ) -> &'a [[f64; D]; 4] {
+        four
+    }
+}
+
+impl Held for f32 {
+    #[inline(always)]
+    fn wide<'a, const D: usize>(
+        four: &'a [[f32; D]; 4],
+        room: &'a mut [[f64; D]; 4],
+    ) -> &'a [[f64; D]; 4] {
+        *room = four.map(
+            #[inline(always)]
+            |gradient| gradient.map(f64::from),
+        );
+        room
+    }
+}
 
 /// Consecutive quadrature points of one material, with their own numbering of
 /// the nodes they touch. Blocks depend on the problem alone, never on the
@@ -22,8 +74,7 @@ pub struct Block {
     pub starts: Vec<u32>,
     /// Local node indices \[support entry\].
     pub supports: Vec<u32>,
-    /// Grad φ, `components` per entry \[1/m\].
-    pub grad_phi: Vec<f64>,
+    pub grad_phi: Stored,
     /// \[point\] \[m³\]
     pub quadrature_weights: Vec<f64>,
     /// Points that are worked on together are `chunks[c]..chunks[c + 1]`: a
@@ -34,18 +85,34 @@ pub struct Block {
 }
 
 impl Block {
-    /// Local nodes and gradients of a local point, D components each.
+    /// Local nodes and gradients of a local point, D components each, from what
+    /// `grad_phi` holds.
     #[inline(always)]
-    pub fn support<const D: usize>(&self, point: usize) -> (&[u32], &[[f64; D]]) {
+    pub fn support<'a, G, const D: usize>(
+        &'a self,
+        grad_phi: &'a [G],
+        point: usize,
+    ) -> (&'a [u32], &'a [[G; D]]) {
         let entries = self.starts[point] as usize..self.starts[point + 1] as usize;
-        (&self.supports[entries.clone()], &self.grad_phi.as_chunks::<D>().0[entries])
+        (&self.supports[entries.clone()], &grad_phi.as_chunks::<D>().0[entries])
     }
 
     /// The entries that stand `ahead` entries after the support of a point.
     #[inline(always)]
-    pub fn coming<const D: usize>(&self, point: usize, ahead: usize) -> (&[u32], &[[f64; D]]) {
+    pub fn coming<'a, G, const D: usize>(
+        &'a self,
+        grad_phi: &'a [G],
+        point: usize,
+        ahead: usize,
+    ) -> (&'a [u32], &'a [[G; D]]) {
         let first = (self.starts[point] as usize + ahead).min(self.supports.len());
-        (&self.supports[first..], &self.grad_phi.as_chunks::<D>().0[first..])
+        (&self.supports[first..], &grad_phi.as_chunks::<D>().0[first..])
+    }
+
+    /// Bytes that one evaluation of the internal force streams.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.supports[..])
+            + with_stored!(&self.grad_phi, held => size_of_val(&held[..]))
     }
 
     pub fn chunks(&self) -> impl Iterator<Item = Chunk> {
@@ -99,8 +166,9 @@ fn block(problem: &Problem, patches: Range<usize>, discretisation: &Discretisati
     let starts = &discretisation.patches[patches.start..=patches.end];
     let points = starts[0]..starts[starts.len() - 1];
     let components = discretisation.dimension.components();
+    let storage = problem.recipe.gradient_storage;
     let Packed { nodes, starts: entries, supports, grad_phi } =
-        pack(rows, points.clone(), components, discretisation.cloud.positions.len());
+        pack(rows, points.clone(), components, storage, discretisation.cloud.positions.len());
     let region = discretisation.quadrature.regions[points.start] as usize;
     let law = problem.regions[region].material.law;
     let share = match problem.recipe.dilatation {
@@ -127,41 +195,67 @@ fn block(problem: &Problem, patches: Range<usize>, discretisation: &Discretisati
 }
 
 /// Supports of a block as [`Block`] holds them.
-#[derive(Default)]
 struct Packed {
     nodes: Vec<u32>,
     starts: Vec<u32>,
     supports: Vec<u32>,
-    grad_phi: Vec<f64>,
+    grad_phi: Stored,
 }
 
 /// Numbers the nodes in the order in which they appear, which is that of the
 /// points in space, and fills each support up to whole fours.
-fn pack(rows: &Rows, points: Range<usize>, components: usize, nodes: usize) -> Packed {
+fn pack(
+    rows: &Rows,
+    points: Range<usize>,
+    components: usize,
+    storage: GradientStorage,
+    nodes: usize,
+) -> Packed {
     const NONE: u32 = u32::MAX;
     let mut numbers = vec![NONE; nodes];
-    let mut packed = Packed { starts: vec![0], ..Packed::default() };
-    let room = (rows.starts[points.end] - rows.starts[points.start]) + 3 * points.len();
-    packed.supports.reserve_exact(room);
-    packed.grad_phi.reserve_exact(room * components);
-    for point in points {
+    let (mut nodes, mut starts, mut supports) = (Vec::new(), vec![0], Vec::new());
+    let filled = |point: usize| rows.row(point).len().next_multiple_of(4);
+    supports.reserve_exact(points.clone().map(filled).sum());
+    for point in points.clone() {
         for entry in rows.row(point) {
             let number = &mut numbers[rows.nodes[entry] as usize];
             if *number == NONE {
-                *number = packed.nodes.len() as u32;
-                packed.nodes.push(rows.nodes[entry]);
+                *number = nodes.len() as u32;
+                nodes.push(rows.nodes[entry]);
             }
-            packed.supports.push(*number);
-            packed.grad_phi.extend(rows.grad_phi[entry].iter().take(components));
+            supports.push(*number);
         }
-        let filled = packed.supports.len().next_multiple_of(4);
-        packed.supports.resize(filled, packed.supports.last().copied().unwrap_or(0));
-        packed.grad_phi.resize(filled * components, 0.0);
-        packed.starts.push(filled as u32);
+        let filled = supports.len().next_multiple_of(4);
+        supports.resize(filled, supports.last().copied().unwrap_or(0));
+        starts.push(filled as u32);
     }
-    packed.supports.shrink_to_fit();
-    packed.grad_phi.shrink_to_fit();
-    packed
+    let size = supports.len() * components;
+    let grad_phi = match storage {
+        GradientStorage::Double => Stored::Double(stream(rows, points, components, size, |g| g)),
+        GradientStorage::Single => {
+            Stored::Single(stream(rows, points, components, size, |g| g as f32))
+        }
+    };
+    Packed { nodes, starts, supports, grad_phi }
+}
+
+/// The gradients at some points, `size` numbers in all: those of each point
+/// filled up to whole fours of entries.
+fn stream<G: Copy + Default>(
+    rows: &Rows,
+    points: Range<usize>,
+    components: usize,
+    size: usize,
+    held: impl Fn(f64) -> G,
+) -> Vec<G> {
+    let mut stream = Vec::with_capacity(size);
+    for point in points {
+        for gradient in &rows.grad_phi[rows.row(point)] {
+            stream.extend(gradient.iter().take(components).map(|g| held(*g)));
+        }
+        stream.resize(stream.len().next_multiple_of(4 * components), G::default());
+    }
+    stream
 }
 
 fn projection(share: f64, starts: &[usize], discretisation: &Discretisation) -> Projection {

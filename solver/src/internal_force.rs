@@ -2,6 +2,7 @@
 //! what is asked of the same points now and then.
 #![allow(non_snake_case)]
 
+use crate::blocks::{Held, with_stored};
 use crate::kernel::{Scratch, block_force};
 use crate::lanes::{Four, with_vectors};
 use crate::model::{Block, Chunk, Model};
@@ -158,19 +159,11 @@ fn gather<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) {
 
 /// F = I + Σ_a u_a ⊗ Grad φ_a; in a plane F₃₃ = 1.
 #[inline(always)]
-fn deformation_gradient<const D: usize>(
-    (nodes, gradients): (&[u32], &[[f64; D]]),
-    u: &[Four],
-) -> Matrix3 {
-    let mut sums = [[0.0; D]; D];
-    for (&node, gradient) in nodes.iter().zip(gradients) {
-        let displacement = u[node as usize].0;
-        for i in 0..D {
-            for j in 0..D {
-                sums[i][j] += displacement[i] * gradient[j];
-            }
-        }
-    }
+fn deformation_gradient<const D: usize>(block: &Block, point: usize, u: &[Four]) -> Matrix3 {
+    let sums = with_stored!(&block.grad_phi, held => {
+        let (nodes, gradients) = block.support::<_, D>(held, point);
+        displacement_gradient(nodes, gradients, u)
+    });
     let mut F = Matrix3::identity();
     for i in 0..D {
         for j in 0..D {
@@ -178,6 +171,25 @@ fn deformation_gradient<const D: usize>(
         }
     }
     F
+}
+
+/// Σ_a u_a ⊗ Grad φ_a.
+#[inline(always)]
+fn displacement_gradient<G: Held, const D: usize>(
+    nodes: &[u32],
+    gradients: &[[G; D]],
+    u: &[Four],
+) -> [[f64; D]; D] {
+    let mut sums = [[0.0; D]; D];
+    for (&node, gradient) in nodes.iter().zip(gradients) {
+        let (displacement, gradient) = (u[node as usize].0, gradient.map(Into::into));
+        for i in 0..D {
+            for j in 0..D {
+                sums[i][j] += displacement[i] * gradient[j];
+            }
+        }
+    }
+    sums
 }
 
 /// Strain energy Σ_q w_q ψ(F_q) \[J\] at displacements `u` \[m\].
@@ -197,7 +209,7 @@ fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) ->
     for chunk in block.chunks() {
         jacobians.clear();
         for point in chunk.points {
-            let F = deformation_gradient::<D>(block.support(point), local);
+            let F = deformation_gradient::<D>(block, point, local);
             energy += block.quadrature_weights[point] * block.law.strain_energy(&F);
             jacobians.push(F.determinant());
         }
@@ -225,8 +237,7 @@ fn block_mean_stress<const D: usize>(block: &Block, u: &[f64]) -> Vec<f64> {
     };
     let mut local = vec![Four::default(); block.nodes.len()];
     gather::<D>(block, u, &mut local);
-    let jacobian =
-        |point: usize| deformation_gradient::<D>(block.support(point), &local).determinant();
+    let jacobian = |point: usize| deformation_gradient::<D>(block, point, &local).determinant();
     let pressures = |chunk: Chunk| {
         let jacobians: Vec<f64> = chunk.points.map(jacobian).collect();
         projection.plain_pressures(&block.law, chunk.eights, &jacobians)

@@ -3,6 +3,7 @@
 //! J, the projected pressure, the stress and the nodal forces.
 #![allow(non_snake_case)]
 
+use crate::blocks::{Held, with_stored};
 use crate::lanes::{Eight, Four, Lanes, Parts, four, prefetch};
 use crate::material::{ConstitutiveLaw, Deformation, with_law};
 use crate::model::{Block, Chunk};
@@ -57,10 +58,13 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
     scratch.smallest = (f64::INFINITY, 0);
     for Chunk { points, eights } in block.chunks() {
         let columns = &mut scratch.columns;
-        gradients::<S, D>(simd, block, &points, &scratch.u, &mut columns.values);
-        if R::SLOPES {
-            gradients::<S, D>(simd, block, &points, &scratch.v, &mut columns.slopes);
-        }
+        with_stored!(&block.grad_phi, held => {
+            let stream = (block, &held[..]);
+            gradients::<S, _, D>(simd, stream, &points, &scratch.u, &mut columns.values);
+            if R::SLOPES {
+                gradients::<S, _, D>(simd, stream, &points, &scratch.v, &mut columns.slopes);
+            }
+        });
         with_law!(&block.law, law => match &block.projection {
             None => stress::<S, R, _, D>(simd, law, eights.len(), scratch),
             Some(projection) => {
@@ -72,16 +76,18 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
         });
         keep_smallest(&points, scratch);
         let columns = if R::SLOPES { &scratch.columns.slopes } else { &scratch.columns.values };
-        scatter::<S, D>(simd, block, &points, columns, &mut scratch.f);
+        with_stored!(&block.grad_phi, held => {
+            scatter::<S, _, D>(simd, (block, &held[..]), &points, columns, &mut scratch.f);
+        });
     }
 }
 
 /// Columns Σ_a u_a ∂φ_a/∂X_j at the points of a chunk, 0 at what fills the last
 /// eight.
 #[inline(always)]
-fn gradients<S: Simd, const D: usize>(
+fn gradients<S: Simd, G: Held, const D: usize>(
     simd: S,
-    block: &Block,
+    (block, grad_phi): (&Block, &[G]),
     chunk: &Range<usize>,
     u: &[Four],
     columns: &mut [Four],
@@ -89,10 +95,12 @@ fn gradients<S: Simd, const D: usize>(
     let (columns, _) = columns.as_chunks_mut::<D>();
     let (filled, padding) = columns.split_at_mut(chunk.len());
     for (point, columns) in chunk.clone().zip(filled) {
-        let (nodes, gradients) = block.support::<D>(point);
+        let (nodes, gradients) = block.support::<G, D>(grad_phi, point);
         // Two sums, so that one need not wait for the other.
         let mut sums = [[f64x4::splat(simd, 0.0); D]; 2];
         for (nodes, gradients) in in_fours(nodes, gradients) {
+            let mut room = [[0.0; D]; 4];
+            let gradients = G::wide(gradients, &mut room);
             for k in 0..4 {
                 add_product(simd, &u[nodes[k] as usize], &gradients[k], &mut sums[k % 2]);
             }
@@ -107,10 +115,10 @@ fn gradients<S: Simd, const D: usize>(
 
 /// The entries of a support, which blocks fill up to whole fours.
 #[inline(always)]
-fn in_fours<'a, const D: usize>(
+fn in_fours<'a, G, const D: usize>(
     nodes: &'a [u32],
-    gradients: &'a [[f64; D]],
-) -> impl Iterator<Item = (&'a [u32; 4], &'a [[f64; D]; 4])> {
+    gradients: &'a [[G; D]],
+) -> impl Iterator<Item = (&'a [u32; 4], &'a [[G; D]; 4])> {
     nodes.as_chunks::<4>().0.iter().zip(gradients.as_chunks::<4>().0)
 }
 
@@ -232,9 +240,9 @@ fn put_columns<S: Simd, R: Lanes<S>, const D: usize>(
 /// f_a += w P Grad φ_a. On the way the processor is told to fetch what the
 /// next chunk will read, as many entries ahead as this chunk has.
 #[inline(always)]
-fn scatter<S: Simd, const D: usize>(
+fn scatter<S: Simd, G: Held, const D: usize>(
     simd: S,
-    block: &Block,
+    (block, grad_phi): (&Block, &[G]),
     points: &Range<usize>,
     columns: &[Four],
     f: &mut [Four],
@@ -246,11 +254,13 @@ fn scatter<S: Simd, const D: usize>(
         for j in 0..D {
             weighted[j] = four(simd, &columns[j]) * weight;
         }
-        let (nodes, gradients) = block.support::<D>(point);
-        let coming = block.coming::<D>(point, ahead);
+        let (nodes, gradients) = block.support::<G, D>(grad_phi, point);
+        let coming = block.coming::<G, D>(grad_phi, point, ahead);
         for (entry, (nodes, gradients)) in in_fours(nodes, gradients).enumerate() {
             prefetch(coming.1, 4 * entry);
             prefetch(coming.1, 4 * entry + 2);
+            let mut room = [[0.0; D]; 4];
+            let gradients = G::wide(gradients, &mut room);
             for k in 0..4 {
                 let force = &mut f[nodes[k] as usize];
                 let mut sum = four(simd, force);

@@ -95,7 +95,7 @@ impl Model {
 
     /// Bytes that one evaluation of the internal force streams.
     pub fn bytes_per_step(&self) -> usize {
-        self.blocks.iter().map(|b| 8 * b.grad_phi.len() + 4 * b.supports.len()).sum()
+        self.blocks.iter().map(Block::bytes).sum()
     }
 }
 

@@ -4,6 +4,7 @@ use crate::internal_force::{SmallestJacobian, Workspace, internal_force};
 use crate::model::Model;
 use crate::state::State;
 use crate::tensor::{Vector3, vector_at};
+use rayon::prelude::*;
 
 /// v(t + Δt/2) = keep · v(t − Δt/2) + push · M⁻¹(f_ext − f_int), then
 /// u(t + Δt) = u(t) + Δt v(t + Δt/2).
@@ -114,23 +115,50 @@ pub fn step(
 
 /// Sum of all load patterns at time `t` \[s\].
 pub fn external_force(model: &Model, t: f64, f_ext: &mut [f64]) {
-    f_ext.fill(0.0);
-    for load in &model.loads {
-        let amplitude = load.amplitude.at(t);
-        f_ext.iter_mut().zip(&load.force).for_each(|(f, pattern)| *f += amplitude * pattern);
+    let length = STRETCH * model.components;
+    let add = |(stretch, f_ext): (usize, &mut [f64])| {
+        f_ext.fill(0.0);
+        for load in &model.loads {
+            let (amplitude, force) = (load.amplitude.at(t), &load.force[stretch * length..]);
+            f_ext.iter_mut().zip(force).for_each(|(f, pattern)| *f += amplitude * pattern);
+        }
+    };
+    match f_ext.len() <= length {
+        true => add((0, f_ext)),
+        false => f_ext.par_chunks_mut(length).enumerate().for_each(add),
     }
 }
 
+/// Nodes that one thread takes at a time; smaller models stay on one.
+const STRETCH: usize = 4096;
+
 /// The free step.
 fn predict(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers) {
-    let d = model.components;
-    for (node, mass) in model.inertia.iter().enumerate() {
+    let (d, inertia) = (model.components, &model.inertia);
+    let State { velocity, displacement, .. } = state;
+    let Buffers { f_ext, f_int, .. } = buffers;
+    if inertia.len() <= STRETCH {
+        return predict_stretch(d, scheme, inertia, (velocity, displacement), (f_ext, f_int));
+    }
+    let moving = velocity.par_chunks_mut(d * STRETCH).zip(displacement.par_chunks_mut(d * STRETCH));
+    let forces = f_ext.par_chunks(d * STRETCH).zip(f_int.par_chunks(d * STRETCH));
+    inertia.par_chunks(STRETCH).zip(moving).zip(forces).for_each(|((inertia, moving), forces)| {
+        predict_stretch(d, scheme, inertia, moving, forces);
+    });
+}
+
+fn predict_stretch(
+    d: usize,
+    scheme: &Scheme,
+    inertia: &[f64],
+    (velocity, displacement): (&mut [f64], &mut [f64]),
+    (f_ext, f_int): (&[f64], &[f64]),
+) {
+    for (node, mass) in inertia.iter().enumerate() {
         let push = scheme.push / mass;
         for i in d * node..d * (node + 1) {
-            let velocity =
-                scheme.keep * state.velocity[i] + push * (buffers.f_ext[i] - buffers.f_int[i]);
-            state.velocity[i] = velocity;
-            state.displacement[i] += scheme.time_step * velocity;
+            velocity[i] = scheme.keep * velocity[i] + push * (f_ext[i] - f_int[i]);
+            displacement[i] += scheme.time_step * velocity[i];
         }
     }
 }
@@ -155,9 +183,16 @@ fn constrain(model: &Model, scheme: &Scheme, t: f64, state: &mut State) -> f64 {
 
 /// Largest size of an entry; NaN if there is one, which `f64::max` drops.
 fn largest_or_nan(values: &[f64]) -> f64 {
-    let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
-    let sum: f64 = values.iter().sum();
-    if sum.is_nan() { f64::NAN } else { largest }
+    let largest = |values: &[f64]| {
+        let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+        let sum: f64 = values.iter().sum();
+        if sum.is_nan() { f64::NAN } else { largest }
+    };
+    if values.len() <= 3 * STRETCH {
+        return largest(values);
+    }
+    let larger = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+    values.par_chunks(3 * STRETCH).map(largest).reduce(|| 0.0, larger)
 }
 
 /// Adds the work from the middle of the last step to the middle of this one:

@@ -1,6 +1,6 @@
 //! The diagonal of the stiffness at rest.
 
-use crate::blocks::Block;
+use crate::blocks::{Block, Held, with_stored};
 
 /// Diagonal of K at rest, the mean over the components of a node \[node\]
 /// \[N/m\]. A point adds w |Grad φ|² (μ + (λ + μ)/d) with λ less what is
@@ -8,10 +8,10 @@ use crate::blocks::Block;
 pub fn stiffness_diagonal(blocks: &[Block], components: usize, nodes: usize) -> Vec<f64> {
     let mut diagonal = vec![0.0; nodes];
     for block in blocks {
-        let local = match components {
-            2 => block_diagonal::<2>(block),
-            _ => block_diagonal::<3>(block),
-        };
+        let local = with_stored!(&block.grad_phi, held => match components {
+            2 => block_diagonal::<_, 2>(block, held),
+            _ => block_diagonal::<_, 3>(block, held),
+        });
         for (&node, value) in block.nodes.iter().zip(local) {
             diagonal[node as usize] += value;
         }
@@ -19,7 +19,7 @@ pub fn stiffness_diagonal(blocks: &[Block], components: usize, nodes: usize) -> 
     diagonal
 }
 
-fn block_diagonal<const D: usize>(block: &Block) -> Vec<f64> {
+fn block_diagonal<G: Held, const D: usize>(block: &Block, grad_phi: &[G]) -> Vec<f64> {
     let constants = block.law.constants();
     let shear = constants.shear_modulus;
     // U'' at rest as a difference; U is smooth there.
@@ -29,33 +29,39 @@ fn block_diagonal<const D: usize>(block: &Block) -> Vec<f64> {
     let modulus = shear + (pointwise + shear) / D as f64;
     let mut diagonal = vec![0.0; block.nodes.len()];
     for (point, weight) in block.quadrature_weights.iter().enumerate() {
-        let (nodes, gradients) = block.support::<D>(point);
+        let (nodes, gradients) = block.support::<G, D>(grad_phi, point);
         for (&node, gradient) in nodes.iter().zip(gradients) {
-            let square: f64 = gradient.iter().map(|g| g * g).sum();
+            let square: f64 = gradient.map(Into::into).iter().map(|g| g * g).sum();
             diagonal[node as usize] += weight * modulus * square;
         }
     }
-    add_projected::<D>(block, projected / D as f64, &mut diagonal);
+    add_projected::<G, D>(block, grad_phi, projected / D as f64, &mut diagonal);
     diagonal
 }
 
 /// modulus · Σ_b |Σ_q w B_b Grad φ_a|² of every patch.
-fn add_projected<const D: usize>(block: &Block, modulus: f64, diagonal: &mut [f64]) {
+fn add_projected<G: Held, const D: usize>(
+    block: &Block,
+    grad_phi: &[G],
+    modulus: f64,
+    diagonal: &mut [f64],
+) {
     let Some(projection) = &block.projection else { return };
     let mut moments = vec![[[0.0; D]; 4]; diagonal.len()];
     for patch in block.chunks() {
         for (i, point) in patch.points.clone().enumerate() {
-            let (nodes, gradients) = block.support::<D>(point);
+            let (nodes, gradients) = block.support::<G, D>(grad_phi, point);
             let eight = &projection.eights[patch.eights.start + i / 8];
             for (&node, gradient) in nodes.iter().zip(gradients) {
                 for (moment, basis) in moments[node as usize].iter_mut().zip(&eight.basis) {
                     let factor = block.quadrature_weights[point] * basis.0[i % 8];
-                    moment.iter_mut().zip(gradient).for_each(|(m, g)| *m += factor * g);
+                    let gradient = gradient.map(Into::into);
+                    moment.iter_mut().zip(gradient).for_each(|(m, g): (_, f64)| *m += factor * g);
                 }
             }
         }
         for point in patch.points {
-            for &node in block.support::<D>(point).0 {
+            for &node in block.support::<G, D>(grad_phi, point).0 {
                 // Taken once: a node that comes again finds nothing.
                 let taken = std::mem::replace(&mut moments[node as usize], [[0.0; D]; 4]);
                 let square: f64 = taken.iter().flatten().map(|m| m * m).sum();

@@ -138,6 +138,16 @@ fn a_step_over_several_blocks_on_several_threads_allocates_nothing() {
     assert_eq!(allocations(&finer(held()), 3), 0);
 }
 
+/// So many nodes that a step takes them in stretches.
+#[test]
+fn a_step_of_many_nodes_on_several_threads_allocates_nothing() {
+    let mut problem = held();
+    problem.recipe.cloud = Cloud::Regular { spacing: EDGE / 17.0 };
+    problem.recipe.grid.cell = EDGE / 20.0;
+    assert!(build(&problem).1.positions.len() > 4096);
+    assert_eq!(allocations(&problem, 3), 0);
+}
+
 #[test]
 fn the_counter_sees_an_allocation_of_a_watched_thread() {
     let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());

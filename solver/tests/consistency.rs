@@ -6,11 +6,15 @@ mod common;
 use common::*;
 use mtled::discretisation::Discretisation;
 use mtled::essential::ConstraintForces;
+use mtled::field::Field;
 use mtled::geometry::{Panel, Shape};
 use mtled::internal_force::{Workspace, internal_force, strain_energy};
 use mtled::model::Model;
+use mtled::observe::Unobserved;
 use mtled::problem::*;
 use mtled::selection::Selector;
+use mtled::simulate::simulate;
+use mtled::state::State;
 use mtled::tensor::{Matrix3, Vector3};
 
 fn consistent(mut problem: Problem, tolerance: f64) -> Discretisation {
@@ -130,6 +134,58 @@ fn a_material_that_changes_its_volume_is_not_projected() {
     };
     assert!(!projected(&problem));
     assert!(projected(&with_law(problem, neo_hookean(3000.0, 0.49))));
+}
+
+/// A nearly incompressible cube in equilibrium with an affine field on its whole
+/// boundary or with a bent one, and what its displacements are \[m\].
+fn held_all_around(storage: GradientStorage, field: Field) -> (Model, Vec<f64>) {
+    let mut problem = collocated(jittered(cube(6), 0.3, 4));
+    problem = with_law(problem, neo_hookean(3000.0, 0.49));
+    problem.recipe.dilatation = Dilatation::Projected;
+    problem.recipe.gradient_storage = storage;
+    problem.recipe.gradients = Gradients::Consistent { tolerance: 1e-13 };
+    let mut boundary = condition("boundary", Selector::All, [None; 3]);
+    boundary.prescribed = Prescribed::Field(field);
+    problem.conditions.push(boundary);
+    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-11 });
+    let (_, model) = build(&problem);
+    let mut state = State::new(&model);
+    simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();
+    (model, state.displacement)
+}
+
+#[test]
+fn gradients_in_single_precision_pass_the_patch_test_to_one_in_a_million() {
+    let H = Matrix3::new(0.08, 0.03, 0.01, 0.02, -0.05, 0.03, -0.01, 0.02, -0.02);
+    let mut errors = [GradientStorage::Double, GradientStorage::Single].map(|storage| {
+        let (model, u) = held_all_around(storage, Field::of(move |X| H * X));
+        let off = |(node, X): (usize, &Vector3)| (vector(&u, node, 3) - H * X).amax();
+        model.positions.iter().enumerate().map(off).fold(0.0, f64::max) / largest(&u)
+    });
+    assert!(errors[0] < 1e-9, "{errors:?}");
+    // Neither more nor less than the digits that are left.
+    errors[1] /= 1e-6;
+    assert!((1e-4..1.0).contains(&errors[1]), "{errors:?}");
+}
+
+#[test]
+fn gradients_in_single_precision_change_displacements_by_one_in_a_million() {
+    let bent = |X: &Vector3| Vector3::new(X.x * X.y, -0.5 * X.y * X.y, X.x * X.x) * (0.3 / EDGE);
+    let [double, single] = [GradientStorage::Double, GradientStorage::Single]
+        .map(|storage| held_all_around(storage, Field::of(bent)).1);
+    let apart: Vec<f64> = double.iter().zip(&single).map(|(a, b)| a - b).collect();
+    let change = largest(&apart) / largest(&double);
+    assert!(change > 0.0 && change < 1e-6, "{change}");
+}
+
+#[test]
+fn gradients_in_single_precision_are_little_more_than_half_to_stream() {
+    let bytes = [GradientStorage::Double, GradientStorage::Single].map(|storage| {
+        let mut problem = cube(5);
+        problem.recipe.gradient_storage = storage;
+        build(&problem).1.bytes_per_step()
+    });
+    assert_eq!(16 * bytes[0], 28 * bytes[1]);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use common::*;
 use mtled::internal_force::{Workspace, internal_force};
 use mtled::model::Model;
 use mtled::observe::Unobserved;
-use mtled::problem::Problem;
+use mtled::problem::{Cloud, Problem};
 use mtled::simulate::simulate;
 use mtled::state::State;
 use mtled::tensor::Vector3;
@@ -47,6 +47,22 @@ fn the_internal_force_has_the_same_bits_on_any_number_of_threads() {
     let (discretisation, model) = build(&large_problem());
     assert!(discretisation.supports.len() > 4096 && model.blocks.len() > 2);
     on_each_pool(|| forces(&model));
+}
+
+/// So many nodes that a step takes them in stretches, on all threads.
+#[test]
+fn steps_of_many_nodes_have_the_same_bits_on_any_number_of_threads() {
+    let mut problem = large_problem();
+    problem.recipe.cloud = Cloud::Jittered { spacing: EDGE / 17.0, jitter: 0.2, seed: 3 };
+    problem.recipe.grid.cell = EDGE / 20.0;
+    let (_, model) = build(&problem);
+    assert!(model.positions.len() > 4096, "{}", model.positions.len());
+    on_each_pool(|| {
+        let mut state = State::new(&model);
+        let motion = dynamic(2e-3, 1e-4, 0.5);
+        simulate(&model, &motion, &mut state, &mut Unobserved).unwrap();
+        bits(&state.displacement)
+    });
 }
 
 #[test]

@@ -65,6 +65,7 @@ fn body(dimension: Dimension, cells: usize) -> Problem {
             mass: MassRule::RowSum,
             enforcement: Enforcement::Direct,
             gradients: Gradients::Plain,
+            gradient_storage: GradientStorage::Double,
             dilatation: Dilatation::Pointwise,
         },
         conditions: vec![],

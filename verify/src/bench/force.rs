@@ -7,7 +7,7 @@ use super::turns::{Clock, Piece, Turns, in_turns};
 use crate::studies::problems::Random;
 use anyhow::ensure;
 use mtled::discretisation::Discretisation;
-use mtled::problem::{Cloud, Problem};
+use mtled::problem::{Cloud, GradientStorage, Problem};
 use rayon::ThreadPool;
 use serde::Serialize;
 
@@ -90,7 +90,7 @@ pub fn force_row(
         }
         in_turns(Clock::Processor, settings.rounds, &mut pieces)
     });
-    same_force(&subject.f, &f)?;
+    same_force(&subject.f, &f, 1e-9)?;
     let (bytes, entries) = (subject.model.bytes_per_step(), discretisation.supports.nodes.len());
     let per_second = bytes as f64 / turns.median(0);
     let share = |turns: &Turns| turns.ratio(2, 0) * bytes as f64 / triad.bytes() as f64;
@@ -110,12 +110,12 @@ pub fn force_row(
 }
 
 /// A yardstick that does other work would measure nothing.
-fn same_force(f: &[f64], plain: &[f64]) -> anyhow::Result<()> {
-    let largest = plain.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-    let off = f.iter().zip(plain).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+fn same_force(f: &[f64], yardstick: &[f64], tolerance: f64) -> anyhow::Result<()> {
+    let largest = yardstick.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+    let off = f.iter().zip(yardstick).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     ensure!(
-        largest.is_finite() && largest > 0.0 && off <= 1e-9 * largest,
-        "the solver's force and the plain loop's differ by {off:.1e} of {largest:.1e} N"
+        largest.is_finite() && largest > 0.0 && off <= tolerance * largest,
+        "the force and the one that it is compared with differ by {off:.1e} of {largest:.1e} N"
     );
     Ok(())
 }
@@ -135,6 +135,22 @@ pub fn threads_row(settings: &Settings, place: Place, wanted: f64) -> anyhow::Re
     );
     ensure!(first.f == second.f, "the internal force depends on the number of threads");
     Ok(ratio_row("one thread over all", &discretisation, &turns))
+}
+
+/// Gradients held in double precision against single.
+pub fn storage_row(settings: &Settings, place: Place, wanted: f64) -> anyhow::Result<RatioRow> {
+    let problem = cube(place.cells(wanted, settings.quick), wanted);
+    let mut halved = problem.clone();
+    halved.recipe.gradient_storage = GradientStorage::Single;
+    let discretisation = Discretisation::new(&problem)?;
+    let mut first = Subject::new(&problem, &discretisation)?;
+    let mut second = Subject::new(&halved, &discretisation)?;
+    let turns = settings.one.install(|| {
+        let pieces: &mut [Piece] = &mut [&mut || first.evaluate(), &mut || second.evaluate()];
+        in_turns(Clock::Processor, settings.rounds, pieces)
+    });
+    same_force(&second.f, &first.f, 1e-5)?;
+    Ok(ratio_row("gradients in double over single precision", &discretisation, &turns))
 }
 
 /// Nodes given in random order against the same nodes sorted.

@@ -16,7 +16,7 @@ pub use text::to_markdown;
 use crate::cases::unpack;
 use crate::machine::{caches, load_average, provenance};
 use crate::study::Provenance;
-use force::{ForceRow, RatioRow, Settings, force_row, order_row, threads_row};
+use force::{ForceRow, RatioRow, Settings, force_row, order_row, storage_row, threads_row};
 use limits::{Triad, multiply_add_rate, triad_rate};
 use marching::{CaseRow, MemoryRow, StepRow, case_row, contact_rows, cube_step, memory_row};
 use pose::Place;
@@ -78,6 +78,8 @@ pub fn measure(quick: bool, tell: &dyn Fn(&str)) -> anyhow::Result<Figures> {
     tell("threads and order");
     let mut ratios = vec![order_row(&settings, Place::LastCache, 30.0)?];
     ratios.push(order_row(&settings, Place::Memory, 30.0)?);
+    ratios.push(storage_row(&settings, Place::Memory, 30.0)?);
+    ratios.push(storage_row(&settings, Place::Memory, 70.0)?);
     if provenance.threads > 1 {
         ratios.push(threads_row(&settings, Place::LastCache, 30.0)?);
         ratios.push(threads_row(&settings, Place::Memory, 30.0)?);

@@ -3,13 +3,14 @@
 use super::build::Builder;
 use super::format_recipe::{
     BasisFormat, CloudFormat, DilatationFormat, DiscretisationFormat, EnforcementFormat,
-    GradientsFormat, GridFormat, InsideFormat, MassFormat, WeightFunctionFormat,
+    GradientStorageFormat, GradientsFormat, GridFormat, InsideFormat, MassFormat,
+    WeightFunctionFormat,
 };
 use crate::files;
 use mtled::geometry::Shape;
 use mtled::problem::{
-    BackgroundGrid, Basis, Cloud, Dilatation, Dimension, Enforcement, Gradients, InsideRule,
-    MassRule, Recipe, Refinement, WeightFunction,
+    BackgroundGrid, Basis, Cloud, Dilatation, Dimension, Enforcement, GradientStorage, Gradients,
+    InsideRule, MassRule, Recipe, Refinement, WeightFunction,
 };
 
 /// What a case file need not say.
@@ -89,6 +90,10 @@ impl Builder<'_> {
             mass: format.mass.map_or(defaults::mass(basis), MassRule::from),
             enforcement: format.enforcement.map_or(defaults::ENFORCEMENT, Enforcement::from),
             gradients: self.gradients(format),
+            gradient_storage: match format.gradient_storage {
+                Some(GradientStorageFormat::Single) => GradientStorage::Single,
+                Some(GradientStorageFormat::Double) | None => GradientStorage::Double,
+            },
             dilatation: format.dilatation.map_or(defaults::DILATATION, Dilatation::from),
         })
     }

@@ -43,6 +43,8 @@ pub struct DiscretisationFormat {
     /// Of consistent gradients, over the defect of plain ones [–]; 1e-3 if
     /// left out.
     pub gradient_tolerance: Option<f64>,
+    /// "double" by default.
+    pub gradient_storage: Option<GradientStorageFormat>,
     /// "projected" by default.
     pub dilatation: Option<DilatationFormat>,
     #[serde(default)]
@@ -101,6 +103,17 @@ pub enum MassFormat {
     EvenSplit,
     /// In proportion to the shape functions.
     RowSum,
+}
+
+/// How many digits of the gradients the forces read.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GradientStorageFormat {
+    /// Every one.
+    Double,
+    /// Single precision: half the bytes to read. Patch tests stop at 1e-7 and
+    /// displacements change by less than 1e-6 of the largest.
+    Single,
 }
 
 /// How prescribed displacements are enforced.

@@ -5,8 +5,8 @@ use mtled::geometry::Shape;
 use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use mtled::problem::{
     Amplitude, BackgroundGrid, Basis, Cloud, Dilatation, Dimension, Enforcement,
-    EssentialCondition, Gradients, InsideRule, Loads, MassRule, Motion, Prescribed, Problem,
-    Recipe, Region, Relaxation, RelaxationMass, StepControl, WeightFunction,
+    EssentialCondition, GradientStorage, Gradients, InsideRule, Loads, MassRule, Motion,
+    Prescribed, Problem, Recipe, Region, Relaxation, RelaxationMass, StepControl, WeightFunction,
 };
 use mtled::selection::{Extent, Selector};
 use mtled::tensor::Vector3;
@@ -49,6 +49,7 @@ pub fn recipe(spacing: f64, jitter: f64, seed: u64) -> Recipe {
         mass: MassRule::EvenSplit,
         enforcement: Enforcement::Collocation,
         gradients: Gradients::Consistent { tolerance: 1e-12 },
+        gradient_storage: GradientStorage::Double,
         dilatation: Dilatation::Projected,
     }
 }
