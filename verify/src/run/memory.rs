@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Estimated size of a discretisation. The bytes are 0.9 to 1.15 of the peak of runs
-/// on 33 bodies of 343 to 68 921 nodes with supports of 9 to 66. On graded clouds
+/// on 32 bodies of 343 to 68 921 nodes with supports of 9 to 66. On graded clouds
 /// nodes and supports are underestimated, and the bytes with them: 0.6 to 0.7 of
 /// the peak on two.
 #[derive(Debug, Clone, Copy, PartialEq)]
