@@ -4,6 +4,7 @@
 use super::Truth;
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{Agreed, Family, Quantity, quantities, size_of};
+use crate::report::four_digits;
 use crate::scene::Case;
 use std::collections::BTreeMap;
 
@@ -33,8 +34,10 @@ pub fn extrapolated(case: &Case, runs: &[(f64, Vec<Vec<f64>>)], times: &[f64]) -
         times: times.to_vec(),
         quantities: quantities(case).into_iter().zip(finest).zip(coarser).map(known).collect(),
         source: format!(
-            "own run with a spacing of {fine} m; its error bar is what the refinement from \
-             {coarse} m leaves at order 1"
+            "own run with a spacing of {} m; its error bar is what the refinement from \
+             {} m leaves at order 1",
+            four_digits(*fine),
+            four_digits(*coarse)
         ),
     })
 }

@@ -4,6 +4,7 @@ use super::design::{Candidate, level_of};
 use super::{Bench, Trial};
 use crate::scene::{Knob, Level, Setting};
 use anyhow::Result;
+use mtled::problem::Motion;
 
 /// Changes of a winner, one at a time: what may be said in words.
 const CHANGES: &[(Knob, &str)] = &[
@@ -32,7 +33,9 @@ pub fn one_at_a_time(bench: &mut Bench, winner: &Trial) -> Result<Vec<Trial>> {
     for by in [1.0 / 1.26, 1.26] {
         changes.push(vec![Setting::number(Knob::CellsPerSpacing, round(cells * by))]);
     }
-    for (knob, level) in CHANGES {
+    let moves = matches!(bench.wanted.source.case.problem.motion, Motion::Dynamic { .. });
+    // Static solutions do not depend on how mass is spread.
+    for (knob, level) in CHANGES.iter().filter(|(knob, _)| moves || *knob != Knob::Mass) {
         let mut change = vec![Setting::word(*knob, level)];
         if (*knob, *level) == (Knob::Basis, "quadratic") {
             change.push(Setting::number(Knob::Dilation, 2.6));

@@ -6,7 +6,7 @@ use super::score::front;
 use super::{Goal, Trial, Tuned, Wanted};
 use crate::report::four_digits;
 use crate::studies::plain::{line, number, styled, text};
-use crate::study::{Axis, Cell, Figure, Plot, SeriesStyle, Study, Table};
+use crate::study::{Axis, Bound, Cell, Check, Figure, Kind, Plot, SeriesStyle, Study, Table};
 use crate::sweep::percent;
 
 /// The goal in words.
@@ -82,6 +82,7 @@ pub fn tune_study(wanted: &Wanted, tuned: &Tuned) -> Study {
         command: wanted.command.clone(),
         ..Study::default()
     };
+    study.checks.extend(confirmation(wanted, tuned));
     study.figures.push(Figure::Plot(pareto(wanted, tuned)));
     study.tables.push(front_table(tuned));
     if let Some(winner) = &tuned.winner {
@@ -98,6 +99,29 @@ pub fn tune_study(wanted: &Wanted, tuned: &Tuned) -> Study {
             .into(),
     );
     study
+}
+
+/// The goal on clouds that the search has not seen.
+fn confirmation(wanted: &Wanted, tuned: &Tuned) -> Option<Check> {
+    let (value, limit, unit) = match (&tuned.confirmed, wanted.goal) {
+        (Some(trial), Goal::Error(target)) => (100.0 * trial.worst(), 100.0 * target, "%"),
+        (Some(trial), Goal::Budget(cpu_s)) => (trial.cpu_s, cpu_s, "s"),
+        (None, Goal::Error(target)) => (f64::INFINITY, 100.0 * target, "%"),
+        (None, Goal::Budget(cpu_s)) => (f64::INFINITY, cpu_s, "s"),
+    };
+    // A time is of this machine and this minute: shown, not judged.
+    let judged = matches!(wanted.goal, Goal::Error(_)) || tuned.confirmed.is_none();
+    judged.then(|| {
+        Check::new(
+            &format!("tune-{}/confirmed", wanted.source.name),
+            "largest error of the chosen recipe on clouds that the search has not seen",
+            Kind::Reference,
+            value,
+            Bound::AtMost(limit),
+            unit,
+            &format!("wanted by the user; the truth itself is known to {}", percent(tuned.bar)),
+        )
+    })
 }
 
 fn pareto(wanted: &Wanted, tuned: &Tuned) -> Plot {
