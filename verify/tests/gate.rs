@@ -245,10 +245,20 @@ fn a_cloud_far_from_the_others_is_found_by_leaving_it_out() {
     let mut runs = clouds();
     let healthy = Clouds::new(&runs).unwrap().left_out(&run(figures()));
     assert!(healthy.is_empty(), "{healthy:?}");
+    assert!(Clouds::new(&runs).unwrap().failing().is_empty());
     runs[4] = with("study/error", 0.03);
     let found = Clouds::new(&runs).unwrap().left_out(&run(figures()));
     assert_eq!(found.len(), 1);
-    assert_eq!((found[0].run, found[0].worse.as_slice()), (4, &["study/error".to_string()][..]));
+    assert_eq!((found[0].run, found[0].checks.as_slice()), (4, &["study/error".to_string()][..]));
+}
+
+#[test]
+fn a_cloud_on_which_a_bound_breaks_is_named() {
+    let mut runs = clouds();
+    runs[7] = with("study/error", 0.06);
+    let failing = Clouds::new(&runs).unwrap().failing();
+    assert_eq!((failing.len(), failing[0].run), (1, 7));
+    assert_eq!(failing[0].checks, ["study/error"]);
 }
 
 #[test]

@@ -36,7 +36,13 @@ pub struct GateArgs {
 pub enum Gate {
     None,
     Compare(Baseline),
-    Update { path: PathBuf, old: Option<Baseline>, reason: Reason, clouds: Vec<Report> },
+    Update {
+        path: PathBuf,
+        old: Option<Baseline>,
+        reason: Reason,
+        clouds: Vec<Report>,
+        paths: Vec<PathBuf>,
+    },
 }
 
 impl GateArgs {
@@ -57,7 +63,7 @@ impl GateArgs {
         let clouds: Vec<Report> =
             self.scatter.iter().map(|path| read_report(path)).collect::<Result<_, _>>()?;
         Clouds::new(&clouds)?;
-        Ok(Gate::Update { path, old, reason, clouds })
+        Ok(Gate::Update { path, old, reason, clouds, paths: self.scatter.clone() })
     }
 }
 
@@ -72,19 +78,25 @@ impl Gate {
 
     /// Writes the baseline where that was asked for; returns what changed in it.
     pub fn write(&self, report: &Report, whole: bool) -> anyhow::Result<Vec<String>> {
-        let Gate::Update { path, old, reason, clouds } = self else { return Ok(Vec::new()) };
+        let Gate::Update { path, old, reason, clouds, paths } = self else { return Ok(Vec::new()) };
         let scatter = Clouds::new(clouds)?;
         let new = update(report, old.as_ref(), &scatter, reason, whole)?;
         write_atomically(path, new.to_json().as_bytes())?;
         let mut lines = difference(old.as_ref(), &new);
         if !scatter.is_empty() {
-            let alarms = scatter.left_out(report);
-            lines.extend(alarms.iter().map(|left| {
-                format!("left out, run {} would fail: {}", left.run + 1, left.worse.join(", "))
-            }));
+            let (failing, alarms) = (scatter.failing(), scatter.left_out(report));
+            for (suspects, words) in
+                [(&failing, "breaks its bounds"), (&alarms, "is worse than the rest allow")]
+            {
+                lines.extend(suspects.iter().map(|suspect| {
+                    let path = paths[suspect.run].display();
+                    format!("{path} {words}: {}", suspect.checks.join(", "))
+                }));
+            }
             let (count, all) = (alarms.len(), scatter.runs());
-            lines
-                .push(format!("{count} of {all} clouds, each left out in turn, would have failed"));
+            lines.push(format!(
+                "{count} of {all} clouds, each left out in turn, are worse than the rest allow"
+            ));
         }
         lines.push(format!("baseline: {}, {} checks", path.display(), new.checks.len()));
         Ok(lines)

@@ -27,7 +27,8 @@ pub fn still(check: &Check) -> Band {
         return band;
     }
     let half_width = round_off(check.value, &check.unit);
-    widened(theory(check.value - half_width, check.value + half_width), check)
+    let band = theory(check.value - half_width, check.value + half_width);
+    within_bound(widened(band, check), check.bound)
 }
 
 /// All that the bound of a theorem allows, where it allows for arithmetic alone.
@@ -68,9 +69,18 @@ fn widened(band: Band, check: &Check) -> Band {
     Band { low, high, source: BandSource::Reference, ..band }
 }
 
-/// Mean and spread of the figures of other clouds, on a logarithmic scale where
-/// all are positive: errors are products of factors, and their logarithms are
-/// closer to normal. None where no cloud moves the figure.
+/// No further than the bound: what breaks it fails, whatever the clouds say.
+fn within_bound(band: Band, bound: Bound) -> Band {
+    let (low, high) = match bound {
+        Bound::AtMost(limit) => (band.low, band.high.min(limit)),
+        Bound::AtLeast(limit) => (band.low.max(limit), band.high),
+        Bound::Between(low, high) => (band.low.max(low), band.high.min(high)),
+    };
+    Band { low, high, ..band }
+}
+
+/// Mean and spread of the figures of other clouds, on the scale on which they
+/// are less skewed. None where no cloud moves the figure.
 pub fn spread(samples: &[f64], unit: &str) -> Option<(f64, Spread)> {
     if samples.len() < 2 || samples.iter().any(|value| !value.is_finite()) {
         return None;
@@ -80,13 +90,35 @@ pub fn spread(samples: &[f64], unit: &str) -> Option<(f64, Spread)> {
     if high - low <= least(high).max(least(low)) {
         return None;
     }
-    let scale = if low > 0.0 { Scale::Logarithmic } else { Scale::Linear };
+    let scale = scale_of(samples);
     let moved: Vec<f64> = samples.iter().map(|value| on(scale, *value)).collect();
     let count = moved.len() as f64;
     let mean = moved.iter().sum::<f64>() / count;
     let squares: f64 = moved.iter().map(|value| (value - mean).powi(2)).sum();
     let deviation = (squares / (count - 1.0)).sqrt();
     Some((mean, Spread { scale, deviation, samples: samples.len() }))
+}
+
+/// Errors that are products of factors are skewed, and their logarithms are
+/// not; sizes of differences that pass through zero are the other way round.
+fn scale_of(samples: &[f64]) -> Scale {
+    if samples.iter().any(|value| *value <= 0.0) {
+        return Scale::Linear;
+    }
+    let logarithms: Vec<f64> = samples.iter().map(|value| value.ln()).collect();
+    match skewness(&logarithms).abs() <= skewness(samples).abs() {
+        true => Scale::Logarithmic,
+        false => Scale::Linear,
+    }
+}
+
+/// Third central moment over the cube of the standard deviation \[–\].
+fn skewness(samples: &[f64]) -> f64 {
+    let count = samples.len() as f64;
+    let mean = samples.iter().sum::<f64>() / count;
+    let moment =
+        |order: i32| samples.iter().map(|value| (value - mean).powi(order)).sum::<f64>() / count;
+    moment(3) / moment(2).powf(1.5)
 }
 
 /// Where one more run falls, but for a chance of `tail`:
@@ -118,7 +150,7 @@ fn scattered(check: &Check, centre: f64, spread: Spread, tail: f64, factor: f64)
     let low = back(centre - width).min(check.value);
     let high = back(centre + width).max(check.value);
     let band = Band { low, high, source: BandSource::Scatter, spread: Some(spread) };
-    widened(band, check)
+    within_bound(widened(band, check), check.bound)
 }
 
 fn on(scale: Scale, value: f64) -> f64 {
@@ -156,26 +188,42 @@ mod tests {
 
     #[test]
     fn a_difference_is_not_judged_below_the_error_bar_of_its_reference() {
-        let mut difference = check(Kind::Reference, 0.008, Bound::AtMost(0.03));
-        difference.reference_error = Some(0.01);
+        let mut difference = check(Kind::Reference, 0.0078125, Bound::AtMost(0.03));
+        difference.reference_error = Some(0.015625);
         let band = still(&difference);
-        assert_eq!((band.low, band.high, band.source), (-0.002, 0.018, BandSource::Reference));
+        assert_eq!(
+            (band.low, band.high, band.source),
+            (-0.0078125, 0.0234375, BandSource::Reference)
+        );
         let spread = Spread { scale: Scale::Logarithmic, deviation: 1e-3, samples: 20 };
         assert_eq!(around_value(&difference, spread, 0.01).source, BandSource::Reference);
     }
 
     #[test]
     fn the_prediction_interval_is_that_of_the_textbook() {
-        // x̄ = 3, s = √2.5, n = 5, t(4, 5 %) = 2.776.
-        let (mean, spread) = spread(&[-1.0 + 2.0, 2.0, 3.0, 4.0, 5.0], "1").unwrap();
-        assert_eq!(spread.scale, Scale::Logarithmic);
-        assert!(mean < 3f64.ln());
-        let (mean, spread) = super::spread(&[-2.0, -1.0, 0.0, 1.0, 2.0], "1").unwrap();
+        // x̄ = 0, s = √2.5, n = 5, t(4, 5 %) = 2.776.
+        let (mean, spread) = spread(&[-2.0, -1.0, 0.0, 1.0, 2.0], "1").unwrap();
         assert_eq!((mean, spread.scale, spread.samples), (0.0, Scale::Linear, 5));
         let one = check(Kind::Regression, 0.5, Bound::Between(-9.0, 9.0));
         let band = around_mean(&one, mean, spread, 0.05);
         let half_width = 2.776_445 * 2.5f64.sqrt() * 1.2f64.sqrt();
         assert!((band.high - half_width).abs() < 1e-5 && band.low == -band.high, "{band:?}");
+    }
+
+    #[test]
+    fn the_scale_is_the_one_on_which_figures_are_less_skewed() {
+        let products: Vec<f64> = (-10..=10).map(|i| (0.3 * f64::from(i)).exp()).collect();
+        assert_eq!(spread(&products, "1").unwrap().1.scale, Scale::Logarithmic);
+        let differences: Vec<f64> = (-10..=10).map(|i| (0.1 * f64::from(i) + 0.03).abs()).collect();
+        assert_eq!(spread(&differences, "1").unwrap().1.scale, Scale::Linear);
+    }
+
+    #[test]
+    fn a_band_ends_at_the_bound() {
+        let spread = Spread { scale: Scale::Logarithmic, deviation: 1.0, samples: 20 };
+        let band = around_value(&check(Kind::Regression, 0.01, Bound::AtMost(0.05)), spread, 0.01);
+        assert_eq!(band.high, 0.05);
+        assert!(band.low < 0.01);
     }
 
     #[test]

@@ -13,13 +13,12 @@ pub struct Clouds<'a> {
     runs: &'a [Report],
 }
 
-/// What a run would have been told by the band of all the others.
+/// What is wrong with a run of another cloud.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LeftOut {
+pub struct Suspect {
     /// Place of the run in the list.
     pub run: usize,
-    /// Checks that would have been called worse.
-    pub worse: Vec<String>,
+    pub checks: Vec<String>,
 }
 
 impl<'a> Clouds<'a> {
@@ -51,18 +50,26 @@ impl<'a> Clouds<'a> {
         spread(&samples, &check.unit)
     }
 
-    /// Leaves out one run after the other and judges it by the rest: the bands
-    /// hold what they promise if nearly none is called worse.
-    pub fn left_out(&self, report: &Report) -> Vec<LeftOut> {
+    /// Runs that break bounds: code that fails on other clouds is not healthy,
+    /// or its bounds were made for one cloud.
+    pub fn failing(&self) -> Vec<Suspect> {
+        suspects(self.runs.iter().map(|run| {
+            let failed = run.checks().filter(|check| !check.pass);
+            failed.map(|check| check.id.clone()).collect()
+        }))
+    }
+
+    /// Leaves out one run after the other and judges what keeps its bound by
+    /// the rest: the bands hold what they promise if nearly none is worse.
+    pub fn left_out(&self, report: &Report) -> Vec<Suspect> {
         let moved = report.checks().filter(|check| self.spread(check).is_some()).count();
-        let of_run = |(run, left): (usize, &Report)| {
-            let rest = |check: &Check| self.without(check, run, tail(moved));
+        suspects(self.runs.iter().enumerate().map(|(run, left)| {
             let worse = left.checks().filter(|check| {
-                rest(check).is_some_and(|band| verdict(check, &band) == Verdict::Worse)
+                let rest = self.without(check, run, tail(moved));
+                check.pass && rest.is_some_and(|band| verdict(check, &band) == Verdict::Worse)
             });
-            LeftOut { run, worse: worse.map(|check| check.id.clone()).collect() }
-        };
-        self.runs.iter().enumerate().map(of_run).filter(|left| !left.worse.is_empty()).collect()
+            worse.map(|check| check.id.clone()).collect()
+        }))
     }
 
     /// The band of a check from all runs but one.
@@ -77,4 +84,9 @@ impl<'a> Clouds<'a> {
         let other = Check { value: values[0], ..check.clone() };
         Some(around_mean(&other, mean, spread, tail))
     }
+}
+
+fn suspects(runs: impl Iterator<Item = Vec<String>>) -> Vec<Suspect> {
+    let all = runs.enumerate().map(|(run, checks)| Suspect { run, checks });
+    all.filter(|suspect| !suspect.checks.is_empty()).collect()
 }

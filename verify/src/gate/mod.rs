@@ -1,6 +1,6 @@
 //! The gate: a run beside a committed baseline. What counts as the same comes
 //! from theory, from the reference's error bar or from measured scatter over
-//! clouds ([`band`]); [`judge`] compares, [`update`] writes the baseline anew.
+//! clouds ([`band`]); [`judge`] compares, [`mod@update`] writes the baseline anew.
 
 pub mod band;
 pub mod baseline;

@@ -85,19 +85,21 @@ mod tests {
 
     /// Set MTLED_SAMPLE_REPORT to a folder to look at the pages.
     #[test]
-    fn a_report_is_four_files_and_a_folder_of_figures() {
+    fn a_report_is_four_files_and_folders_of_figures_and_failing_cases() {
         let scratch = tempfile::tempdir().unwrap();
         let kept = std::env::var_os("MTLED_SAMPLE_REPORT").map(std::path::PathBuf::from);
         let folder = kept.unwrap_or(scratch.path().join("deep/report"));
-        write_report(&sample::report(), &folder).unwrap();
-        write_report(&sample::report(), &folder).unwrap();
+        write_report(&sample::compared(), &folder).unwrap();
+        write_report(&sample::compared(), &folder).unwrap();
         let mut names: Vec<_> = std::fs::read_dir(&folder)
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .filter(|name| !name.ends_with(".png"))
             .collect();
         names.sort();
-        assert_eq!(names, ["figures", "index.html", "junit.xml", "results.json", "summary.md"]);
+        let files =
+            ["failures", "figures", "index.html", "junit.xml", "results.json", "summary.md"];
+        assert_eq!(names, files);
     }
 
     #[test]
