@@ -11,6 +11,9 @@ use crate::study::{
 };
 use minijinja::{Environment, Value, context};
 
+/// Texts with more letters get a column that is wide enough to read.
+const LONG: usize = 24;
+
 /// The study whose drawings stand on top of the page.
 const DRAWN: &str = "brain";
 /// Studies whose first plot does: error against cost.
@@ -42,6 +45,7 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
         failed => !report.bounds_hold(),
         compared => report.comparison.as_ref().map(compared_value),
         verdict => verdict(report),
+        judged => report.checks().next().is_some(),
         kinds => kind_values(report),
         failures => failures,
         hero => hero_values(report),
@@ -67,7 +71,7 @@ fn study_value(study: &Study) -> Value {
         command => study.command.as_str(),
         failure => study.failure.as_deref(),
         pass => study_passed(study),
-        counts => format!("{passed} of {all}"),
+        counts => if all == 0 { "figures only".into() } else { format!("{passed} of {all}") },
         checks => study.checks.iter().map(check_value).collect::<Vec<_>>(),
         tables => study.tables.iter().map(table_value).collect::<Vec<_>>(),
         figures => figures,
@@ -140,7 +144,9 @@ fn cell_value(cell: &Cell) -> Value {
         Cell::Number(number) => {
             context! { text => four_digits(*number), key => number.to_string(), number => true }
         }
-        Cell::Text(text) => context! { text => text, key => text, number => false },
+        Cell::Text(text) => {
+            context! { text => text, key => text, number => false, long => text.len() > LONG }
+        }
     }
 }
 
@@ -185,6 +191,7 @@ fn kind_values(report: &Report) -> Vec<Value> {
     ];
     kinds
         .into_iter()
+        .filter(|(kind, _)| report.checks().any(|check| check.kind == *kind))
         .map(|(kind, meaning)| {
             let of_kind = report.checks().filter(|check| check.kind == kind);
             let (passed, all) = counts(of_kind.map(|check| check.pass));
@@ -266,6 +273,6 @@ mod tests {
 
     #[test]
     fn a_report_without_studies_is_a_page() {
-        assert!(to_html(&sample::empty()).unwrap().contains("0 of 0 checks passed"));
+        assert!(to_html(&sample::empty()).unwrap().contains("Figures only"));
     }
 }

@@ -7,7 +7,10 @@ use crate::study::{Kind, Report, Study, Verdict};
 pub(super) fn verdict(report: &Report) -> String {
     let (passed, all) = counts(report.checks().map(|check| check.pass));
     let broken = report.studies.iter().filter(|study| study.failure.is_some()).count();
-    let mut words = format!("{passed} of {all} {} passed", plural(all, "check", "checks"));
+    let mut words = match all {
+        0 => "Figures only".to_string(),
+        _ => format!("{passed} of {all} {} passed", plural(all, "check", "checks")),
+    };
     if broken > 0 {
         words += &format!(", {broken} {} could not run", plural(broken, "study", "studies"));
     }
@@ -77,7 +80,7 @@ mod tests {
     fn the_verdict_counts_checks_and_names_broken_studies() {
         let report = sample::report();
         assert_eq!(verdict(&report), "9 of 11 checks passed, 1 study could not run");
-        assert_eq!(verdict(&sample::empty()), "0 of 0 checks passed");
+        assert_eq!(verdict(&sample::empty()), "Figures only");
         assert!(verdict(&sample::compared()).ends_with(", 1 got worse, 1 missing"));
     }
 
