@@ -46,7 +46,7 @@ pub fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Resu
     let limit = Some(Limit {
         kind: Kind::Exact,
         bound: Bound::AtMost(1e-8),
-        source: "The law is elastic: the shape at rest comes back as exp(−15 t/s), over 1.4 s after \
+        source: "The law is elastic: the shape at rest comes back as exp(−15 t/s), over 1.9 s after \
                  the ball has let go",
     });
     let words = "pressed against a ball by 30 % and taken away, damped";
@@ -56,7 +56,10 @@ pub fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Resu
     let step = StepControl { safety_factor: 0.8, ..StepControl::default() };
     problem.motion = Motion::Dynamic { end: 1.2, step, damping: 0.0 };
     list.push(HardCase {
-        limit: measured(1.1e-2, "measured 1.01e-2, O(Δt²) in theory"),
+        limit: measured(
+            2.4e-2,
+            "measured 1.01e-2, on 21 families of clouds up to 2.2e-2; O(Δt²) in theory",
+        ),
         ..case("contact_let_go", "let go while pressed, no damping", problem, Truth::Balance)
     });
     Ok(())
@@ -90,6 +93,6 @@ fn pressed(spacing: f64) -> Result<Problem> {
         friction: Friction::Frictionless,
     }];
     let step = StepControl { safety_factor: 0.8, ..StepControl::default() };
-    problem.motion = Motion::Dynamic { end: 2.5, step, damping: 30.0 };
+    problem.motion = Motion::Dynamic { end: 3.0, step, damping: 30.0 };
     Ok(problem)
 }
