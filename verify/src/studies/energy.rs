@@ -16,9 +16,9 @@ use mtled::problem::{
 };
 use mtled::tensor::Vector3;
 
-/// Measured on ten clouds each (seeds 0 to 9): the largest value \[–\].
-const FLUCTUATION: f64 = 3.20e-3;
-const BALANCE: f64 = 1.16e-3;
+/// The largest of 21 families of clouds (`--seed` 0 to 20) \[–\].
+const FLUCTUATION: f64 = 3.87e-3;
+const BALANCE: f64 = 1.33e-3;
 /// Mean and standard deviation of the drift over the same clouds \[–\].
 const DRIFT: (f64, f64) = (1.17e-3, 0.71e-3);
 /// Room above the largest measured value.
@@ -82,7 +82,7 @@ fn conservation(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
         fluctuation,
         Bound::AtMost(BAND * FLUCTUATION),
         "1",
-        &format!("{FLUCTUATION:.2e} is the largest of the clouds of the quick suite, times {BAND}"),
+        &format!("{FLUCTUATION:.2e} is the largest of 21 families of clouds, times {BAND}"),
     ));
     study.checks.push(Check::new(
         "energy/vibration/drift",
@@ -229,7 +229,9 @@ fn balance(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
         worst,
         Bound::AtMost(BAND * BALANCE),
         "1",
-        &format!("O(Δt²) in theory; {BALANCE:.2e} is the largest of ten clouds, times {BAND}"),
+        &format!(
+            "O(Δt²) in theory; {BALANCE:.2e} is the largest of 21 families of clouds, times {BAND}"
+        ),
     ));
     study.notes.push(
         "The work of prescribed motion and of contact is taken from the impulses that the \

@@ -102,14 +102,14 @@ fn row(case: &HardCase, outcome: &Outcome) -> Vec<Cell> {
 
 /// Nothing may end in silence, and every case must end as it is known to.
 fn add_outcomes(bench: &Workbench, study: &mut Study, pairs: &[(&HardCase, &Outcome)]) {
-    let silent = |(_, outcome): &&(&HardCase, &Outcome)| match outcome {
-        Outcome::Finished(m) => !m.is_sound() || (m.is_far() && m.crushed.is_none()),
+    let silent = |(case, outcome): &&(&HardCase, &Outcome)| match outcome {
+        Outcome::Finished(m) => !m.is_sound() || (case.unique && m.is_far() && m.crushed.is_none()),
         Outcome::Refused { .. } => false,
     };
     study.checks.push(Check::new(
         "hard_cases/silent",
         "cases that ended without an error and with a displacement that is no number, with J ≤ 0, or \
-         more than 10 % from their truth without a warning",
+         more than 10 % from a truth that is the only equilibrium, without a warning",
         Kind::Exact,
         pairs.iter().filter(silent).count() as f64,
         Bound::AtMost(0.0),
@@ -126,11 +126,11 @@ fn add_outcomes(bench: &Workbench, study: &mut Study, pairs: &[(&HardCase, &Outc
         "cases that finished more than 10 % from their truth",
         Kind::Regression,
         pairs.iter().filter(far).count() as f64,
-        Bound::AtMost(bench.pick(2.0, 4.0)),
+        Bound::AtMost(bench.pick(3.0, 4.0)),
         "1",
-        "measured: compression between rollers by 50 %, projected and pointwise, see the notes; on the \
-         finer clouds of the full suite 70 % between rollers and between bonded faces too. The pointwise \
-         one may turn inside out instead",
+        "measured on 21 families of clouds: compression between rollers by 50 %, projected and pointwise, \
+         and by 70 %, see the notes; on the finer clouds of the full suite 70 % between bonded faces too. \
+         Each may turn inside out instead",
     ));
     for (case, outcome) in pairs {
         let found = match outcome {

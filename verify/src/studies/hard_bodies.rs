@@ -116,11 +116,16 @@ pub fn settle_stretch(tolerance: f64, share: f64) -> Motion {
     settle(tolerance, load_steps)
 }
 
-/// The cloud of a problem with a share of its nodes taken out at random.
+/// The cloud of a problem with a share of its nodes taken out at random; the corners
+/// of the prism stay, for without them the conditions end before the faces do.
 pub fn remove_nodes(problem: &mut Problem, share: f64, seed: u64) -> anyhow::Result<()> {
     let cloud = node_cloud(&problem.body, &problem.recipe.cloud, &problem.dimension)?;
     let mut random = Random(seed);
-    let kept = |_: &Vector3| 0.5 * (random.symmetric() + 1.0) >= share;
+    let corner = |X: &Vector3| {
+        let beside = |p: [f64; 2]| (X.x - p[0]).hypot(X.y - p[1]) < 1e-6 * SIZE;
+        square(SIZE).into_iter().any(beside) && (X.z == 0.0 || X.z == SIZE)
+    };
+    let kept = |X: &Vector3| 0.5 * (random.symmetric() + 1.0) >= share || corner(X);
     let nodes = cloud.positions.into_iter().filter(kept).collect();
     problem.recipe.cloud = Cloud::Given { nodes };
     Ok(())

@@ -52,7 +52,17 @@ pub fn case(id: &'static str, words: &'static str, problem: Problem, truth: Trut
         Truth::Homogeneous(_) => Some(UNIFORM),
         _ => None,
     };
-    HardCase { id, words, problem, truth, limit, ends: &["finite"], remark: "", steps: None }
+    HardCase {
+        id,
+        words,
+        problem,
+        truth,
+        limit,
+        ends: &["finite"],
+        unique: true,
+        remark: "",
+        steps: None,
+    }
 }
 
 const UNIFORM: Limit = Limit {
@@ -111,6 +121,8 @@ fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     );
     list.push(HardCase {
         limit: None,
+        unique: false,
+        ends: EITHER,
         remark: "folds within patches, see below; the uniform state is at the edge of buckling",
         ..folded
     });
@@ -119,12 +131,19 @@ fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     problem.recipe.grid = grid(0.5 * spacing);
     let words = "the same, J point by point, 2 cells per spacing";
     let folded = case("rollers_compressed_50_pointwise", words, problem, truth);
-    list.push(HardCase { limit: None, ends: EITHER, remark: "folds as well", ..folded });
+    list.push(HardCase {
+        limit: None,
+        unique: false,
+        ends: EITHER,
+        remark: "buckles on most clouds",
+        ..folded
+    });
     let (mut problem, truth) = rolled(cube(split(3000.0)?, spacing), SIZE, -0.7)?;
     problem.motion = settle(1e-3, 2000);
     let words = "cube between rollers, compressed by 70 %";
     list.push(HardCase {
         limit: None,
+        unique: false,
         remark: "beyond the wrinkling of a half-space at a stretch of 0.444 (Biot 1963): no \
                  uniform state can stand",
         ends: EITHER,
@@ -193,8 +212,8 @@ fn twisted(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
         let truth = Truth::Moment(torsion::moment(mu, angle / height, radius));
         let limit = Some(Limit {
             kind: Kind::Regression,
-            bound: Bound::AtMost(if angle < 2.0 { 0.02 } else { 0.033 }),
-            source: "measured 1.9 % and 3.1 % at five spacings in a diameter; the moment is that of Rivlin \
+            bound: Bound::AtMost(if angle < 2.0 { 0.021 } else { 0.034 }),
+            source: "measured up to 2.02 % and 3.24 % on 21 families of clouds with five spacings in a diameter; the moment is that of Rivlin \
                      1949 for an incompressible neo-Hookean cylinder, ν = 0.49 here",
         });
         list.push(HardCase { limit, ..case(id, words, problem, truth) });

@@ -68,6 +68,8 @@ pub struct HardCase {
     pub limit: Option<Limit>,
     /// How it is known to end: "finite", or the names of errors.
     pub ends: &'static [&'static str],
+    /// Whether the truth is the only equilibrium; beyond buckling it is not.
+    pub unique: bool,
     /// What a reader should know of it.
     pub remark: &'static str,
     /// Steps of a motion, whose end is then set by the critical step at rest.

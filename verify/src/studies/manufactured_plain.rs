@@ -22,11 +22,11 @@ const FROM: usize = 9;
 
 /// How many times smaller errors are wished to be.
 const WISHED: f64 = 8.0;
-/// Share of a measured ratio that may be lost.
-const KEPT: f64 = 0.9;
+/// Share of the least ratio that may be lost.
+const KEPT: f64 = 0.95;
 
-/// A quantity and what was measured at 9 nodes per edge, at ν = 0.3 and 0.49: of
-/// the cube along the grid and of the turned one.
+/// A quantity and the least of 21 families of clouds (`--seed` 0 to 20) at 9 nodes per
+/// edge, at ν = 0.3 and 0.49: of the cube along the grid and of the turned one.
 struct Ratio {
     name: &'static str,
     words: &'static str,
@@ -40,22 +40,22 @@ const RATIOS: [Ratio; 3] = [
         name: "displacement",
         words: "displacement",
         of: |e| e.displacement,
-        along: [3.16, 3.04],
-        turned: [4.4, 2.81],
+        along: [2.89, 2.81],
+        turned: [3.89, 2.78],
     },
     Ratio {
         name: "gradient",
         words: "gradient",
         of: |e| e.gradient,
-        along: [2.80, 1.54],
-        turned: [3.28, 1.46],
+        along: [2.60, 1.42],
+        turned: [3.03, 1.40],
     },
     Ratio {
         name: "pressure_deviation",
         words: "pressure, its mean apart,",
         of: |e| e.pressure_deviation,
-        along: [2.51, 11.7],
-        turned: [2.47, 12.5],
+        along: [2.32, 10.7],
+        turned: [2.39, 11.9],
     },
 ];
 
@@ -133,8 +133,8 @@ impl Pair {
                     Kind::Regression,
                     KEPT * measured,
                     format!(
-                        "{WISHED} times is wished for and missed: {measured} times was measured at \
-                         {FROM} nodes per edge, times {KEPT}"
+                        "{WISHED} times is wished for and missed: {measured} times is the least of 21 families \
+                         of clouds at {FROM} nodes per edge, times {KEPT}"
                     ),
                 ),
             };

@@ -21,25 +21,25 @@ const QUANTITIES: [Quantity; 4] = [
     Quantity { name: "pressure_deviation", of: |e| e.pressure_deviation, promised: 1.0 },
 ];
 
-/// Measured with the default recipe: order over the first [`BOUNDED_SIZES`] and mean
-/// error at the last of them, of displacement, gradient, pressure
-/// and pressure less its mean.
+/// The worst of 21 families of clouds (`--seed` 0 to 20) with the default recipe: order
+/// over the first [`BOUNDED_SIZES`] and mean error at the last of them, of displacement,
+/// gradient, pressure and pressure less its mean.
 const MEASURED: [(&str, [[f64; 2]; 4]); 8] = [
-    ("log_j-nu300", [[1.51, 0.0075], [0.57, 0.0634], [0.89, 0.0379], [0.89, 0.0379]]),
-    ("isochoric-nu300", [[1.42, 0.0091], [0.49, 0.0755], [0.83, 0.0396], [0.83, 0.0396]]),
-    ("log_j-nu490", [[1.81, 0.0077], [0.84, 0.0533], [1.20, 0.0552], [1.20, 0.0552]]),
-    ("isochoric-nu490", [[1.78, 0.0079], [0.83, 0.0545], [1.20, 0.0526], [1.19, 0.0526]]),
-    ("mooney_rivlin-nu490", [[1.82, 0.0076], [0.85, 0.0530], [1.21, 0.0582], [1.20, 0.0582]]),
-    ("log_j-nu499", [[1.81, 0.0078], [0.84, 0.0534], [1.66, 0.0586], [1.20, 0.0571]]),
-    ("isochoric-nu499", [[1.79, 0.0081], [0.83, 0.0545], [1.74, 0.0559], [1.19, 0.0544]]),
-    ("mooney_rivlin-nu499", [[1.82, 0.0078], [0.85, 0.0529], [1.62, 0.0619], [1.21, 0.0605]]),
+    ("log_j-nu300", [[1.18, 0.0084], [0.33, 0.0696], [0.67, 0.0415], [0.66, 0.0415]]),
+    ("isochoric-nu300", [[1.05, 0.0105], [0.21, 0.0847], [0.58, 0.0429], [0.58, 0.0429]]),
+    ("log_j-nu490", [[1.66, 0.0083], [0.66, 0.0571], [0.95, 0.0602], [0.95, 0.0601]]),
+    ("isochoric-nu490", [[1.63, 0.0086], [0.64, 0.0586], [0.95, 0.0571], [0.94, 0.0571]]),
+    ("mooney_rivlin-nu490", [[1.67, 0.0082], [0.67, 0.0566], [0.96, 0.0636], [0.96, 0.0636]]),
+    ("log_j-nu499", [[1.67, 0.0085], [0.67, 0.0572], [1.01, 0.0663], [0.94, 0.0622]]),
+    ("isochoric-nu499", [[1.64, 0.0087], [0.65, 0.0586], [1.03, 0.0639], [0.94, 0.0590]]),
+    ("mooney_rivlin-nu499", [[1.68, 0.0084], [0.68, 0.0566], [1.01, 0.0698], [0.95, 0.0660]]),
 ];
 
 /// Sizes that both suites have and that the bounds are for: 5, 7 and 9 nodes.
 const BOUNDED_SIZES: usize = 3;
-/// Room around measured orders and over measured errors.
-const ORDER_BAND: f64 = 0.1;
-const ERROR_BAND: f64 = 1.1;
+/// Room below the least order and over the largest error.
+const ORDER_BAND: f64 = 0.05;
+const ERROR_BAND: f64 = 1.05;
 
 /// An observed order with its standard deviation over the clouds.
 #[derive(Debug, Clone, Copy)]
@@ -99,7 +99,7 @@ pub fn judge(study: &mut Study, scenario: &Scenario, rungs: &[Rung]) -> Result<(
             found.mean,
             Bound::AtLeast(least - ORDER_BAND),
             "1",
-            &format!("the default recipe: {least:.2}, less {ORDER_BAND}"),
+            &format!("the least of 21 families of clouds: {least:.2}, less {ORDER_BAND}"),
         ));
         let (error, _) = at_size(last, quantity.of);
         study.checks.push(Check::new(
@@ -109,7 +109,7 @@ pub fn judge(study: &mut Study, scenario: &Scenario, rungs: &[Rung]) -> Result<(
             error,
             Bound::AtMost(ERROR_BAND * measured),
             "1",
-            &format!("the default recipe: {measured:.4}, times {ERROR_BAND}"),
+            &format!("the largest of 21 families of clouds: {measured:.4}, times {ERROR_BAND}"),
         ));
     }
     Ok(())

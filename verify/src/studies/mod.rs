@@ -11,6 +11,7 @@ mod comparison_tables;
 mod consistency;
 mod convergence;
 mod energy;
+mod faults;
 mod hard;
 mod hard_bodies;
 mod hard_cases;
@@ -22,12 +23,15 @@ mod manufactured;
 mod manufactured_plain;
 mod manufactured_pose;
 mod manufactured_report;
+mod parts;
+mod parts_model;
 mod patch;
 mod patch_exact;
 pub(crate) mod plain;
 pub(crate) mod problems;
 mod references;
 mod set_up;
+mod smallest;
 mod specimens;
 mod statics;
 mod time_step;
@@ -168,6 +172,14 @@ pub const STUDIES: &[Definition] = &[
         body: consistency::consistency,
     },
     Definition {
+        id: "parts",
+        title: "Parts by themselves",
+        claim: "Stress is the derivative of the energy, vanishes at rest and turns with the body; \
+                lumped masses keep the body's mass and, by row sum, its centre; reactions balance \
+                loads in a slab; and what is no number ends a run.",
+        body: parts::parts,
+    },
+    Definition {
         id: "set_up",
         title: "Set-up",
         claim: "Making the gradients consistent takes the same few iterations at any number of nodes \
@@ -181,6 +193,13 @@ pub const STUDIES: &[Definition] = &[
         claim: "Carried cases take no more evaluations of the internal force, points, neighbours and \
                 bytes than they did: counts that do not depend on the machine.",
         body: work::work,
+    },
+    Definition {
+        id: "faults",
+        title: "Deliberate faults",
+        claim: "Every fault that is put into the solver on purpose makes a check of the quick suite \
+                fail.",
+        body: faults::faults,
     },
     Definition {
         id: "references",
@@ -266,6 +285,10 @@ impl Definition {
         };
         if let Err(error) = (self.body)(bench, &mut study) {
             study.failure = Some(format!("{error:#}"));
+        }
+        // What these say is not about a body.
+        if !["faults", "references"].contains(&self.id) {
+            smallest::attach(&mut study);
         }
         study.wall_seconds = start.elapsed().as_secs_f64();
         study

@@ -24,6 +24,8 @@ const TRIAL_STEPS: usize = 500;
 const GROWTH: f64 = 1e8;
 /// Width of the bracket at which bisection ends \[–\].
 const BISECTION: f64 = 1e-3;
+/// By how much Lanczos may overrate the step, in one of a hundred cases at most \[–\].
+const OUT_OF_SIGHT: f64 = 0.03;
 
 /// Steps \[s\] of one specimen.
 #[derive(Debug, Clone, Copy)]
@@ -167,10 +169,11 @@ fn add_checks(study: &mut Study, specimen: &Specimen, limits: &Limits) {
     let id = format!("time_step/{}/lanczos", specimen.id);
     let words = format!("step by Lanczos over the largest stable one: {}", specimen.words);
     let source = "2/√λ_max is the stability limit of central differences, and the Ritz value plus \
-                  its residual is on the safe side; the upper end allows for the bracket of the \
-                  bisection, 0.1 %";
+                  its residual is on the safe side unless a mode stays out of sight: 20 products \
+                  miss more than 6 % of λ_max, 3 % of the step, with a probability below 1 % \
+                  (Kuczyński, Woźniakowski 1992). Of 360 bodies two were above 1.001, by up to 1.1 %";
     let ratio = limits.lanczos / limits.bisected;
-    let bound = Bound::Between(0.9, 1.0 + BISECTION);
+    let bound = Bound::Between(0.9, 1.0 + OUT_OF_SIGHT);
     study.checks.push(Check::new(&id, &words, Kind::Exact, ratio, bound, "1", source));
     if let Some(followed) = limits.followed {
         let id = format!("time_step/{}/followed", specimen.id);
