@@ -159,7 +159,8 @@ mod tests {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/faults");
         let mut files: Vec<String> = std::fs::read_dir(folder)
             .unwrap()
-            .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .filter_map(|name| name.strip_suffix(".toml").map(String::from))
             .collect();
         files.sort();
         let carried: Vec<&str> = FAULTS.iter().map(|(name, _)| *name).collect();

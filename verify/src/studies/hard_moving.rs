@@ -45,7 +45,7 @@ pub fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Resu
     let limit = measured(
         1e-6,
         "measured 3e-14, on 21 families of clouds up to 1.3e-7, 1.9 s after the ball has let go: the law \
-         is elastic and the shape at rest comes back, as exp(−15 t/s) on all clouds but two",
+         is elastic and the shape at rest comes back, as exp(−15 t/s) on most clouds, slower on five",
     );
     let words = "pressed against a ball by 30 % and taken away, damped";
     list.push(HardCase { limit, ..case("contact_release", words, problem.clone(), Truth::Rest) });
