@@ -213,6 +213,9 @@ pub fn ending(record: &Record) -> String {
     }
 }
 
+/// A name, and at each level the values of all clouds.
+type Curve = (String, Vec<(f64, Vec<f64>)>);
+
 /// A figure over the levels of the axis with the most numbers, a curve for each
 /// combination of the others; the median of the clouds with their range as bars.
 fn add_figure(
@@ -225,7 +228,7 @@ fn add_figure(
     let numeric = |axis: &&super::Axis| axis.levels.iter().all(|l| number_of(l).is_some());
     let along = sweep.axes.iter().filter(numeric).max_by_key(|axis| axis.levels.len());
     let Some(along) = along.filter(|axis| axis.levels.len() > 1) else { return };
-    let mut curves: Vec<(String, Vec<(f64, Vec<f64>)>)> = Vec::new();
+    let mut curves: Vec<Curve> = Vec::new();
     for record in &case.records {
         let setting = record.settings.iter().find(|setting| setting.knob == along.knob);
         let (Some(x), Some(y)) =

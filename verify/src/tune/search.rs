@@ -127,7 +127,7 @@ fn components(bench: &Bench) -> usize {
     bench.wanted.source.case.problem.dimension.components()
 }
 
-fn own<'a>(trials: &'a [Trial], candidate: usize) -> Vec<&'a Trial> {
+fn own(trials: &[Trial], candidate: usize) -> Vec<&Trial> {
     trials.iter().filter(|trial| trial.candidate == candidate).collect()
 }
 
