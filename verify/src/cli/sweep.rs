@@ -39,15 +39,15 @@ pub struct SweepArgs {
     #[arg(long, default_value = "any", value_name = "any|own|FILE")]
     truth: String,
     /// Folder of the records; what is there is not run again.
-    #[arg(long, default_value = STORE, value_name = "DIR")]
+    #[arg(long, default_value = STORE, value_name = "DIR", help_heading = "Files")]
     store: PathBuf,
     /// Folder for index.html, results.json and figures
     /// [default: reports/<study>].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", help_heading = "Files")]
     out: Option<PathBuf>,
     /// Run part i of n only and report nothing; `mtled merge` brings the stores
     /// of all parts together, and the same command without this reports.
-    #[arg(long, value_name = "i/n", value_parser = part)]
+    #[arg(long, value_name = "i/n", value_parser = part, help_heading = "Files")]
     shard: Option<(usize, usize)>,
 }
 

@@ -47,11 +47,11 @@ pub struct TuneArgs {
     #[command(flatten)]
     ranges: Ranges,
     /// Folder of the records; what is there is not run again.
-    #[arg(long, default_value = STORE, value_name = "DIR")]
+    #[arg(long, default_value = STORE, value_name = "DIR", help_heading = "Files")]
     store: PathBuf,
     /// Folder for index.html, results.json, figures and the tuned case file
     /// [default: reports/tune/<case>].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", help_heading = "Files")]
     out: Option<PathBuf>,
 }
 
@@ -105,8 +105,13 @@ pub fn tune_cases(arguments: &TuneArgs, common: &Common) -> Result<u8> {
         (None, None) => PRESET,
     };
     let axes = arguments.ranges.axes()?;
-    if axes.iter().any(|axis| axis.knob == Knob::Spacing) {
-        anyhow::bail!("the spacing is what the search finds; name no range of it");
+    for (knob, why) in [
+        (Knob::Spacing, "the spacing is what the search finds"),
+        (Knob::Load, "the load belongs to the problem, not to the recipe"),
+    ] {
+        if axes.iter().any(|axis| axis.knob == knob) {
+            anyhow::bail!("{why}; name no range of it");
+        }
     }
     let wanted = |name: &String| -> Result<Wanted> {
         Ok(Wanted {

@@ -149,9 +149,11 @@ fn ladder(
     for &candidate in last {
         standing.extend(climb(bench, candidate, &clouds, trials)?);
     }
+    // Errors below the truth's own are alike: of those the cheapest.
+    let known = |trial: &Trial| trial.worst().max(bench.bar());
     standing.sort_by(|a, b| match bench.wanted.goal {
         Goal::Error(_) => a.cpu_s.total_cmp(&b.cpu_s),
-        Goal::Budget(_) => a.worst().total_cmp(&b.worst()),
+        Goal::Budget(_) => known(a).total_cmp(&known(b)).then(a.cpu_s.total_cmp(&b.cpu_s)),
     });
     for winner in standing {
         let confirmed = bench.trials(&[(winner.candidate, winner.factor)], &fresh)?.remove(0);
