@@ -7,10 +7,11 @@ use crate::exact::manufactured::{Family, FieldKind, Manufactured};
 use crate::measure::rms_distance;
 use crate::reference::agreement::rms_of_points;
 use crate::scene::{Case, parse_case};
+use crate::studies::{Place, Placed, impose};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::ValueEnum;
-use mtled::material::{ElasticConstants, Material};
-use mtled::problem::{Amplitude, BodyForce, Field, Prescribed, Problem};
+use mtled::material::ElasticConstants;
+use mtled::problem::Problem;
 use mtled::tensor::Vector3;
 use std::path::Path;
 
@@ -100,14 +101,7 @@ impl Challenge {
     pub fn pose(self) -> Result<Problem> {
         let Some(solution) = self.solution()? else { return Ok(bonded_block()?.problem) };
         let mut problem = parse(SMOOTH, "smooth")?.problem;
-        let law = solution.family.law(solution.constants)?;
-        problem.regions[0].material = Material { density: solution.density, law };
-        problem.conditions[0].prescribed =
-            Prescribed::Field(Field::of(move |X| solution.displacement(X)));
-        problem.loads.body_forces = vec![BodyForce {
-            acceleration: Field::of(move |X| solution.body_force(X)),
-            amplitude: Amplitude::Smooth { duration: 1.0 },
-        }];
+        impose(&mut problem, Placed::new(solution, Place::Along))?;
         Ok(problem)
     }
 

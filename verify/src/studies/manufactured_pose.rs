@@ -117,6 +117,13 @@ pub fn pose(placed: Placed, nodes_per_edge: usize, seed: u64, scheme: Scheme) ->
         Scheme::Finer => problem.recipe.grid.cell = 0.5 / (nodes_per_edge - 1) as f64,
         Scheme::Plain { points } => make_plain(&mut problem, points)?,
     }
+    impose(&mut problem, placed)?;
+    Ok(problem)
+}
+
+/// Gives a body of one region with one condition the material, boundary values and
+/// body force of a solution.
+pub fn impose(problem: &mut Problem, placed: Placed) -> Result<()> {
     let solution = placed.solution;
     let law = solution.family.law(solution.constants)?;
     problem.regions[0].material = Material { density: solution.density, law };
@@ -126,7 +133,7 @@ pub fn pose(placed: Placed, nodes_per_edge: usize, seed: u64, scheme: Scheme) ->
         acceleration: Field::of(move |X| placed.body_force(X)),
         amplitude: Amplitude::Smooth { duration: 1.0 },
     }];
-    Ok(problem)
+    Ok(())
 }
 
 /// The unit cube after X → R X, as a closed surface of twelve triangles.

@@ -40,6 +40,8 @@ mod time_step_runs;
 mod vibration;
 mod work;
 
+pub use manufactured::Place;
+pub use manufactured_pose::{Placed, impose};
 pub use time_step::{largest_stable_step, trial_velocity};
 
 use crate::reference::{ReferenceError, ReferenceFile, read_reference};
