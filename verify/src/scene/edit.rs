@@ -144,12 +144,6 @@ fn scale_rows(table: &mut dyn TableLike, list: &str, key: &str, factor: f64) {
         let Some(row) = item.get_mut(index).and_then(Item::as_table_like_mut) else { break };
         scale(row, key, factor);
     }
-    // Rows of an array in one line are values, not items.
-    if let Some(array) = item.as_array_mut() {
-        for row in array.iter_mut().filter_map(Value::as_inline_table_mut) {
-            scale(row, key, factor);
-        }
-    }
 }
 
 /// Nine digits are enough for a length, and read better than seventeen.
