@@ -35,7 +35,10 @@ pub fn perform(task: &Task) -> Result<Option<Record>> {
             Err(error) => Some(refused(error.to_string())),
             Ok(prepared) => {
                 set_up = start.elapsed().as_secs_f64();
-                carry_out(task, &case, prepared)?
+                match hopeless(&prepared) {
+                    Some(reason) => Some(refused(reason)),
+                    None => carry_out(task, &case, prepared)?,
+                }
             }
         },
     };
@@ -60,6 +63,17 @@ pub fn perform(task: &Task) -> Result<Option<Record>> {
             date: provenance.date,
         },
     }))
+}
+
+/// Why a discretisation is not worth a step: where the correction of the gradients has
+/// made them worse than plain ones, steps are so small that no run ends.
+fn hopeless(prepared: &Prepared) -> Option<String> {
+    let correction = prepared.discretisation.correction.filter(|c| c.residual > 1.0)?;
+    Some(format!(
+        "the correction of the gradients diverges: after {} iterations they are {:.1e} times as \
+         inconsistent as plain ones; use more cells per spacing or a larger dilation",
+        correction.iterations, correction.residual
+    ))
 }
 
 fn refused(reason: String) -> Outcome {
@@ -213,4 +227,26 @@ fn compressed(components: usize, compression: f64) -> Matrix3 {
         axis if axis < components => across - 1.0,
         _ => 0.0,
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Knob, Setting};
+    use crate::store::Source;
+
+    #[test]
+    fn a_recipe_whose_gradients_cannot_be_made_consistent_is_refused_before_the_first_step() {
+        let folder = tempfile::tempdir().unwrap();
+        let source = Source::find("falling_beam", folder.path()).unwrap();
+        let settings = vec![
+            Setting::word(Knob::Spacing, "x1.6"),
+            Setting::number(Knob::Dilation, 1.5),
+            Setting::number(Knob::CellsPerSpacing, 1.0),
+        ];
+        let task = Task { job: Job::Solve, source, settings, times: vec![0.2] };
+        let record = perform(&task).unwrap().unwrap();
+        let reason = record.failure().unwrap();
+        assert!(reason.contains("correction of the gradients diverges"), "{reason}");
+    }
 }
