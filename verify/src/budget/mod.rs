@@ -23,8 +23,6 @@ pub struct Wanted {
     pub group: Option<Group>,
     /// Other clouds that show how much of the error is luck.
     pub clouds: usize,
-    /// The command that reproduces it.
-    pub command: String,
 }
 
 /// One part with what its run gave.

@@ -1,6 +1,5 @@
 //! The parts of an error, and the run that shows each.
 
-use crate::reference::is_dynamic;
 use crate::scene::{Case, Knob, Setting};
 use crate::studies::spacing_of;
 use mtled::problem::{Basis, Dilatation, Gradients, Motion};
@@ -83,7 +82,7 @@ pub fn parts(case: &Case) -> Vec<Part> {
 
 fn time(case: &Case, add: &mut impl FnMut(&'static str, String, Vec<Setting>, f64)) {
     match &case.problem.motion {
-        Motion::Dynamic { step, .. } if is_dynamic(case) => add(
+        Motion::Dynamic { step, .. } => add(
             "time",
             "half the step; what is left at order 1".into(),
             vec![Setting::number(Knob::SafetyFactor, 0.5 * step.safety_factor)],
@@ -115,6 +114,5 @@ fn time(case: &Case, add: &mut impl FnMut(&'static str, String, Vec<Setting>, f6
             vec![Setting::number(Knob::Tolerance, (1e-4 * newton.tolerance).max(1e-12))],
             1.0,
         ),
-        Motion::Dynamic { .. } => {}
     }
 }

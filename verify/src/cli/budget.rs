@@ -46,7 +46,6 @@ pub fn budget_of(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
         truth: truth(&arguments.truth),
         group: arguments.quantity,
         clouds: arguments.clouds.into(),
-        command: command_line(),
     };
     let runs = ManyRuns::new(common);
     let found = match budget(&wanted, &store, &|progress| runs.show(progress)) {
@@ -58,7 +57,7 @@ pub fn budget_of(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
         schema_version: json::SCHEMA_VERSION,
         suite: "budget".into(),
         provenance: provenance(),
-        studies: vec![budget_study(&found, &wanted.command)],
+        studies: vec![budget_study(&found, &command_line())],
         wall_seconds: start.elapsed().as_secs_f64(),
         comparison: None,
     };

@@ -1,7 +1,7 @@
 //! Errors over spacings and orders with their scatter.
 
 use super::tables::{ending, middle, optional, percent, setting_cells, setting_columns};
-use super::{Measured, Sweep, level};
+use super::{Measured, Sweep};
 use crate::measure::log_log_fit;
 use crate::scene::Knob;
 use crate::store::Record;
@@ -68,12 +68,7 @@ fn families(sweep: &Sweep, case: &Measured, error: &dyn Fn(&Record) -> Option<f6
     let mut families: Vec<Family> = Vec::new();
     for record in &case.records {
         let (Some(h), Some(error)) = (record.figure("spacing_m"), error(record)) else { continue };
-        let others: Vec<String> = (sweep.axes.iter().filter(|axis| axis.knob != Knob::Spacing))
-            .map(|axis| {
-                format!("{} {}", axis.knob.name().replace('_', " "), level(record, axis.knob))
-            })
-            .collect();
-        let name = if others.is_empty() { case.source.name.clone() } else { others.join(", ") };
+        let name = sweep.curve_name(case, record, Knob::Spacing);
         match families.iter_mut().find(|family| family.0 == name) {
             Some(family) => family.1.push((h, error)),
             None => families.push((name, vec![(h, error)])),

@@ -13,7 +13,6 @@ pub use tables::percent;
 pub use truth::{TruthWanted, find_truth};
 
 use crate::accuracy::{Group, Truth};
-use crate::reference::is_dynamic;
 use crate::scene::{Knob, Level, Setting};
 use crate::store::{Job, Progress, Record, Source, Store, Task, perform_all};
 use crate::study::Study;
@@ -215,16 +214,23 @@ impl Sweep {
     }
 }
 
-/// A setting as a part of a name; the case's own where it was not set.
-fn level(record: &Record, knob: Knob) -> String {
-    record.level(knob).unwrap_or_else(|| "as in the case".into())
+impl Sweep {
+    /// What tells the runs of a curve over `along` from those of others: the levels of
+    /// all other knobs, or the case's name where there are none.
+    fn curve_name(&self, case: &Measured, record: &Record, along: Knob) -> String {
+        let level = |knob: Knob| record.level(knob).unwrap_or_else(|| "as in the case".into());
+        let others: Vec<String> = (self.axes.iter().filter(|axis| axis.knob != along))
+            .map(|axis| format!("{} {}", axis.knob.name().replace('_', " "), level(axis.knob)))
+            .collect();
+        if others.is_empty() { case.source.name.clone() } else { others.join(", ") }
+    }
 }
 
 /// Instants at which a dynamic case is looked at where nobody says \[s\].
 fn instants(source: &Source) -> Vec<f64> {
     const INSTANTS: usize = 20;
     match source.case.problem.motion {
-        mtled::problem::Motion::Dynamic { end, .. } if is_dynamic(&source.case) => {
+        mtled::problem::Motion::Dynamic { end, .. } => {
             (1..=INSTANTS).map(|n| end * n as f64 / INSTANTS as f64).collect()
         }
         _ => vec![0.0],

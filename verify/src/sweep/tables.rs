@@ -1,6 +1,6 @@
 //! Records as tables and figures.
 
-use super::{Measured, Subject, Sweep, level, number_of};
+use super::{Measured, Subject, Sweep, number_of};
 use crate::scene::{Knob, Level};
 use crate::store::{COMPRESSIONS, Outcome, Record};
 use crate::studies::plain::{axis, curve, number, text};
@@ -236,15 +236,7 @@ fn add_figure(
         else {
             continue;
         };
-        let others: Vec<String> = sweep
-            .axes
-            .iter()
-            .filter(|axis| axis.knob != along.knob)
-            .map(|axis| {
-                format!("{} {}", axis.knob.name().replace('_', " "), level(record, axis.knob))
-            })
-            .collect();
-        let name = if others.is_empty() { case.source.name.clone() } else { others.join(", ") };
+        let name = sweep.curve_name(case, record, along.knob);
         let index = curves.iter().position(|curve| curve.0 == name).unwrap_or_else(|| {
             curves.push((name, Vec::new()));
             curves.len() - 1
