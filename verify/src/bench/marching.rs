@@ -6,8 +6,8 @@ use super::turns::{Clock, in_turns};
 use crate::machine::{cpu_seconds, peak_memory};
 use crate::measure::median;
 use crate::run::solve_case;
-use crate::scene::{Case, read_case};
-use anyhow::{anyhow, ensure};
+use crate::scene::{Case, one_error, read_case};
+use anyhow::ensure;
 use mtled::discretisation::Discretisation;
 use mtled::model::Model;
 use mtled::problem::{Gradients, Motion, Problem, StepControl};
@@ -95,10 +95,7 @@ pub struct MemoryRow {
 
 /// A carried case.
 pub fn carried(cases: &Path, name: &str) -> anyhow::Result<Case> {
-    read_case(&cases.join(format!("{name}.toml"))).map_err(|mistakes| {
-        let lines: Vec<String> = mistakes.iter().map(|mistake| mistake.to_string()).collect();
-        anyhow!("{}", lines.join("\n"))
-    })
+    read_case(&cases.join(format!("{name}.toml"))).map_err(one_error)
 }
 
 /// Measures whole steps on one thread and on all.

@@ -5,7 +5,7 @@ use super::reference_table::{check_table, show_text, to_json};
 use super::{COULD_NOT_RUN, Common, Format, print_data};
 use crate::cases::{CASES, carried_reference, unpack};
 use crate::reference::{Agreement, ReferenceError, ReferenceFile, agree, read_reference};
-use crate::scene::{Case, read_case};
+use crate::scene::{Case, one_error, read_case};
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
@@ -129,10 +129,8 @@ fn read(names: &[String], from: &From) -> Result<Vec<Outcome>> {
 }
 
 fn read_one(name: &str, cases: &Path, data: Option<&Path>) -> Result<Referred, String> {
-    let case = read_case(&cases.join(format!("{name}.toml"))).map_err(|mistakes| {
-        let lines: Vec<String> = mistakes.iter().map(|mistake| mistake.to_string()).collect();
-        format!("{name}: {}", lines.join("\n"))
-    })?;
+    let case = read_case(&cases.join(format!("{name}.toml")))
+        .map_err(|mistakes| format!("{name}: {}", one_error(mistakes)))?;
     let absent = || ReferenceError::Absent { case: name.to_string() }.to_string();
     let text = match data {
         None => carried_reference(name).ok_or_else(absent)?.to_string(),

@@ -6,9 +6,9 @@ use crate::cases::CASES;
 use crate::exact::manufactured::{Family, FieldKind, Manufactured};
 use crate::measure::rms_distance;
 use crate::reference::agreement::rms_of_points;
-use crate::scene::{Case, parse_case};
+use crate::scene::{Case, one_error, parse_case};
 use crate::studies::{Place, Placed, impose};
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use mtled::material::ElasticConstants;
 use mtled::problem::Problem;
@@ -167,10 +167,7 @@ point = [0.5, 0.5, 0.5]
 "#;
 
 fn parse(text: &str, name: &str) -> Result<Case> {
-    parse_case(text, name, Path::new(".")).map_err(|mistakes| {
-        let lines: Vec<String> = mistakes.iter().map(|mistake| mistake.to_string()).collect();
-        anyhow!("{}", lines.join("\n"))
-    })
+    parse_case(text, name, Path::new(".")).map_err(one_error)
 }
 
 /// Errors in per cent of the rms displacement.

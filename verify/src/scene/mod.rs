@@ -19,7 +19,7 @@ mod problem_hash;
 mod reading;
 
 pub use build_recipe::defaults;
-pub use diagnostic::{Diagnostic, Location};
+pub use diagnostic::{Diagnostic, Location, one_error};
 pub use edit::{EditError, edited};
 pub use edit_load::movable;
 pub use knob::{KNOBS, Knob, Level, Setting};

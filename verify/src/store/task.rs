@@ -1,7 +1,7 @@
 //! What is to be run.
 
 use crate::cases::{CASES, unpack};
-use crate::scene::{Case, Diagnostic, EditError, Setting, edited, parse_case};
+use crate::scene::{Case, EditError, Setting, edited, one_error, parse_case};
 use anyhow::{Context, Result, anyhow};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -66,10 +66,7 @@ impl Source {
 
 fn parse(text: &str, file: &Path) -> Result<Case> {
     let folder = file.parent().unwrap_or(Path::new("."));
-    parse_case(text, &file.display().to_string(), folder).map_err(|mistakes: Vec<Diagnostic>| {
-        let lines: Vec<String> = mistakes.iter().map(Diagnostic::to_string).collect();
-        anyhow!("{}", lines.join("\n"))
-    })
+    parse_case(text, &file.display().to_string(), folder).map_err(one_error)
 }
 
 /// One run.

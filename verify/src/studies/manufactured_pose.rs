@@ -3,8 +3,8 @@
 
 use super::manufactured::{Place, Scheme};
 use crate::exact::manufactured::Manufactured;
-use crate::scene::parse_case;
-use anyhow::{Result, anyhow};
+use crate::scene::{one_error, parse_case};
+use anyhow::Result;
 use mtled::geometry::{Shape, Surface};
 use mtled::material::Material;
 use mtled::problem::{
@@ -104,10 +104,7 @@ point = [0.5, 0.5, 0.5]
 /// The problem whose solution is known.
 pub fn pose(placed: Placed, nodes_per_edge: usize, seed: u64, scheme: Scheme) -> Result<Problem> {
     let text = case_text(nodes_per_edge, seed);
-    let case = parse_case(&text, "manufactured", Path::new(".")).map_err(|mistakes| {
-        let lines: Vec<String> = mistakes.iter().map(|mistake| mistake.to_string()).collect();
-        anyhow!("{}", lines.join("\n"))
-    })?;
+    let case = parse_case(&text, "manufactured", Path::new(".")).map_err(one_error)?;
     let mut problem = case.problem;
     if placed.place == Place::Turned {
         problem.body = turned_cube(&placed.turn)?;

@@ -46,9 +46,9 @@ pub use time_step::{largest_stable_step, trial_velocity};
 
 use crate::reference::{ReferenceError, ReferenceFile, read_reference};
 use crate::run::{Record, Solved, solve_case};
-use crate::scene::{Case, read_case};
+use crate::scene::{Case, one_error, read_case};
 use crate::study::Study;
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, bail};
 use mtled::problem::{Cloud, Problem};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -252,10 +252,7 @@ impl Workbench {
 
     /// A carried case on the very cloud of its file.
     pub fn stated_case(&self, name: &str) -> Result<Case> {
-        read_case(&self.cases.join(format!("{name}.toml"))).map_err(|mistakes| {
-            let lines: Vec<String> = mistakes.iter().map(|mistake| mistake.to_string()).collect();
-            anyhow!("{}", lines.join("\n"))
-        })
+        read_case(&self.cases.join(format!("{name}.toml"))).map_err(one_error)
     }
 
     /// The carried reference of a case.
