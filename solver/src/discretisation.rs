@@ -157,8 +157,8 @@ impl Discretisation {
             weights: &self.quadrature.weights,
             components: d,
         };
-        self.correction =
-            Some(make_consistent(&mut self.supports, &layout, &targets, &bodies, tolerance));
+        let correction = make_consistent(&mut self.supports, &layout, &targets, &bodies, tolerance);
+        self.correction = Some(correction.better_than_none()?);
         Ok(())
     }
 

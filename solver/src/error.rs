@@ -46,6 +46,11 @@ pub enum Error {
         node: usize,
         position: Vector3,
     },
+    #[error(
+        "the correction of the gradients diverges: after {iterations} iterations they are {residual:.1e} times as \
+             inconsistent as plain ones; use more cells per spacing or a larger dilation, or gradients = \"plain\""
+    )]
+    DivergedCorrection { iterations: usize, residual: f64 },
     #[error("condition \"{name}\" selects no node")]
     EmptySelection { name: String },
     #[error("traction \"{name}\" selects no part of the boundary")]

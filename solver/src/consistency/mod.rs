@@ -20,6 +20,7 @@ mod operator;
 pub use affine::connected_bodies;
 pub use operator::Layout;
 
+use crate::error::Error;
 use crate::rows::Rows;
 use crate::tensor::Vector3;
 use affine::Affine;
@@ -38,6 +39,21 @@ pub struct Correction {
     pub defect: f64,
     /// Number of connected bodies.
     pub bodies: usize,
+}
+
+/// Inconsistencies below this share of the targets are round-off \[–\].
+const ROUND_OFF: f64 = 1e-12;
+
+impl Correction {
+    /// Itself, unless the gradients are worse than plain ones: the critical step of
+    /// such a discretisation may be so small that no run ends.
+    pub fn better_than_none(self) -> Result<Correction, Error> {
+        let Correction { iterations, residual, .. } = self;
+        match residual <= 1.0 || residual * self.defect <= ROUND_OFF {
+            true => Ok(self),
+            false => Err(Error::DivergedCorrection { iterations, residual }),
+        }
+    }
 }
 
 /// More iterations than this are not spent.
@@ -128,4 +144,24 @@ fn dot(a: &[Vector3], b: &[Vector3]) -> Vector3 {
 /// a/b by component, 0 where b is.
 fn ratio(a: &Vector3, b: &Vector3) -> Vector3 {
     a.zip_map(b, |a, b| if b > 0.0 { a / b } else { 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gradients_that_the_correction_made_worse_are_refused_with_their_residual() {
+        let with = |residual: f64, defect: f64| {
+            Correction { iterations: 500, residual, tolerance: 1e-3, defect, bodies: 1 }
+                .better_than_none()
+        };
+        assert!(with(1.0, 0.1).is_ok());
+        assert!(with(3.0, 1e-14).is_ok(), "round-off");
+        for worse in [2e10, f64::NAN] {
+            let error = with(worse, 0.1).unwrap_err();
+            assert!(matches!(error, Error::DivergedCorrection { iterations: 500, .. }));
+            assert!(error.to_string().contains("use more cells per spacing"), "{error}");
+        }
+    }
 }

@@ -99,6 +99,7 @@ pub fn diagnose(case: &Case, error: &mtled::error::Error) -> Diagnostic {
         Error::DependentConstraints { .. } => "discretisation.enforcement".to_string(),
         Error::NoQuadraturePoints
         | Error::UncoveredNode { .. }
+        | Error::DivergedCorrection { .. }
         | Error::TooFewPoints { .. }
         | Error::ZeroEnergyModes { .. } => "discretisation.grid".to_string(),
         Error::MasslessNode { .. } => "discretisation.mass".to_string(),

@@ -35,10 +35,7 @@ pub fn perform(task: &Task) -> Result<Option<Record>> {
             Err(error) => Some(refused(error.to_string())),
             Ok(prepared) => {
                 set_up = start.elapsed().as_secs_f64();
-                match hopeless(&prepared) {
-                    Some(reason) => Some(refused(reason)),
-                    None => carry_out(task, &case, prepared)?,
-                }
+                carry_out(task, &case, prepared)?
             }
         },
     };
@@ -63,17 +60,6 @@ pub fn perform(task: &Task) -> Result<Option<Record>> {
             date: provenance.date,
         },
     }))
-}
-
-/// Why a discretisation is not worth a step: where the correction of the gradients has
-/// made them worse than plain ones, steps are so small that no run ends.
-fn hopeless(prepared: &Prepared) -> Option<String> {
-    let correction = prepared.discretisation.correction.filter(|c| c.residual > 1.0)?;
-    Some(format!(
-        "the correction of the gradients diverges: after {} iterations they are {:.1e} times as \
-         inconsistent as plain ones; use more cells per spacing or a larger dilation",
-        correction.iterations, correction.residual
-    ))
 }
 
 fn refused(reason: String) -> Outcome {

@@ -24,6 +24,7 @@ mod manufactured_plain;
 mod manufactured_pose;
 mod manufactured_report;
 mod parts;
+mod parts_march;
 mod parts_model;
 mod patch;
 mod patch_exact;

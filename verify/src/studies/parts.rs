@@ -1,8 +1,9 @@
-//! Laws, masses, loads and the watch over a run, each by itself: what theory
+//! Laws, masses, loads, single steps and the watch over a run, each by itself: what theory
 //! says of them without solving a boundary value problem.
 #![allow(non_snake_case)]
 
 use super::Workbench;
+use super::parts_march::{components, contact, damping, threads};
 use super::parts_model::{amplitude, masses, not_a_number, thickness};
 use super::plain::{larger, number, text};
 use super::problems::Random;
@@ -25,6 +26,10 @@ pub fn parts(bench: &Workbench, study: &mut Study) -> Result<()> {
     laws(bench, study)?;
     masses(bench, study)?;
     amplitude(study);
+    threads(bench, study)?;
+    components(bench, study)?;
+    contact(bench, study)?;
+    damping(bench, study)?;
     thickness(bench, study)?;
     not_a_number(bench, study)
 }

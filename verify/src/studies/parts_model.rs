@@ -19,12 +19,12 @@ use mtled::simulate::simulate;
 use mtled::state::State;
 use mtled::tensor::Vector3;
 
-fn exact(id: &str, words: &str, value: f64, bound: f64, source: &str) -> Check {
+pub fn exact(id: &str, words: &str, value: f64, bound: f64, source: &str) -> Check {
     Check::new(id, words, Kind::Exact, value, Bound::AtMost(bound), "1", source)
 }
 
 /// A free jittered cube.
-fn cube(bench: &Workbench) -> Result<Problem> {
+pub fn cube(bench: &Workbench) -> Result<Problem> {
     let recipe = recipe(SIZE / 5.0, 0.3, bench.seed(3));
     Ok(free_body(Dimension::Three, block_shape(), tissue(0.49)?, recipe))
 }
