@@ -1,7 +1,7 @@
 //! Files that are either whole or absent.
 
 use super::{html, json, junit, markdown, svg};
-use crate::study::Report;
+use crate::study::{Report, Table};
 use anyhow::{Context, Result};
 use std::io::Write;
 use std::path::Path;
@@ -9,6 +9,7 @@ use std::path::Path;
 /// Writes results.json, junit.xml, index.html, summary.md and every figure into
 /// `dir`, which is created where it is missing.
 pub fn write_report(report: &Report, dir: &Path) -> Result<()> {
+    debug_assert!(report.studies.iter().flat_map(|study| &study.tables).all(is_rectangular));
     let files = [
         ("results.json", json::to_json(report)),
         ("junit.xml", junit::to_junit(report)?),
@@ -20,6 +21,11 @@ pub fn write_report(report: &Report, dir: &Path) -> Result<()> {
     }
     write_figures(report, &dir.join("figures"))?;
     write_failures(report, dir)
+}
+
+/// Whether each row has a cell for each column.
+fn is_rectangular(table: &Table) -> bool {
+    table.rows.iter().all(|row| row.len() == table.columns.len())
 }
 
 /// The case files that show the failures; those of an earlier run that pass

@@ -1,11 +1,12 @@
 //! One recipe for many cases: which candidate is cheapest at equal error, over all.
 
 use super::design::{Candidate, candidates};
-use super::score::{expected, order};
-use super::{Bench, Goal, Trial, Wanted};
+use super::score::{cost_power, order};
+use super::{Bench, Trial, Wanted};
+use crate::measure::median;
 use crate::store::{Progress, Store};
 use crate::sweep::find_truth;
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 
 /// Spacings of the two rounds over those of the cases \[–\].
 const FACTORS: [f64; 2] = [1.6, 1.25];
@@ -15,10 +16,15 @@ const FACTORS: [f64; 2] = [1.6, 1.25];
 pub struct Row {
     pub candidate: usize,
     /// Per case: expected CPU time at the error of the case's own recipe, over that of
-    /// the case's own recipe \[–\]; infinite where it fails.
+    /// the case's own recipe \[–\]; the geometric mean over the spacings, infinite
+    /// where it fails.
     pub ratios: Vec<f64>,
     /// Geometric mean over the cases where it ends.
     pub mean: f64,
+    /// Over the same cases.
+    pub median: f64,
+    /// The largest of them.
+    pub worst: f64,
     /// Cases where it is refused or fails.
     pub failures: usize,
 }
@@ -30,8 +36,29 @@ pub struct Recommendation {
     /// Cases that were left out, and why.
     pub skipped: Vec<String>,
     pub candidates: Vec<Candidate>,
-    /// The best first: fewest failures, then cheapest.
+    /// The best first: fewest failures, then the smallest median.
     pub rows: Vec<Row>,
+}
+
+/// Medians so much above the smallest are not told apart: processor times of the same
+/// recipe on the same case differ by up to a quarter, their median over 16 cases by less
+/// than this \[–\].
+const TOLD_APART: f64 = 1.1;
+
+impl Recommendation {
+    /// Of the recipes with the fewest failures and the smallest medians the one with the
+    /// smallest worst case. The median is not moved by a case where an error is small by
+    /// luck, as a mean is; the worst case is what a user of a default meets unwarned.
+    pub fn chosen(&self) -> &Row {
+        recommended(&self.rows)
+    }
+}
+
+fn recommended(rows: &[Row]) -> &Row {
+    let first = &rows[0];
+    let near =
+        |row: &&Row| row.failures == first.failures && row.median <= TOLD_APART * first.median;
+    rows.iter().filter(near).min_by(|a, b| a.worst.total_cmp(&b.worst)).unwrap_or(first)
 }
 
 /// Runs the design on every case, one coarse cloud and two on a finer one; the recipe
@@ -66,7 +93,7 @@ pub fn recommend(
     }
     let mut rows: Vec<Row> =
         (0..all.len()).filter_map(|candidate| row(candidate, &all, &columns)).collect();
-    rows.sort_by(|a, b| a.failures.cmp(&b.failures).then(a.mean.total_cmp(&b.mean)));
+    rows.sort_by(|a, b| a.failures.cmp(&b.failures).then(a.median.total_cmp(&b.median)));
     Ok(Recommendation { cases, skipped, candidates: all, rows })
 }
 
@@ -80,11 +107,10 @@ fn row(candidate: usize, all: &[Candidate], columns: &Columns) -> Option<Row> {
     let ratios: Vec<f64> = columns.iter().map(ratio).collect();
     let failures = ratios.iter().filter(|ratio| ratio.is_infinite()).count();
     let ended: Vec<f64> = ratios.iter().copied().filter(|ratio| ratio.is_finite()).collect();
-    if ended.is_empty() {
-        return None;
-    }
+    let median = median(&ended)?;
     let mean = (ended.iter().map(|ratio| ratio.ln()).sum::<f64>() / ended.len() as f64).exp();
-    Some(Row { candidate, ratios, mean, failures })
+    let worst = ended.iter().copied().fold(0.0, f64::max);
+    Some(Row { candidate, ratios, mean, median, worst, failures })
 }
 
 /// Every candidate on one case, over the case's own recipe.
@@ -104,15 +130,50 @@ fn column(
     let at = |factor: f64| (0..count).map(|n| (n, factor)).collect::<Vec<_>>();
     let coarse = bench.trials(&at(FACTORS[0]), &[0])?;
     let fine = bench.trials(&at(FACTORS[1]), &[0, 1])?;
-    let (dimensions, bar) = (case.problem.dimension.components(), bench.bar());
-    let Some(own) = fine.first().filter(|trial| trial.worst().is_finite()) else {
-        bail!("its own recipe fails at {} times its spacing", FACTORS[1]);
+    let bar = bench.bar();
+    let own = [&coarse[0], &fine[0]];
+    if own.iter().any(|trial| !trial.worst().is_finite()) {
+        bail!("its own recipe fails at {} or {} times its spacing", FACTORS[0], FACTORS[1]);
+    }
+    // One order for all recipes: two spacings tell too little of each.
+    let ended = coarse.iter().zip(&fine).filter(|(c, f)| c.worst().max(f.worst()).is_finite());
+    let orders: Vec<f64> = ended.map(|(coarse, fine)| order(&[coarse, fine])).collect();
+    let order = median(&orders).context("no recipe has an order")?;
+    let power = cost_power(case.problem.dimension.components()) / order;
+    let ratio = |(coarse, fine): (&Trial, &Trial)| {
+        let pairs = own.into_iter().zip([coarse, fine]);
+        pairs.map(|(own, trial)| cost_ratio(trial, own, power, bar)).product::<f64>().sqrt()
     };
-    let goal = Goal::Error(own.worst().max(bar));
-    let score = |(coarse, fine): (&Trial, &Trial)| {
-        expected(fine, goal, order(&[coarse, fine]), dimensions, bar)
-    };
-    let scores: Vec<f64> = coarse.iter().zip(&fine).map(score).collect();
-    let ratios = scores.iter().map(|score| score / scores[0]).collect();
+    let ratios = coarse.iter().zip(&fine).map(ratio).collect();
     Ok((bench.candidates, ratios))
+}
+
+/// CPU time of a trial, were it as good as another at the same spacing, over that of the
+/// other; errors below `bar` count as that, and the cost falls with the error to `power`.
+fn cost_ratio(trial: &Trial, own: &Trial, power: f64, bar: f64) -> f64 {
+    let error = |trial: &Trial| trial.worst().max(bar);
+    if trial.worst().is_infinite() {
+        return f64::INFINITY;
+    }
+    trial.cpu_s / own.cpu_s * (error(trial) / error(own)).powf(power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn among_like_medians_the_mildest_worst_case_is_recommended_and_never_one_that_fails() {
+        let row = |candidate, median, worst, failures| Row {
+            candidate,
+            ratios: Vec::new(),
+            mean: 1.0,
+            median,
+            worst,
+            failures,
+        };
+        let rows =
+            [row(0, 0.95, 6.0, 0), row(1, 1.0, 1.2, 0), row(2, 1.3, 1.1, 0), row(3, 0.5, 0.6, 1)];
+        assert_eq!(recommended(&rows).candidate, 1);
+    }
 }
