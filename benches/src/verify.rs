@@ -1,28 +1,10 @@
 //! The table of studies from a `results.json` of `mtled verify`.
 
-use anyhow::{Context, Result};
-use mtled_verify::report::{bound_text, four_digits};
-use mtled_verify::study::{Check, Provenance};
-use serde::Deserialize;
+use anyhow::Result;
+use mtled_verify::report::{bound_text, four_digits, read_report};
+use mtled_verify::study::{Check, Report};
 use std::fmt::Write;
 use std::path::Path;
-
-#[derive(Deserialize)]
-struct Results {
-    suite: String,
-    provenance: Provenance,
-    passed: bool,
-    wall_seconds: f64,
-    checks: Vec<Check>,
-    studies: Vec<StudyLine>,
-}
-
-#[derive(Deserialize)]
-struct StudyLine {
-    id: String,
-    title: String,
-    failure: Option<String>,
-}
 
 /// So many figures of a study are shown: the first it gives, failures before
 /// all others.
@@ -30,28 +12,13 @@ const KEY_FIGURES: usize = 2;
 
 /// A Markdown table, one row per study.
 pub fn table(path: &Path) -> Result<String> {
-    let context = || format!("cannot use {}", path.display());
-    let text = std::fs::read_to_string(path).with_context(context)?;
-    // A value that was not finite is null in the file.
-    let mut value: serde_json::Value = serde_json::from_str(&text).with_context(context)?;
-    restore_lost_values(&mut value);
-    let results: Results = serde_json::from_value(value).with_context(context)?;
-    Ok(to_markdown(&results))
+    Ok(to_markdown(&read_report(path)?))
 }
 
-fn restore_lost_values(value: &mut serde_json::Value) {
-    let checks = value.get_mut("checks").and_then(|checks| checks.as_array_mut());
-    for check in checks.into_iter().flatten() {
-        if check["value"].is_null() {
-            check["value"] = serde_json::json!(f64::MAX);
-        }
-    }
-}
-
-fn to_markdown(results: &Results) -> String {
+fn to_markdown(report: &Report) -> String {
     let mut text = String::from("| study | checks passed | key figures |\n|---|--:|---|\n");
-    for study in &results.studies {
-        let checks: Vec<&Check> = results.checks.iter().filter(|c| c.study == study.id).collect();
+    for study in &report.studies {
+        let checks: Vec<&Check> = study.checks.iter().collect();
         let passed = checks.iter().filter(|check| check.pass).count();
         let figures = match &study.failure {
             Some(reason) => format!("could not run: {}", cell(reason)),
@@ -60,13 +27,13 @@ fn to_markdown(results: &Results) -> String {
         let title = cell(&study.title);
         let _ = writeln!(text, "| {title} | {passed} of {} | {figures} |", checks.len());
     }
-    let p = &results.provenance;
+    let p = &report.provenance;
     let _ = writeln!(
         text,
         "\nSuite {}: {}, in {:.0} s on {} with {} threads, mtled {} ({}), {}.",
-        results.suite,
-        if results.passed { "passed" } else { "failed" },
-        results.wall_seconds,
+        report.suite,
+        if report.passed() { "passed" } else { "failed" },
+        report.wall_seconds,
         p.processor,
         p.threads,
         p.version,
@@ -87,7 +54,7 @@ fn figure(check: &Check) -> String {
     let unit = if check.unit == "1" { String::new() } else { format!(" {}", check.unit) };
     let bound = bound_text(&check.bound);
     let value =
-        if check.value == f64::MAX { "not finite".into() } else { four_digits(check.value) };
+        if check.value.is_finite() { four_digits(check.value) } else { "not finite".into() };
     let verdict = if check.pass { "" } else { "FAILED: " };
     cell(&format!("{verdict}{} {value}{unit} ({bound})", check.quantity))
 }
@@ -100,32 +67,34 @@ fn cell(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
+    use mtled_verify::study::{Bound, Kind, Provenance, Study};
 
-    fn check(id: &str, value: Option<f64>, pass: bool) -> serde_json::Value {
-        json!({
-            "id": id, "study": "patch", "quantity": "error", "kind": "exact", "value": value,
-            "bound": { "at_most": 0.05 }, "unit": "m", "pass": pass, "source": ""
-        })
+    fn check(id: &str, value: f64) -> Check {
+        Check::new(id, "error", Kind::Exact, value, Bound::AtMost(0.05), "m", "theory")
     }
 
     #[test]
     fn failures_come_first_and_lost_values_are_said() {
-        let mut value = json!({
-            "suite": "quick", "passed": false, "wall_seconds": 12.0,
-            "provenance": {
-                "version": "0", "commit": "c", "compiler": "r", "processor": "p",
-                "processor_features": "", "threads": 2, "date": "d"
+        let checks =
+            vec![check("patch/a", 0.01), check("patch/b", 0.02), check("patch/c", f64::NAN)];
+        let (id, title) = ("patch".to_string(), "Patch | test".to_string());
+        let report = Report {
+            schema_version: 1,
+            suite: "quick".into(),
+            provenance: Provenance {
+                version: "0".into(),
+                commit: "c".into(),
+                compiler: "r".into(),
+                processor: "p".into(),
+                processor_features: String::new(),
+                threads: 2,
+                date: "d".into(),
             },
-            "checks": [
-                check("patch/a/error", Some(0.01), true),
-                check("patch/b/error", Some(0.02), true),
-                check("patch/c/error", None, false),
-            ],
-            "studies": [{ "id": "patch", "title": "Patch | test", "failure": null }],
-        });
-        restore_lost_values(&mut value);
-        let text = to_markdown(&serde_json::from_value(value).unwrap());
+            studies: vec![Study { id, title, checks, ..Study::default() }],
+            wall_seconds: 12.0,
+            comparison: None,
+        };
+        let text = to_markdown(&report);
         let row = "| Patch \\| test | 2 of 3 | FAILED: error not finite m (≤ 0.05); \
                    error 0.01000 m (≤ 0.05) |";
         assert!(text.contains(row), "{text}");
