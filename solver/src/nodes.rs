@@ -6,6 +6,8 @@ mod graded;
 mod random;
 mod regular;
 
+pub use graded::SizeField;
+
 use crate::geometry::{GeometryError, Shape, positive};
 use crate::problem::{Cloud, Dimension};
 use crate::tensor::Vector3;

@@ -10,7 +10,7 @@ use crate::geometry::{
 use crate::problem::{Dimension, Refinement};
 use crate::tensor::Vector3;
 
-/// Most samples of the grid on which distances to the parts are found.
+/// Most samples of the grid on which a cloud finds distances to the parts.
 const MOST_SAMPLES: f64 = 4e6;
 /// Nodes are at least this far apart \[spacing\]; with candidates everywhere
 /// this gives about one node per spacing².
@@ -29,7 +29,8 @@ pub(super) struct Wanted<'a> {
 
 /// Wanted spacing h(X) = min(`spacing`, size + growth · distance to the part)
 /// \[m\] over all refinements.
-struct SizeField<'a> {
+#[derive(Debug)]
+pub struct SizeField<'a> {
     spacing: f64,
     growth: f64,
     refinements: &'a [Refinement],
@@ -39,17 +40,18 @@ struct SizeField<'a> {
 }
 
 impl<'a> SizeField<'a> {
-    fn new(
+    /// Distances are found on a grid of half the smallest size, or coarser where that
+    /// takes more than `most_samples`. A part without a sample is an error.
+    pub fn new(
         body: &Shape,
-        spacing: f64,
-        refinements: &'a [Refinement],
-        growth: f64,
+        (spacing, refinements, growth): (f64, &'a [Refinement], f64),
         dimension: &Dimension,
+        most_samples: f64,
     ) -> Result<Self, GeometryError> {
         let (lower, upper) = body.finite_bounds(dimension)?;
         let smallest = refinements.iter().map(|r| r.size).fold(spacing, f64::min);
         let length = (upper - lower).rows(0, dimension.components()).clone_owned();
-        let most = (length.product() / MOST_SAMPLES).powf(1.0 / dimension.components() as f64);
+        let most = (length.product() / most_samples).powf(1.0 / dimension.components() as f64);
         let step = (0.5 * smallest).max(most);
         let size = [0, 1, 2]
             .map(|k| if k < length.len() { (length[k] / step).ceil() as usize + 1 } else { 1 });
@@ -77,7 +79,8 @@ impl<'a> SizeField<'a> {
         Ok(SizeField { spacing, growth, refinements, corner: lower, distances })
     }
 
-    fn at(&self, X: &Vector3) -> f64 {
+    /// h(X) \[m\].
+    pub fn at(&self, X: &Vector3) -> f64 {
         let mut size = self.spacing;
         for (refinement, distance) in self.refinements.iter().zip(&self.distances) {
             let away = if refinement.part.contains(X) {
@@ -110,7 +113,7 @@ pub(super) fn graded(
             value: growth,
         });
     }
-    let field = SizeField::new(body, spacing, refinements, growth, dimension)?;
+    let field = SizeField::new(body, (spacing, refinements, growth), dimension, MOST_SAMPLES)?;
     let size_at = |X: &Vector3| field.at(X);
     let smallest = refinements.iter().map(|r| r.size).fold(spacing, f64::min);
     let sizes = Sizes { at: &size_at, smallest, largest: spacing };

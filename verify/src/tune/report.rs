@@ -295,10 +295,11 @@ pub fn recommendation_study(found: &Recommendation, command: &str) -> Study {
     let mut study = Study {
         id: "tune-cases".into(),
         title: "One recipe for all cases".into(),
-        claim:
-            "What each recipe is expected to cost at the error of the case's own recipe, over what \
-                that costs, case by case; the best first."
-                .into(),
+        claim: format!(
+            "Recommended: {}. What each recipe is expected to cost at the error of the case's own \
+             recipe, over what that costs, case by case; the smallest median first.",
+            found.candidates[found.chosen().candidate].words()
+        ),
         command: command.to_string(),
         ..Study::default()
     };
@@ -315,11 +316,12 @@ pub fn recommendation_study(found: &Recommendation, command: &str) -> Study {
          spacings and over the cases where it ends."
             .into(),
     );
-    study.notes.push(format!(
-        "Recommended: {}. Of the recipes with the fewest failures whose median is within 10 % of the \
-         smallest, which is what times of the same work leave in doubt, it costs least in its worst case.",
-        found.candidates[found.chosen().candidate].words()
-    ));
+    study.notes.push(
+        "Recommended is, of the recipes with the fewest failures whose median is within 10 % of the \
+         smallest, which is what times of the same work leave in doubt, the one that costs least in \
+         its worst case."
+            .into(),
+    );
     study.notes.extend(found.skipped.iter().map(|skipped| format!("Left out: {skipped}")));
     study
 }
