@@ -19,6 +19,8 @@ pub(super) struct Scale {
 pub(super) struct Tick {
     pub value: f64,
     pub label: String,
+    /// Where labels would overlap, those of the lowest rank are written.
+    pub rank: u8,
 }
 
 /// Ticks of an axis and the power of ten taken out of their labels.
@@ -90,7 +92,7 @@ impl Scale {
         let decimals = (-(scaled(step).log10() + 1e-9).floor()).clamp(0.0, 9.0) as usize;
         let major = values
             .into_iter()
-            .map(|value| Tick { value, label: fixed(scaled(value), decimals) })
+            .map(|value| Tick { value, label: fixed(scaled(value), decimals), rank: 0 })
             .collect();
         Ticks { major, minor: Vec::new(), exponent }
     }
@@ -118,11 +120,35 @@ impl Scale {
         };
         let stride = whole.len().div_ceil(7).max(1) as i32;
         let labelled = chosen.into_iter().filter(|&(_, d)| d.rem_euclid(stride) == 0);
-        let major =
-            labelled.map(|(f, d)| Tick { value: multiple(f, d), label: power(f, d, decades_only) });
+        let rank = |factor: i32| [1, 2, 5].iter().position(|&f| f == factor).unwrap_or(3) as u8;
+        let major = labelled.map(|(f, d)| Tick {
+            value: multiple(f, d),
+            label: power(f, d, decades_only),
+            rank: rank(f),
+        });
         let minor = if stride == 1 { every } else { whole };
         let minor = minor.into_iter().map(|(f, d)| multiple(f, d)).collect();
         Ticks { major: major.collect(), minor, exponent: 0 }
+    }
+}
+
+impl Ticks {
+    /// Ticks whose labels are written, and where their middles are: none within the room of
+    /// another of lower rank or further left. `room` is a label's middle and half of its
+    /// size in pixels.
+    pub fn written(&self, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Tick, f64)> {
+        let mut order: Vec<&Tick> = self.major.iter().collect();
+        order.sort_by_key(|tick| tick.rank);
+        let mut taken: Vec<(f64, f64)> = Vec::new();
+        let mut written = Vec::new();
+        for tick in order {
+            let Some((middle, half)) = room(tick) else { continue };
+            if taken.iter().all(|other| (middle - other.0).abs() > half + other.1) {
+                taken.push((middle, half));
+                written.push((tick, middle));
+            }
+        }
+        written
     }
 }
 

@@ -1,6 +1,6 @@
 //! Curves over two axes.
 
-use super::axis::{Scale, Ticks, axis_title};
+use super::axis::{Scale, Tick, Ticks, axis_title};
 use super::canvas::{Anchor, COLOURS, Canvas, dash, marker, polyline, text_width};
 use super::legend::Legend;
 use super::slope;
@@ -80,26 +80,20 @@ fn axes(canvas: &mut Canvas, plot: &Plot, area: &Area, x_ticks: &Ticks, y_ticks:
     for y in y_ticks.minor.iter().filter_map(|&v| area.y.position(v)) {
         canvas.line("minor", [left, y], [left + 3.0, y]);
     }
-    let mut free_from = f64::NEG_INFINITY;
-    for tick in &x_ticks.major {
-        let Some(x) = area.x.position(tick.value) else { continue };
+    for x in x_ticks.major.iter().filter_map(|tick| area.x.position(tick.value)) {
         canvas.line("grid", [x, top], [x, bottom]);
         canvas.line("minor", [x, bottom], [x, bottom - 6.0]);
-        let half = 0.5 * text_width(&tick.label, 12.0);
-        if x - half > free_from {
-            canvas.text("tick", [x, bottom + 17.0], Anchor::Middle, &tick.label);
-            free_from = x + half + 6.0;
-        }
     }
-    let mut free_below = f64::INFINITY;
-    for tick in &y_ticks.major {
-        let Some(y) = area.y.position(tick.value) else { continue };
+    for y in y_ticks.major.iter().filter_map(|tick| area.y.position(tick.value)) {
         canvas.line("grid", [left, y], [right, y]);
         canvas.line("minor", [left, y], [left + 6.0, y]);
-        if y < free_below {
-            canvas.text("tick", [left - 6.0, y + 4.0], Anchor::End, &tick.label);
-            free_below = y - 14.0;
-        }
+    }
+    let width = |tick: &Tick| 0.5 * text_width(&tick.label, 12.0) + 3.0;
+    for (tick, x) in x_ticks.written(|tick| Some((area.x.position(tick.value)?, width(tick)))) {
+        canvas.text("tick", [x, bottom + 17.0], Anchor::Middle, &tick.label);
+    }
+    for (tick, y) in y_ticks.written(|tick| Some((area.y.position(tick.value)?, 7.0))) {
+        canvas.text("tick", [left - 6.0, y + 4.0], Anchor::End, &tick.label);
     }
     let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
     canvas.path("frame", &polyline(&corners, true), "");

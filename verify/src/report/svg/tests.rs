@@ -125,3 +125,10 @@ impl Figure {
         self
     }
 }
+
+#[test]
+fn where_labels_are_close_the_power_of_ten_is_written() {
+    let svg = to_svg(&plot(true, vec![(0.65, 1.0), (4.6, 5.0)]));
+    let written = |label: &str| svg.contains(&format!(">{label}</text>"));
+    assert!(written("1") && written("2") && !written("0.9"), "{svg}");
+}
