@@ -203,3 +203,21 @@ fn what_is_no_report_is_refused() {
         assert!(err.contains(words), "{err}");
     }
 }
+
+#[test]
+fn a_stored_run_is_judged_by_a_baseline_without_being_run_again() {
+    let place = Place::new();
+    place.baseline(|_| {});
+    let judge = ["report", "out", "--baseline", "base.json"];
+    let (code, out, err) = place.mtled(&judge);
+    assert_eq!(code, 0, "{err}");
+    assert!(out.contains("beside the baseline of"), "{out}");
+    let text = place.read("base.json");
+    let mut baseline = serde_json::from_str(&text).unwrap();
+    moved(&mut baseline, ORDER, 1.9, 1.8999, 1.9001);
+    std::fs::write(place.path("base.json"), baseline.to_string()).unwrap();
+    let (code, out, _) = place.mtled(&judge);
+    assert_eq!(code, 1);
+    assert!(out.contains(&format!("worse    {ORDER}: 1.900 → 1.786")), "{out}");
+    assert!(place.read("out/summary.md").contains("worse"), "{}", place.read("out/summary.md"));
+}
