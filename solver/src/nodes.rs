@@ -6,7 +6,7 @@ mod graded;
 mod random;
 mod regular;
 
-pub use graded::SizeField;
+pub use graded::{SizeField, WantedSizes};
 
 use crate::geometry::{GeometryError, Shape, positive};
 use crate::problem::{Cloud, Dimension};
@@ -55,8 +55,8 @@ pub fn node_cloud(
             }
         }
         Cloud::Graded { spacing, refinements, growth, seed } => {
-            let sizes = graded::Wanted { spacing: *spacing, refinements, growth: *growth };
-            graded::graded(&section, &sizes, *seed, dimension)?
+            let wanted = WantedSizes { spacing: *spacing, refinements, growth: *growth };
+            graded::graded(&section, wanted, *seed, dimension)?
         }
         Cloud::Given { nodes } => given::given(&section, nodes, dimension)?,
     };

@@ -35,11 +35,10 @@ fn a_body_larger_than_the_memory_is_refused_at_its_discretisation() {
 }
 
 /// A refusal must not come where there is room, nor a run die where there is none.
-/// Runs below 50 MB are left out: there the pages of the program itself, of which
-/// the system keeps a few megabytes more or fewer, decide.
 #[test]
 fn the_memory_of_a_run_is_estimated_at_0_9_to_1_25_of_what_it_takes() {
     for discretisation in [
+        "spacing = 0.01",
         "spacing = 0.005",
         "spacing = 0.004",
         "spacing = 0.005\ngrid = { cells_per_spacing = 1.8 }",

@@ -19,7 +19,8 @@ const APART: f64 = 0.85;
 const CANDIDATE: f64 = 1.0 / 3.0;
 
 /// What sizes are wanted.
-pub(super) struct Wanted<'a> {
+#[derive(Debug, Clone, Copy)]
+pub struct WantedSizes<'a> {
     /// Far from all refinements \[m\].
     pub spacing: f64,
     pub refinements: &'a [Refinement],
@@ -31,9 +32,7 @@ pub(super) struct Wanted<'a> {
 /// \[m\] over all refinements.
 #[derive(Debug)]
 pub struct SizeField<'a> {
-    spacing: f64,
-    growth: f64,
-    refinements: &'a [Refinement],
+    wanted: WantedSizes<'a>,
     corner: Vector3,
     /// Distance to each part \[m\].
     distances: Vec<ScalarGrid>,
@@ -44,12 +43,12 @@ impl<'a> SizeField<'a> {
     /// takes more than `most_samples`. A part without a sample is an error.
     pub fn new(
         body: &Shape,
-        (spacing, refinements, growth): (f64, &'a [Refinement], f64),
+        wanted: WantedSizes<'a>,
         dimension: &Dimension,
         most_samples: f64,
     ) -> Result<Self, GeometryError> {
         let (lower, upper) = body.finite_bounds(dimension)?;
-        let smallest = refinements.iter().map(|r| r.size).fold(spacing, f64::min);
+        let smallest = wanted.smallest();
         let length = (upper - lower).rows(0, dimension.components()).clone_owned();
         let most = (length.product() / most_samples).powf(1.0 / dimension.components() as f64);
         let step = (0.5 * smallest).max(most);
@@ -57,7 +56,7 @@ impl<'a> SizeField<'a> {
             .map(|k| if k < length.len() { (length[k] / step).ceil() as usize + 1 } else { 1 });
         let blank = ScalarGrid { size, step: Vector3::repeat(step), values: Vec::new() };
         let mut distances = Vec::new();
-        for (n, refinement) in refinements.iter().enumerate() {
+        for (n, refinement) in wanted.refinements.iter().enumerate() {
             let mut inside = false;
             let mut seeds = Vec::new();
             for at in 0..size.iter().product() {
@@ -76,19 +75,20 @@ impl<'a> SizeField<'a> {
             }
             distances.push(blank.distance_to_seeds(seeds));
         }
-        Ok(SizeField { spacing, growth, refinements, corner: lower, distances })
+        Ok(SizeField { wanted, corner: lower, distances })
     }
 
     /// h(X) \[m\].
     pub fn at(&self, X: &Vector3) -> f64 {
-        let mut size = self.spacing;
-        for (refinement, distance) in self.refinements.iter().zip(&self.distances) {
+        let WantedSizes { spacing, refinements, growth } = self.wanted;
+        let mut size = spacing;
+        for (refinement, distance) in refinements.iter().zip(&self.distances) {
             let away = if refinement.part.contains(X) {
                 0.0
             } else {
                 distance.sample(&(X - self.corner)).max(0.0)
             };
-            size = size.min(refinement.size + self.growth * away);
+            size = size.min(refinement.size + growth * away);
         }
         size
     }
@@ -98,11 +98,11 @@ impl<'a> SizeField<'a> {
 /// if no node is nearer than 0.85 of its spacing.
 pub(super) fn graded(
     body: &Shape,
-    wanted: &Wanted,
+    wanted: WantedSizes,
     seed: u64,
     dimension: &Dimension,
 ) -> Result<NodeCloud, GeometryError> {
-    let Wanted { spacing, refinements, growth } = *wanted;
+    let WantedSizes { spacing, refinements, growth } = wanted;
     positive("the nodal spacing", spacing)?;
     for refinement in refinements {
         positive("the size of a refinement", refinement.size)?;
@@ -113,9 +113,9 @@ pub(super) fn graded(
             value: growth,
         });
     }
-    let field = SizeField::new(body, (spacing, refinements, growth), dimension, MOST_SAMPLES)?;
+    let field = SizeField::new(body, wanted, dimension, MOST_SAMPLES)?;
     let size_at = |X: &Vector3| field.at(X);
-    let smallest = refinements.iter().map(|r| r.size).fold(spacing, f64::min);
+    let smallest = wanted.smallest();
     let sizes = Sizes { at: &size_at, smallest, largest: spacing };
     let boundary = boundary_points_sized(body, &sizes, dimension)?;
     let mut hash = PointHash::new(APART * smallest, APART * spacing);
@@ -158,7 +158,7 @@ fn candidates(
     visit: Visit,
 ) -> Result<(), GeometryError> {
     let axes = dimension.components();
-    let edge = field.spacing;
+    let edge = field.wanted.spacing;
     let count = [0, 1, 2]
         .map(|k| if k < axes { ((upper[k] - lower[k]) / edge).ceil().max(1.0) } else { 1.0 });
     super::refuse_too_many(count.iter().product())?;
@@ -193,8 +193,10 @@ fn halve(
     }
     let size = field.at(&centre);
     // The spacing inside a large cube may be smaller than at its centre.
-    let least = (size - 0.5 * field.growth * edge).max(0.25 * size);
-    if edge > CANDIDATE * least.max(1e-3 * field.spacing) && edge > CANDIDATE * field.smallest() {
+    let least = (size - 0.5 * field.wanted.growth * edge).max(0.25 * size);
+    if edge > CANDIDATE * least.max(1e-3 * field.wanted.spacing)
+        && edge > CANDIDATE * field.wanted.smallest()
+    {
         for child in 0..1 << axes {
             let offset = Vector3::from_fn(|axis, _| match axis < axes {
                 true if child >> axis & 1 == 1 => 0.25 * edge,
@@ -208,7 +210,7 @@ fn halve(
     if distance < -0.5 * size { visit(centre, size) } else { Ok(()) }
 }
 
-impl SizeField<'_> {
+impl WantedSizes<'_> {
     fn smallest(&self) -> f64 {
         self.refinements.iter().map(|r| r.size).fold(self.spacing, f64::min)
     }

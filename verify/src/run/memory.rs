@@ -4,7 +4,7 @@
 use crate::machine::available_memory;
 use crate::report::four_digits;
 use mtled::geometry::GeometryError;
-use mtled::nodes::SizeField;
+use mtled::nodes::{SizeField, WantedSizes};
 use mtled::problem::{Cloud, Dimension, InsideRule, Problem, Refinement};
 use mtled::selection::Selector;
 use mtled::tensor::Vector3;
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Estimated size of a discretisation. The bytes are 0.9 to 1.15 of the peak of runs
-/// on 32 bodies of 343 to 68 921 nodes with supports of 9 to 66, and 0.77 to 1.03 on six
+/// on 32 bodies of 343 to 68 921 nodes with supports of 9 to 66, and 0.76 to 1.07 on six
 /// graded ones of 10 000 to 30 000.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footprint {
@@ -38,9 +38,10 @@ pub struct MemoryShortage {
     pub available: f64,
 }
 
-/// Bytes of the program itself, and of each node and entry of a support at the
+/// Bytes of the program itself, of which the build for development keeps 2e6 more in
+/// memory than the optimised one, and of each node and entry of a support at the
 /// peak, fitted to the measured bodies.
-const PROGRAM: f64 = 11e6;
+const PROGRAM: f64 = 12.5e6;
 const PER_NODE: f64 = 1700.0;
 const PER_ENTRY: f64 = 82.0;
 /// The supports of so many points stand in memory twice for a while, which takes
@@ -151,7 +152,7 @@ fn graded(problem: &Problem) -> Result<Option<SizeField<'_>>, GeometryError> {
     let body = problem.body.section(&problem.dimension)?;
     let d = problem.dimension.components();
     let places = SAMPLES[d - 2].pow(d as u32) as f64;
-    let wanted = (*spacing, refinements.as_slice(), *growth);
+    let wanted = WantedSizes { spacing: *spacing, refinements, growth: *growth };
     Ok(SizeField::new(&body, wanted, &problem.dimension, places).ok())
 }
 
@@ -161,7 +162,7 @@ fn share(problem: &Problem, spacing: f64, X: &Vector3, distance: f64) -> Share {
     let grid = &recipe.grid;
     let near = distance.abs() < grid.cell;
     let wanted = grid.boundary_cell.filter(|_| near).unwrap_or(grid.cell).min(grid.cell);
-    let meets = |refinement: &&Refinement| cell_meets(&refinement.part, X, grid.cell);
+    let meets = |refinement: &&Refinement| cell_meets(&refinement.part, X, grid.cell, d);
     let refined = grid.refinements.iter().filter(meets).map(|refinement| refinement.size);
     let halvings = (grid.cell / refined.fold(wanted, f64::min)).log2().ceil().max(0.0);
     let cell = grid.cell / halvings.exp2();
@@ -184,10 +185,10 @@ fn share(problem: &Problem, spacing: f64, X: &Vector3, distance: f64) -> Share {
 }
 
 /// Whether a cell of the unrefined grid about X meets a part, which refines it as a whole.
-fn cell_meets(part: &Selector, X: &Vector3, cell: f64) -> bool {
-    let offsets =
-        (0..27).map(|n: u32| Vector3::from_fn(|k, _| (n / 3u32.pow(k as u32) % 3) as f64));
-    offsets.map(|n| X + 0.5 * cell * n.add_scalar(-1.0)).any(|place| part.contains(&place))
+fn cell_meets(part: &Selector, X: &Vector3, cell: f64, d: i32) -> bool {
+    let half = |n: u32, k: usize| (n / 3u32.pow(k as u32) % 3) as f64 - 1.0;
+    let offset = |n: u32| Vector3::from_fn(|k, _| if k < d as usize { half(n, k) } else { 0.0 });
+    (0..3u32.pow(d as u32)).any(|n| part.contains(&(X + 0.5 * cell * offset(n))))
 }
 
 /// Nodes within `dilation` spacings of a point at a signed distance \[spacing\]
