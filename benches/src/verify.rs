@@ -18,11 +18,11 @@ pub fn table(path: &Path) -> Result<String> {
 fn to_markdown(report: &Report) -> String {
     let mut text = String::from("| study | checks passed | key figures |\n|---|--:|---|\n");
     for study in &report.studies {
-        let checks: Vec<&Check> = study.checks.iter().collect();
+        let checks = &study.checks;
         let passed = checks.iter().filter(|check| check.pass).count();
         let figures = match &study.failure {
             Some(reason) => format!("could not run: {}", cell(reason)),
-            None => key_figures(&checks),
+            None => key_figures(checks),
         };
         let title = cell(&study.title);
         let _ = writeln!(text, "| {title} | {passed} of {} | {figures} |", checks.len());
@@ -43,8 +43,8 @@ fn to_markdown(report: &Report) -> String {
     text
 }
 
-fn key_figures(checks: &[&Check]) -> String {
-    let mut ordered = checks.to_vec();
+fn key_figures(checks: &[Check]) -> String {
+    let mut ordered: Vec<&Check> = checks.iter().collect();
     ordered.sort_by_key(|check| check.pass);
     let shown: Vec<String> = ordered.iter().take(KEY_FIGURES).map(|check| figure(check)).collect();
     shown.join("; ")

@@ -91,6 +91,7 @@ impl fmt::Display for Diagnostic {
         write!(f, "{}", "^".repeat(self.width))
     }
 }
+
 /// All mistakes of a case file as one error, a line each.
 pub fn one_error(mistakes: Vec<Diagnostic>) -> anyhow::Error {
     let lines: Vec<String> = mistakes.iter().map(Diagnostic::to_string).collect();

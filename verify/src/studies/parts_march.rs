@@ -22,6 +22,9 @@ use mtled::simulate::simulate;
 use mtled::state::State;
 use mtled::tensor::Vector3;
 
+/// A step far below the critical one \[s\].
+const STEP: f64 = 1e-6;
+
 /// Forces do not depend on the threads, to the last bit.
 pub fn threads(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut problem = cube(bench)?;
@@ -63,8 +66,7 @@ pub fn components(bench: &Workbench, study: &mut Study) -> Result<()> {
         let face = bonded_face(k, 0.0, 0.0, Amplitude::Constant);
         problem.conditions =
             vec![EssentialCondition { prescribed: Prescribed::Displacement(alone), ..face }];
-        let step = prepare(&problem)?.model.bound;
-        problem.motion = steps(1, step, 0.0);
+        problem.motion = steps(1, 0.0);
         let solved = march(&problem, prepare(&problem)?, &mut Unobserved)?;
         let at: Vec<Vector3> =
             solved.prepared.model.positions.iter().copied().filter(|X| X[k] == 0.0).collect();
@@ -98,7 +100,7 @@ pub fn contact(bench: &Workbench, study: &mut Study) -> Result<()> {
         friction: Friction::Frictionless,
         offset: 0.0,
     });
-    problem.motion = steps(1, 1e-6, 0.0);
+    problem.motion = steps(1, 0.0);
     let model = prepare(&problem)?.model;
     let mut contact = ContactState::default();
     let mut u = vec![0.0; model.size()];
@@ -126,10 +128,8 @@ pub fn damping(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut problem = cube(bench)?;
     let (acceleration, amplitude) = (Vector3::new(0.0, 0.0, -9.81), Amplitude::Constant);
     problem.loads.body_forces.push(BodyForce { acceleration: acceleration.into(), amplitude });
-    problem.motion = steps(STEPS, 1e-6, 0.0);
-    let step = 0.5 * prepare(&problem)?.model.bound;
-    let damping = 1.0 / step;
-    problem.motion = steps(STEPS, step, damping);
+    let damping = 1.0 / STEP;
+    problem.motion = steps(STEPS, damping);
     let model = prepare(&problem)?.model;
     let mut state = State::new(&model);
     simulate(&model, &problem.motion, &mut state, &mut Unobserved)?;
@@ -147,7 +147,7 @@ pub fn damping(bench: &Workbench, study: &mut Study) -> Result<()> {
     Ok(())
 }
 
-fn steps(count: usize, step: f64, damping: f64) -> Motion {
-    let control = StepControl { fixed: Some(step), ..StepControl::default() };
-    Motion::Dynamic { end: count as f64 * step, step: control, damping }
+fn steps(count: usize, damping: f64) -> Motion {
+    let step = StepControl { fixed: Some(STEP), ..StepControl::default() };
+    Motion::Dynamic { end: count as f64 * STEP, step, damping }
 }

@@ -212,9 +212,7 @@ impl Sweep {
         ));
         study
     }
-}
 
-impl Sweep {
     /// What tells the runs of a curve over `along` from those of others: the levels of
     /// all other knobs, or the case's name where there are none.
     fn curve_name(&self, case: &Measured, record: &Record, along: Knob) -> String {

@@ -1,8 +1,8 @@
 //! One recipe for many cases: which candidate is cheapest at equal error, over all.
 
 use super::design::{Candidate, candidates};
-use super::score::{cost_power, order};
-use super::{Bench, Trial, Wanted};
+use super::score::{expected, order};
+use super::{Bench, Goal, Trial, Wanted};
 use crate::measure::median;
 use crate::store::{Progress, Store};
 use crate::sweep::find_truth;
@@ -50,15 +50,11 @@ impl Recommendation {
     /// smallest worst case. The median is not moved by a case where an error is small by
     /// luck, as a mean is; the worst case is what a user of a default meets unwarned.
     pub fn chosen(&self) -> &Row {
-        recommended(&self.rows)
+        let first = &self.rows[0];
+        let near =
+            |row: &&Row| row.failures == first.failures && row.median <= TOLD_APART * first.median;
+        self.rows.iter().filter(near).min_by(|a, b| a.worst.total_cmp(&b.worst)).unwrap_or(first)
     }
-}
-
-fn recommended(rows: &[Row]) -> &Row {
-    let first = &rows[0];
-    let near =
-        |row: &&Row| row.failures == first.failures && row.median <= TOLD_APART * first.median;
-    rows.iter().filter(near).min_by(|a, b| a.worst.total_cmp(&b.worst)).unwrap_or(first)
 }
 
 /// Runs the design on every case, one coarse cloud and two on a finer one; the recipe
@@ -131,31 +127,22 @@ fn column(
     let coarse = bench.trials(&at(FACTORS[0]), &[0])?;
     let fine = bench.trials(&at(FACTORS[1]), &[0, 1])?;
     let bar = bench.bar();
-    let own = [&coarse[0], &fine[0]];
-    if own.iter().any(|trial| !trial.worst().is_finite()) {
+    let own = (&coarse[0], &fine[0]);
+    if !own.0.worst().max(own.1.worst()).is_finite() {
         bail!("its own recipe fails at {} or {} times its spacing", FACTORS[0], FACTORS[1]);
     }
     // One order for all recipes: two spacings tell too little of each.
     let ended = coarse.iter().zip(&fine).filter(|(c, f)| c.worst().max(f.worst()).is_finite());
     let orders: Vec<f64> = ended.map(|(coarse, fine)| order(&[coarse, fine])).collect();
     let order = median(&orders).context("no recipe has an order")?;
-    let power = cost_power(case.problem.dimension.components()) / order;
-    let ratio = |(coarse, fine): (&Trial, &Trial)| {
-        let pairs = own.into_iter().zip([coarse, fine]);
-        pairs.map(|(own, trial)| cost_ratio(trial, own, power, bar)).product::<f64>().sqrt()
+    let dimensions = case.problem.dimension.components();
+    // At the same spacing, the geometric mean of both.
+    let over = |trial: &Trial, own: &Trial| {
+        expected(trial, Goal::Error(own.worst().max(bar)), order, dimensions, bar) / own.cpu_s
     };
+    let ratio = |(coarse, fine): (&Trial, &Trial)| (over(coarse, own.0) * over(fine, own.1)).sqrt();
     let ratios = coarse.iter().zip(&fine).map(ratio).collect();
     Ok((bench.candidates, ratios))
-}
-
-/// CPU time of a trial, were it as good as another at the same spacing, over that of the
-/// other; errors below `bar` count as that, and the cost falls with the error to `power`.
-fn cost_ratio(trial: &Trial, own: &Trial, power: f64, bar: f64) -> f64 {
-    let error = |trial: &Trial| trial.worst().max(bar);
-    if trial.worst().is_infinite() {
-        return f64::INFINITY;
-    }
-    trial.cpu_s / own.cpu_s * (error(trial) / error(own)).powf(power)
 }
 
 #[cfg(test)]
@@ -172,8 +159,14 @@ mod tests {
             worst,
             failures,
         };
-        let rows =
-            [row(0, 0.95, 6.0, 0), row(1, 1.0, 1.2, 0), row(2, 1.3, 1.1, 0), row(3, 0.5, 0.6, 1)];
-        assert_eq!(recommended(&rows).candidate, 1);
+        let rows = vec![
+            row(0, 0.95, 6.0, 0),
+            row(1, 1.0, 1.2, 0),
+            row(2, 1.3, 1.1, 0),
+            row(3, 0.5, 0.6, 1),
+        ];
+        let (cases, skipped, candidates) = (Vec::new(), Vec::new(), Vec::new());
+        let found = Recommendation { cases, skipped, candidates, rows };
+        assert_eq!(found.chosen().candidate, 1);
     }
 }

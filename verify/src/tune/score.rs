@@ -10,7 +10,7 @@ const ORDER: f64 = 1.5;
 const BELIEVABLE: (f64, f64) = (0.7, 3.0);
 
 /// Cost grows with the number of points and of steps: h⁻ᵈ⁻¹.
-pub fn cost_power(components: usize) -> f64 {
+fn cost_power(components: usize) -> f64 {
     components as f64 + 1.0
 }
 
