@@ -2,13 +2,13 @@
 //! quadrature, consistent gradients, critical step.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use mtled::critical_time_step::critical_time_step;
 use mtled::discretisation::Discretisation;
-use mtled::internal_force::Workspace;
+use mtled::discretisation::neighbours::Neighbours;
+use mtled::discretisation::quadrature::quadrature;
 use mtled::model::Model;
-use mtled::neighbours::Neighbours;
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::internal_force::Workspace;
 use mtled::problem::{Basis, Gradients, Problem};
-use mtled::quadrature::quadrature;
 use mtled_benches::{Size, note, settings, smoke};
 use mtled_verify::bench::pose::cube;
 use std::hint::black_box;

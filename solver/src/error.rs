@@ -1,7 +1,7 @@
 //! Everything that can go wrong, with the numbers that say where.
 
+use crate::algebra::tensor::Vector3;
 use crate::geometry::GeometryError;
-use crate::tensor::Vector3;
 
 /// An error of the solver. Positions are reference positions \[m\].
 #[derive(Debug, Clone, thiserror::Error)]

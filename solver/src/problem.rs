@@ -1,11 +1,11 @@
 //! What is to be solved: plain data, made by the scene reader or by hand.
 
-pub use crate::dimension::Dimension;
-pub use crate::field::Field;
+use crate::algebra::tensor::Vector3;
 use crate::geometry::Shape;
+pub use crate::geometry::dimension::Dimension;
+pub use crate::geometry::field::Field;
+use crate::geometry::selection::{Extent, Selector};
 use crate::material::Material;
-use crate::selection::{Extent, Selector};
-use crate::tensor::Vector3;
 
 /// A whole problem: body, discretisation recipe, conditions, loads, time.
 #[derive(Debug, Clone)]

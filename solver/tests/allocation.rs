@@ -4,11 +4,11 @@
 mod common;
 
 use common::*;
+use mtled::algebra::tensor::Vector3;
 use mtled::geometry::Shape;
+use mtled::motion::state::State;
+use mtled::motion::step::{Buffers, Scheme, step};
 use mtled::problem::*;
-use mtled::state::State;
-use mtled::step::{Buffers, Scheme, step};
-use mtled::tensor::Vector3;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Mutex;

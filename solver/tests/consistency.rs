@@ -4,18 +4,18 @@
 mod common;
 
 use common::*;
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Discretisation;
-use mtled::essential::ConstraintForces;
-use mtled::field::Field;
+use mtled::geometry::field::Field;
+use mtled::geometry::selection::Selector;
 use mtled::geometry::{Panel, Shape};
-use mtled::internal_force::{Workspace, internal_force, strain_energy};
 use mtled::model::Model;
-use mtled::observe::Unobserved;
+use mtled::model::essential::ConstraintForces;
+use mtled::motion::internal_force::{Workspace, internal_force, strain_energy};
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
 use mtled::problem::*;
-use mtled::selection::Selector;
-use mtled::simulate::simulate;
-use mtled::state::State;
-use mtled::tensor::{Matrix3, Vector3};
 
 fn consistent(mut problem: Problem, tolerance: f64) -> Discretisation {
     problem.recipe.gradients = Gradients::Consistent { tolerance };

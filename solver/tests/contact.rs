@@ -3,16 +3,16 @@
 mod common;
 
 use common::*;
-use mtled::contact::gap;
+use mtled::algebra::tensor::{Vector3, rotation};
 use mtled::geometry::Shape;
-use mtled::internal_force::{Workspace, internal_force};
+use mtled::geometry::selection::Selector;
 use mtled::model::Model;
-use mtled::observe::View;
+use mtled::model::contact::gap;
+use mtled::motion::internal_force::{Workspace, internal_force};
+use mtled::motion::observe::View;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
 use mtled::problem::*;
-use mtled::selection::Selector;
-use mtled::simulate::simulate;
-use mtled::state::State;
-use mtled::tensor::{Vector3, rotation};
 
 fn obstacle(shape: Shape, side: ObstacleSide, friction: Friction) -> Obstacle {
     Obstacle { name: "obstacle".into(), shape, offset: 0.0, side, friction }

@@ -4,11 +4,11 @@
 mod common;
 
 use common::*;
-use mtled::internal_force::{Workspace, internal_force, stiffness_times, strain_energy};
+use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::material::Law;
 use mtled::model::Model;
+use mtled::motion::internal_force::{Workspace, internal_force, stiffness_times, strain_energy};
 use mtled::problem::{Dilatation, Problem};
-use mtled::tensor::{Matrix3, Vector3, rotation};
 use proptest::prelude::*;
 
 fn forces(model: &Model, u: &[f64]) -> Vec<f64> {

@@ -3,18 +3,18 @@
 mod common;
 
 use common::*;
-use mtled::critical_time_step::critical_time_step;
+use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
 use mtled::geometry::Shape;
-use mtled::internal_force::Workspace;
-use mtled::mass_scaling::raise_masses;
+use mtled::geometry::selection::Selector;
 use mtled::model::Model;
-use mtled::observe::Unobserved;
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::internal_force::Workspace;
+use mtled::motion::mass_scaling::raise_masses;
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
 use mtled::problem::*;
-use mtled::selection::Selector;
-use mtled::simulate::simulate;
-use mtled::state::State;
-use mtled::tensor::Vector3;
 
 /// A square with nodes three times closer in a corner, pushed down slowly.
 fn pushed(mass_scaling: f64) -> Problem {

@@ -3,13 +3,13 @@
 mod common;
 
 use common::*;
-use mtled::energy::Energies;
+use mtled::algebra::tensor::Vector3;
 use mtled::model::Model;
-use mtled::observe::Unobserved;
+use mtled::motion::energy::Energies;
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
 use mtled::problem::*;
-use mtled::simulate::simulate;
-use mtled::state::State;
-use mtled::tensor::Vector3;
 
 fn run(model: &Model, motion: &Motion) -> State {
     let mut state = State::new(model);
@@ -63,7 +63,7 @@ fn with_evenly_split_masses_the_centre_of_mass_falls_by_half_g_t_squared() {
 fn a_body_without_forces_keeps_its_velocity() {
     let velocity = Vector3::new(0.3, -0.2, 0.1);
     let mut problem = jittered(cube(3), 0.2, 2);
-    problem.loads.initial_velocities.push((mtled::selection::Selector::All, velocity));
+    problem.loads.initial_velocities.push((mtled::geometry::selection::Selector::All, velocity));
     let (_, model) = build(&problem);
     let state = run(&model, &dynamic(0.1, 2e-3, 0.0));
     for node in 0..model.positions.len() {
@@ -74,7 +74,10 @@ fn a_body_without_forces_keeps_its_velocity() {
 #[test]
 fn damping_takes_from_a_rigid_motion_what_the_exponential_says() {
     let mut problem = square(4);
-    problem.loads.initial_velocities.push((mtled::selection::Selector::All, Vector3::x()));
+    problem
+        .loads
+        .initial_velocities
+        .push((mtled::geometry::selection::Selector::All, Vector3::x()));
     let (_, model) = build(&problem);
     let (damping, end, time_step) = (4.0, 0.5, 2e-3);
     let energies = energies_of(&model, &dynamic(end, time_step, damping), State::new(&model));
@@ -150,7 +153,7 @@ fn a_condition_lets_go_when_it_is_released() {
     let held: Vec<usize> =
         (0..model.positions.len()).filter(|&n| model.positions[n].y == EDGE).collect();
     let (mut state, mut speeds) = (State::new(&model), Vec::new());
-    let mut watch = Watch(|view: &mut mtled::observe::View| {
+    let mut watch = Watch(|view: &mut mtled::motion::observe::View| {
         let moved = held.iter().any(|&n| view.state.displacement_of(n, 2) != Vector3::zeros());
         assert_eq!(moved, view.state.time > 0.0505, "t = {} s", view.state.time);
         if moved {
@@ -174,7 +177,7 @@ fn prescribed_displacements_follow_their_tables() {
     problem.conditions.push(top);
     let (_, model) = build(&problem);
     let node = model.positions.iter().position(|x| x.y == EDGE).unwrap();
-    let mut watch = Watch(|view: &mut mtled::observe::View| {
+    let mut watch = Watch(|view: &mut mtled::motion::observe::View| {
         let u = view.state.displacement_of(node, 2).x;
         assert_eq!(u, 0.004 * table.at(view.state.time));
     });

@@ -3,19 +3,19 @@
 mod common;
 
 use common::*;
-use mtled::critical_time_step::critical_time_step;
+use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::{Discretisation, Warning};
 use mtled::error::Error;
 use mtled::geometry::Shape;
-use mtled::internal_force::Workspace;
+use mtled::geometry::selection::Selector;
 use mtled::material::{MaterialError, MooneyRivlin};
 use mtled::model::Model;
-use mtled::observe::Unobserved;
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::internal_force::Workspace;
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::{Summary, simulate};
+use mtled::motion::state::State;
 use mtled::problem::*;
-use mtled::selection::Selector;
-use mtled::simulate::{Summary, simulate};
-use mtled::state::State;
-use mtled::tensor::Vector3;
 
 fn refusal(problem: &Problem) -> Error {
     let made = Discretisation::new(problem).and_then(|d| Model::new(problem, &d));

@@ -4,16 +4,16 @@
 mod common;
 
 use common::*;
+use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Discretisation;
 use mtled::error::Error;
-use mtled::internal_force::{Workspace, internal_force};
+use mtled::geometry::selection::Selector;
 use mtled::model::Model;
-use mtled::observe::Unobserved;
+use mtled::motion::internal_force::{Workspace, internal_force};
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::{Summary, simulate};
+use mtled::motion::state::State;
 use mtled::problem::*;
-use mtled::selection::Selector;
-use mtled::simulate::{Summary, simulate};
-use mtled::state::State;
-use mtled::tensor::Vector3;
 
 const TOLERANCE: f64 = 1e-5;
 

@@ -3,13 +3,13 @@
 mod common;
 
 use common::*;
-use mtled::internal_force::{Workspace, internal_force};
+use mtled::algebra::tensor::Vector3;
 use mtled::model::Model;
-use mtled::observe::Unobserved;
+use mtled::motion::internal_force::{Workspace, internal_force};
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
 use mtled::problem::{Cloud, Problem};
-use mtled::simulate::simulate;
-use mtled::state::State;
-use mtled::tensor::Vector3;
 
 const THREADS: [usize; 5] = [1, 2, 3, 4, 8];
 

@@ -3,10 +3,10 @@
 mod common;
 
 use common::*;
-use mtled::critical_time_step::{critical_time_step, local_growth};
 use mtled::discretisation::Discretisation;
-use mtled::internal_force::{Workspace, internal_force};
 use mtled::model::Model;
+use mtled::motion::critical_time_step::{critical_time_step, local_growth};
+use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::*;
 use nalgebra::DMatrix;
 use proptest::prelude::*;

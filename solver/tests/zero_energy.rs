@@ -3,14 +3,16 @@
 mod common;
 
 use common::*;
+use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Discretisation;
 use mtled::error::Error;
 use mtled::geometry::Shape;
-use mtled::internal_force::{Workspace, internal_force};
 use mtled::model::Model;
+use mtled::model::zero_energy::{
+    SEEN, ZeroEnergyModes, refuse_zero_energy_modes, zero_energy_modes,
+};
+use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::*;
-use mtled::tensor::Vector3;
-use mtled::zero_energy::{SEEN, ZeroEnergyModes, refuse_zero_energy_modes, zero_energy_modes};
 
 /// Cells per spacing, volume fractions, consistent gradients.
 fn with_cells(mut problem: Problem, cells: usize, ratio: f64) -> Problem {
@@ -126,7 +128,7 @@ fn conditions_that_hold_the_unseen_motions_take_them_from_the_count() {
     let free = with_cells(cube(5), 5, 1.0);
     let mut held = free.clone();
     let mut all = condition("all", face(0, 0.0), [Some(0.0); 3]);
-    all.part = mtled::selection::Selector::All;
+    all.part = mtled::geometry::selection::Selector::All;
     held.conditions.push(all);
     let (free, held, field) = (modes(&free), modes(&held), modes(&collocated(held.clone())));
     assert!(held.count < free.count && field.count < free.count);

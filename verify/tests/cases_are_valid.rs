@@ -1,9 +1,9 @@
 //! Every case in reference/cases can be read, and the schema of the format is
 //! complete.
 
-use mtled::nodes::node_cloud;
+use mtled::discretisation::nodes::node_cloud;
+use mtled::geometry::selection::Extent;
 use mtled::problem::{Cloud, Dimension, Motion, Prescribed};
-use mtled::selection::Extent;
 use mtled_verify::scene::{Case, ProbeKind, parse_case, read_case, schema};
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;

@@ -3,8 +3,8 @@
 
 use super::features::{Features, of_section, of_solid};
 use super::{GeometryError, PointHash, Shape, positive};
-use crate::dimension::Dimension;
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
+use crate::geometry::dimension::Dimension;
 
 /// Wanted distance of neighbouring points \[m\] and its bounds.
 pub(crate) struct Sizes<'a> {

@@ -7,7 +7,7 @@ use super::marching::contours;
 use super::panels::perpendicular;
 use super::primitives::{anticlockwise, polygon_distance};
 use super::{GeometryError, Shape, Surface};
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
 use std::f64::consts::TAU;
 
 /// Candidates \[m\] in the order in which they are taken.

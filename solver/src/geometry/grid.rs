@@ -1,6 +1,6 @@
 //! A scalar field on a regular grid, and distances on it.
 
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
 
 /// Samples on a regular grid, first index fastest. An axis with one sample is
 /// an axis along which the field is constant.

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::{GeometryError, LabelMap, ScalarGrid};
-use crate::tensor::{Matrix3, Vector3};
+use crate::algebra::tensor::{Matrix3, Vector3};
 use std::sync::Arc;
 
 /// Voxels of empty space around the image, so that it may be full to its rim.

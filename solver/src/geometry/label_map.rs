@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::GeometryError;
-use crate::tensor::{Matrix3, Vector3};
+use crate::algebra::tensor::{Matrix3, Vector3};
 
 /// A segmented image: one label per voxel, label 0 is outside.
 #[derive(Debug, Clone)]

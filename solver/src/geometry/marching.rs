@@ -3,7 +3,7 @@
 
 use super::triangles::{Triangle, area_vector};
 use super::{GeometryError, ScalarGrid, Shape};
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 

@@ -2,8 +2,10 @@
 #![allow(non_snake_case)]
 
 mod boundary_points;
+pub mod dimension;
 mod error;
 mod features;
+pub mod field;
 mod grid;
 mod label_field;
 mod label_map;
@@ -12,6 +14,7 @@ mod panels;
 mod point_hash;
 mod primitives;
 mod section;
+pub mod selection;
 mod surface;
 mod triangles;
 mod validate;
@@ -27,7 +30,7 @@ pub use panels::Panel;
 pub(crate) use point_hash::PointHash;
 pub use surface::Surface;
 
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
 use std::sync::Arc;
 
 /// A solid in space.

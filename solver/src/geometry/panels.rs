@@ -4,8 +4,8 @@
 use super::primitives::anticlockwise;
 use super::triangles::{Triangle, area_vector, subdivide, triangulate};
 use super::{GeometryError, Shape, marching, positive};
-use crate::dimension::Dimension;
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
+use crate::geometry::dimension::Dimension;
 use std::f64::consts::TAU;
 
 /// A piece of the boundary.

@@ -1,7 +1,7 @@
 //! Finding points near a point when distances vary over the cloud.
 #![allow(non_snake_case)]
 
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
 use std::collections::HashMap;
 
 /// Points sorted into cubes of several sizes, each twice the last, so that a

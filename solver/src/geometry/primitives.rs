@@ -1,7 +1,7 @@
 //! Signed distance of single solids \[m\], negative inside.
 #![allow(non_snake_case)]
 
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
 
 /// Of an axis-parallel box.
 pub fn box_distance(X: &Vector3, min: &Vector3, max: &Vector3) -> f64 {

@@ -1,8 +1,8 @@
 //! Cross-sections for plane problems: solids without ends in z.
 
 use super::{GeometryError, Shape};
-use crate::dimension::Dimension;
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
+use crate::geometry::dimension::Dimension;
 use std::sync::Arc;
 
 const WITHOUT_END: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);

@@ -4,7 +4,7 @@
 use super::primitives::polygon_area;
 use super::triangles::Triangle;
 use super::{GeometryError, Shape};
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
 use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};

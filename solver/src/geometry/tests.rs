@@ -1,5 +1,5 @@
 use super::*;
-use crate::dimension::Dimension;
+use crate::geometry::dimension::Dimension;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 

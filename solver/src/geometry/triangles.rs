@@ -1,7 +1,7 @@
 //! Triangles: cutting polygons into them and them into smaller ones.
 
 use super::primitives::anticlockwise;
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
 
 /// Corners of a triangle \[m\], anticlockwise seen from outside the solid.
 pub(super) type Triangle = [Vector3; 3];

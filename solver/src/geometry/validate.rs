@@ -1,7 +1,7 @@
 //! What makes a shape admissible.
 
 use super::{GeometryError, Shape, positive};
-use crate::tensor::Vector3;
+use crate::algebra::tensor::Vector3;
 
 impl Shape {
     /// Refuses shapes whose numbers describe no solid. A half-space passes;

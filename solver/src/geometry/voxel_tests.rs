@@ -1,6 +1,6 @@
 use super::*;
-use crate::dimension::Dimension;
-use crate::tensor::{Matrix3, rotation};
+use crate::algebra::tensor::{Matrix3, rotation};
+use crate::geometry::dimension::Dimension;
 use std::f64::consts::PI;
 
 /// A ball of radius 10 voxels of 1 mm, in an image turned by `turn`.

@@ -2,8 +2,8 @@
 #![allow(non_snake_case)]
 
 use super::{ConstitutiveLaw, Deformation, ElasticConstants};
-use crate::real::Real;
-use crate::tensor::{Matrix3, Tensor, map};
+use crate::algebra::real::Real;
+use crate::algebra::tensor::{Matrix3, Tensor, map};
 
 /// ψ = λ/2 (tr ε)² + μ ε:ε, ε = sym(F) − I \[Pa\]. Not objective: for small
 /// rotations only.

@@ -16,8 +16,8 @@ pub use neo_hookean_isochoric::{NeoHookeanIsochoric, VolumetricTerm};
 pub use neo_hookean_log_j::NeoHookeanLogJ;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 
-use crate::real::Real;
-use crate::tensor::{Matrix3, Tensor, dot, tensor, tensor_cofactor};
+use crate::algebra::real::Real;
+use crate::algebra::tensor::{Matrix3, Tensor, dot, tensor, tensor_cofactor};
 
 /// F with what every law makes of it.
 #[derive(Debug, Clone, Copy)]

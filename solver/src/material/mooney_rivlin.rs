@@ -3,8 +3,8 @@
 
 use super::constants::positive;
 use super::{ConstitutiveLaw, Deformation, ElasticConstants, MaterialError};
-use crate::real::Real;
-use crate::tensor::{Matrix3, Tensor, map, right_cauchy_green, times_symmetric};
+use crate::algebra::real::Real;
+use crate::algebra::tensor::{Matrix3, Tensor, map, right_cauchy_green, times_symmetric};
 
 /// ψ = A(I − 3) + B(II − 3) + C(III⁻² − 1) + D(III − 1)² \[Pa\] with the
 /// invariants of C = FᵀF (seed, section 3.3).

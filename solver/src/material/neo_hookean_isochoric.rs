@@ -2,8 +2,8 @@
 #![allow(non_snake_case)]
 
 use super::{ConstitutiveLaw, Deformation, ElasticConstants};
-use crate::real::Real;
-use crate::tensor::{Matrix3, Tensor, contract, map};
+use crate::algebra::real::Real;
+use crate::algebra::tensor::{Matrix3, Tensor, contract, map};
 
 /// The volumetric energy U(J) of [`NeoHookeanIsochoric`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 #![allow(non_snake_case)]
 
 use super::{ConstitutiveLaw, Deformation, ElasticConstants};
-use crate::real::Real;
-use crate::tensor::{Matrix3, Tensor, map};
+use crate::algebra::real::Real;
+use crate::algebra::tensor::{Matrix3, Tensor, map};
 
 /// ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 (ln J)² \[Pa\] (Bonet and Wood 2008,
 /// eq. 6.27): volumetric term in ln J.

@@ -2,8 +2,8 @@
 #![allow(non_snake_case)]
 
 use super::{ConstitutiveLaw, Deformation, ElasticConstants};
-use crate::real::Real;
-use crate::tensor::{Matrix3, Tensor, map, right_cauchy_green, times_symmetric};
+use crate::algebra::real::Real;
+use crate::algebra::tensor::{Matrix3, Tensor, map, right_cauchy_green, times_symmetric};
 
 /// ψ = λ/2 (tr E)² + μ E:E, E = (FᵀF − I)/2 \[Pa\]. Fails in strong compression.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::tensor::{Vector3, rotation};
+use crate::algebra::tensor::{Vector3, rotation};
 use proptest::prelude::*;
 
 /// Every law, each with ordinary constants; a new law is covered by its line.

@@ -1,16 +1,16 @@
 //! Small problems for the tests: a cube and a square in plane strain.
 #![allow(dead_code)] // Every test binary uses only a part of this.
 
+use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Discretisation;
-use mtled::energy::Energies;
-use mtled::essential::Reaction;
 use mtled::geometry::Shape;
+use mtled::geometry::selection::{Extent, Selector};
 use mtled::material::*;
 use mtled::model::Model;
-use mtled::observe::{Continue, Observer, View};
+use mtled::model::essential::Reaction;
+use mtled::motion::energy::Energies;
+use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::*;
-use mtled::selection::{Extent, Selector};
-use mtled::tensor::Vector3;
 
 /// Edge of the cube and of the square \[m\].
 pub const EDGE: f64 = 0.1;

@@ -4,7 +4,7 @@ use crate::reference::{Family, Quantity, is_dynamic, quantities};
 use crate::run::{Record, Sample};
 use crate::scene::Case;
 use anyhow::{Context, Result, anyhow};
-use mtled::tensor::Vector3;
+use mtled::algebra::tensor::Vector3;
 
 /// Samples of a dynamic run; values between them are interpolated linearly.
 pub const SAMPLES: usize = 1000;

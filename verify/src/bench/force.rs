@@ -178,7 +178,8 @@ pub fn order_row(settings: &Settings, place: Place, wanted: f64) -> anyhow::Resu
 fn given(cells: usize, wanted: f64) -> anyhow::Result<Problem> {
     let mut problem = cube(cells, wanted);
     let (body, recipe) = (&problem.body, &mut problem.recipe);
-    let nodes = mtled::nodes::node_cloud(body, &recipe.cloud, &problem.dimension)?.positions;
+    let nodes = mtled::discretisation::nodes::node_cloud(body, &recipe.cloud, &problem.dimension)?
+        .positions;
     recipe.cloud = Cloud::Given { nodes };
     Ok(problem)
 }

@@ -2,11 +2,11 @@
 //! thread, with the law chosen at every point.
 #![allow(non_snake_case)]
 
+use mtled::algebra::tensor::{Matrix3, Vector3};
+use mtled::discretisation::patches::orthonormal_basis;
 use mtled::discretisation::{Discretisation, Rows};
 use mtled::material::Law;
-use mtled::patches::orthonormal_basis;
 use mtled::problem::{Dilatation, Problem};
-use mtled::tensor::{Matrix3, Vector3};
 
 /// The same work as `internal_force`, point by point and patch by patch.
 pub struct PlainLoop<'a> {

@@ -3,9 +3,9 @@
 use crate::machine::caches;
 use crate::studies::problems::{SIZE, block_shape, free_body, grid, recipe};
 use mtled::discretisation::Discretisation;
-use mtled::internal_force::{Workspace, internal_force};
 use mtled::material::{Law, Material, MooneyRivlin};
 use mtled::model::Model;
+use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::{Dilatation, Dimension, Gradients, Motion, Problem, StepControl};
 
 /// Cells per nodal spacing: two points per node.

@@ -4,14 +4,14 @@ use super::force::Settings;
 use super::pose::{Subject, cube};
 use super::turns::{Clock, seconds_of};
 use crate::measure::median;
-use mtled::critical_time_step::critical_time_step;
 use mtled::discretisation::Discretisation;
+use mtled::discretisation::nodes::node_cloud;
+use mtled::discretisation::quadrature::quadrature;
 use mtled::error::Error;
-use mtled::internal_force::Workspace;
 use mtled::model::Model;
-use mtled::nodes::node_cloud;
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::internal_force::Workspace;
 use mtled::problem::{Gradients, Problem};
-use mtled::quadrature::quadrature;
 use serde::Serialize;
 
 /// Tolerance of the gradients that users have.

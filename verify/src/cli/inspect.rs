@@ -7,11 +7,11 @@ use super::{COULD_NOT_RUN, Common, Format, print_data};
 use crate::run::{Prepared, prepare};
 use crate::scene::Case;
 use clap::{Args, ValueEnum};
-use mtled::critical_time_step::{CriticalStep, critical_time_step};
+use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::internal_force::Workspace;
-use mtled::tensor::Vector3;
-use mtled::zero_energy::{ZeroEnergyModes, zero_energy_modes};
+use mtled::model::zero_energy::{ZeroEnergyModes, zero_energy_modes};
+use mtled::motion::critical_time_step::{CriticalStep, critical_time_step};
+use mtled::motion::internal_force::Workspace;
 use rayon::prelude::*;
 use std::path::PathBuf;
 

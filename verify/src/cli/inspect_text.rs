@@ -4,10 +4,10 @@ use super::inspect::{Inspection, LARGEST_SEARCH, Place};
 use crate::machine::peak_memory;
 use crate::report::four_digits;
 use crate::run::Footprint;
+use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Warning;
+use mtled::model::zero_energy::{SEEN, SoftMotion, ZeroEnergyModes};
 use mtled::problem::{Dimension, Motion};
-use mtled::tensor::Vector3;
-use mtled::zero_energy::{SEEN, SoftMotion, ZeroEnergyModes};
 use serde_json::{Value, json};
 
 /// Beyond this share of the largest accepted condition a support is called poor.

@@ -3,8 +3,8 @@
 #![allow(non_snake_case)]
 
 use super::free_stretch;
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::material::Law;
-use mtled::tensor::{Matrix3, Vector3};
 
 /// A homogeneous sheet under biaxial stress.
 #[derive(Debug, Clone, Copy, PartialEq)]

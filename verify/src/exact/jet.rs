@@ -3,7 +3,7 @@
 //! chapter 13).
 #![allow(non_snake_case)]
 
-use mtled::tensor::{Matrix3, Vector3};
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use std::ops::{Add, Mul};
 
 /// The value of a function at a point, its gradient and its Hessian.

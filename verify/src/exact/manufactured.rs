@@ -5,11 +5,11 @@
 #![allow(non_snake_case)]
 
 use super::jet::Jet;
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::material::{
     ElasticConstants, Law, MaterialError, MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ,
     VolumetricTerm,
 };
-use mtled::tensor::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
 /// The laws, each with its stress and the derivative of its stress.
@@ -126,7 +126,7 @@ impl Family {
     fn stress_change(self, constants: &ElasticConstants, F: &Matrix3, dF: &Matrix3) -> Matrix3 {
         let (mu, K) = (constants.shear_modulus, constants.bulk_modulus);
         let J = F.determinant();
-        let G = mtled::tensor::cofactor(F) / J;
+        let G = mtled::algebra::tensor::cofactor(F) / J;
         let dG = -(G * dF.transpose() * G);
         let growth = G.dot(dF);
         let (first, d_first) = (F.dot(F), 2.0 * F.dot(dF));

@@ -1,8 +1,8 @@
 //! Simple shear.
 #![allow(non_snake_case)]
 
+use mtled::algebra::tensor::Matrix3;
 use mtled::material::Law;
-use mtled::tensor::Matrix3;
 
 /// F = I + γ e₁⊗e₂ \[–\].
 pub fn deformation_gradient(shear: f64) -> Matrix3 {

@@ -2,8 +2,8 @@
 #![allow(non_snake_case)]
 
 use super::{bisect, free_stretch};
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::material::Law;
-use mtled::tensor::{Matrix3, Vector3};
 
 /// A homogeneous bar under uniaxial stress.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 use super::{LengthUnit, Mistake, nifti, nrrd, read_label_map};
 use flate2::{Compression, write::GzEncoder};
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::LabelMap;
-use mtled::tensor::{Matrix3, Vector3};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 

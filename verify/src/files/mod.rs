@@ -11,8 +11,8 @@ mod voxels;
 
 pub use error::{FileError, Mistake};
 
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::LabelMap;
-use mtled::tensor::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
 
 /// A unit of length in a file.

@@ -4,7 +4,7 @@ use super::LengthUnit;
 use super::Mistake;
 use super::error::start_of;
 use super::voxels::{ByteOrder, Scalar};
-use mtled::tensor::{Matrix3, Vector3};
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use std::collections::HashMap;
 
 /// Fields by name in lower case, as text.

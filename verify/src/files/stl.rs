@@ -2,7 +2,7 @@
 
 use super::error::start_of;
 use super::{FileError, LengthUnit, Mistake, bytes_of};
-use mtled::tensor::Vector3;
+use mtled::algebra::tensor::Vector3;
 use std::io::Cursor;
 use std::path::Path;
 

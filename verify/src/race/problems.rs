@@ -10,9 +10,9 @@ use crate::scene::{Case, one_error, parse_case};
 use crate::studies::{Place, Placed, impose};
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
+use mtled::algebra::tensor::Vector3;
 use mtled::material::ElasticConstants;
 use mtled::problem::Problem;
-use mtled::tensor::Vector3;
 use std::path::Path;
 
 /// A problem of the race.

@@ -6,7 +6,7 @@ use crate::machine::{cpu_seconds, peak_memory};
 use crate::measure::median;
 use crate::run::{Work, march, prepare_to_run};
 use anyhow::{Context, Result, bail};
-use mtled::observe::Unobserved;
+use mtled::motion::observe::Unobserved;
 use serde::{Deserialize, Serialize};
 use std::process::Command;
 use std::time::Instant;

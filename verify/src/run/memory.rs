@@ -3,11 +3,11 @@
 
 use crate::machine::available_memory;
 use crate::report::four_digits;
+use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::nodes::{SizeField, WantedSizes};
 use mtled::geometry::GeometryError;
-use mtled::nodes::{SizeField, WantedSizes};
+use mtled::geometry::selection::Selector;
 use mtled::problem::{Cloud, Dimension, InsideRule, Problem, Refinement};
-use mtled::selection::Selector;
-use mtled::tensor::Vector3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 

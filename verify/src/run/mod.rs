@@ -18,13 +18,13 @@ use crate::machine::cpu_seconds;
 use crate::scene::Case;
 use mtled::discretisation::Discretisation;
 use mtled::error::Error;
-use mtled::mass_scaling::raise_masses;
 use mtled::model::Model;
-use mtled::observe::Observer;
+use mtled::model::zero_energy::refuse_zero_energy_modes;
+use mtled::motion::mass_scaling::raise_masses;
+use mtled::motion::observe::Observer;
+use mtled::motion::simulate::{Summary, simulate};
+use mtled::motion::state::State;
 use mtled::problem::Problem;
-use mtled::simulate::{Summary, simulate};
-use mtled::state::State;
-use mtled::zero_energy::refuse_zero_energy_modes;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 

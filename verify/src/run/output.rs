@@ -6,9 +6,9 @@ use crate::report::vtu::{PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::report::write_atomically;
 use crate::scene::Case;
 use anyhow::Result;
-use mtled::internal_force::projected_mean_stress;
+use mtled::algebra::tensor::Matrix3;
+use mtled::motion::internal_force::projected_mean_stress;
 use mtled::problem::{Motion, Problem};
-use mtled::tensor::Matrix3;
 use std::path::Path;
 
 /// Writes everything of a run to `dir` and returns what stands in

@@ -1,8 +1,8 @@
 //! Centres of mass as weighted sums of nodal displacements.
 
+use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Discretisation;
 use mtled::problem::Problem;
-use mtled::tensor::Vector3;
 
 /// x_c = X_c + Σ_a s_a u_a: the centre of mass of a region.
 #[derive(Debug, Clone)]

@@ -2,12 +2,12 @@
 
 use super::{MassCentre, Prepared, centres_of_mass, interrupted};
 use crate::scene::{Case, ProbeKind};
+use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
-use mtled::energy::Energies;
 use mtled::error::Error;
-use mtled::essential::Reaction;
-use mtled::observe::{Continue, Observer, View};
-use mtled::tensor::Vector3;
+use mtled::model::essential::Reaction;
+use mtled::motion::energy::Energies;
+use mtled::motion::observe::{Continue, Observer, View};
 
 /// Everything that was recorded, complete up to the last sample.
 #[derive(Debug, Clone, Default)]

@@ -5,12 +5,12 @@ use super::format::{
     AmplitudeFormat, CaseFormat, DisplacementFormat, ExtentFormat, FrictionFormat, ObstacleFormat,
     PrescribeFormat, RotationFormat, SideFormat,
 };
+use mtled::algebra::tensor::Vector3;
+use mtled::geometry::selection::Extent;
 use mtled::problem::{
     Amplitude, BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed,
     Traction,
 };
-use mtled::selection::Extent;
-use mtled::tensor::Vector3;
 
 impl Builder<'_> {
     pub fn conditions(&mut self, rows: &[PrescribeFormat]) -> Vec<EssentialCondition> {

@@ -3,10 +3,10 @@
 use super::build::Builder;
 use super::format_geometry::{SelectorFormat, ShapeFormat, UnitFormat};
 use crate::files::{self, LengthUnit};
+use mtled::algebra::tensor::Vector3;
+use mtled::geometry::selection::Selector;
 use mtled::geometry::{LabelField, LabelMap, Shape, Surface};
 use mtled::problem::Dimension;
-use mtled::selection::Selector;
-use mtled::tensor::Vector3;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -2,12 +2,12 @@
 
 use super::build::Builder;
 use super::format::{CaseFormat, LawFormat, MaterialFormat, VolumetricFormat};
+use mtled::geometry::selection::Selector;
 use mtled::material::{
     ElasticConstants, Law, LinearElastic, Material, MaterialError, MooneyRivlin,
     NeoHookeanIsochoric, NeoHookeanLogJ, StVenantKirchhoff, VolumetricTerm,
 };
 use mtled::problem::Region;
-use mtled::selection::Selector;
 use std::collections::BTreeMap;
 
 const PAIRS: &str = "young_modulus and poisson_ratio, lame_modulus and shear_modulus, \

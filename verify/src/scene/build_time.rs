@@ -5,8 +5,8 @@ use super::format::{
     CaseFormat, LatticeFormat, MethodFormat, OutputFormat, ProbeFormat, SolverFormat, TimeFormat,
 };
 use super::{Outputs, Probe, ProbeKind};
+use mtled::algebra::tensor::Vector3;
 use mtled::problem::{Dimension, Motion, Newton, Relaxation, RelaxationMass, StepControl};
-use mtled::tensor::Vector3;
 
 /// Wanted relative error of a static solution \[–\].
 const TOLERANCE: f64 = 1e-4;

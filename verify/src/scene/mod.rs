@@ -26,8 +26,8 @@ pub use knob::{KNOBS, Knob, Level, Setting};
 pub use problem_hash::problem_hash;
 
 use document::Document;
+use mtled::algebra::tensor::Vector3;
 use mtled::problem::Problem;
-use mtled::tensor::Vector3;
 use std::path::Path;
 
 /// A case file that has been read and found sound.

@@ -2,13 +2,13 @@
 #![allow(non_snake_case)]
 
 use crate::run::{march, prepare_to_run};
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
-use mtled::observe::Unobserved;
+use mtled::geometry::selection::{Extent, Selector};
+use mtled::motion::observe::Unobserved;
 use mtled::problem::{
     Amplitude, EssentialCondition, Field, Loads, Motion, Newton, Prescribed, Problem,
 };
-use mtled::selection::{Extent, Selector};
-use mtled::tensor::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
 /// Stretch, contraction and shear of about 10 %, not symmetric.

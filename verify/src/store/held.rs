@@ -2,10 +2,10 @@
 #![allow(non_snake_case)]
 
 use crate::run::Solved;
+use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::error::Error;
+use mtled::geometry::selection::Extent;
 use mtled::problem::{EssentialCondition, Prescribed, Problem};
-use mtled::selection::Extent;
-use mtled::tensor::{Matrix3, Vector3, rotation};
 
 /// Edge of the panels at which the surface is looked at, over the smallest nodal
 /// spacing \[–\]: several between two nodes.

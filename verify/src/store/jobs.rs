@@ -13,10 +13,10 @@ use crate::scene::Case;
 use crate::studies::{largest_stable_step, trial_velocity};
 use anyhow::Result;
 use cpu_time::ThreadTime;
-use mtled::critical_time_step::critical_time_step;
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
-use mtled::internal_force::Workspace;
-use mtled::tensor::{Matrix3, Vector3};
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::internal_force::Workspace;
 use std::collections::BTreeMap;
 
 type Figures = BTreeMap<String, f64>;

@@ -8,10 +8,10 @@ use crate::study::{
     Bound, Cell, Check, Column, Drawing, Figure, Kind, Layer, LayerStyle, Study, Table,
 };
 use anyhow::{Context, Result};
-use mtled::contact::gap;
+use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{LabelField, Shape};
+use mtled::model::contact::gap;
 use mtled::problem::{Dimension, Motion};
-use mtled::tensor::Vector3;
 
 /// What one run of the slice gives.
 struct Run {

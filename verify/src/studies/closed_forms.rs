@@ -9,14 +9,14 @@ use crate::run::{march, prepare, solve_case};
 use crate::scene::Case;
 use crate::study::{Bound, Cell, Check, Column, Kind, Study, Table};
 use anyhow::{Context, Result};
+use mtled::algebra::tensor::{Matrix3, Vector3};
+use mtled::geometry::selection::{Extent, Selector};
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
-use mtled::observe::Unobserved;
+use mtled::motion::observe::Unobserved;
 use mtled::problem::{
     Amplitude, BodyForce, Dimension, EssentialCondition, Field, Loads, Motion, Prescribed, Problem,
     Region, Relaxation,
 };
-use mtled::selection::{Extent, Selector};
-use mtled::tensor::{Matrix3, Vector3};
 
 /// The bound on closed forms \[–\].
 pub const BOUND: f64 = 0.01;

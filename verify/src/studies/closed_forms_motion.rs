@@ -6,12 +6,12 @@ use crate::exact::bar::ConfinedColumn;
 use crate::exact::beam::Beam;
 use crate::run::{march, prepare};
 use anyhow::{Context, Result};
+use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
 use mtled::geometry::Shape;
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
-use mtled::observe::{Continue, Observer, View};
+use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::{Amplitude, BodyForce, Motion, Problem, StepControl};
-use mtled::tensor::Vector3;
 
 /// A fifth below the limit where nothing damps.
 const UNDAMPED: StepControl = StepControl {

@@ -3,13 +3,13 @@
 use super::problems::{
     PLANE, Random, SIZE, block_shape, bonded_face, free_body, grid, recipe, sphere_shape, tissue,
 };
+use mtled::algebra::tensor::Vector3;
 use mtled::geometry::Shape;
+use mtled::geometry::selection::Selector;
 use mtled::problem::{
     Amplitude, Basis, Cloud, Dimension, MassRule, Motion, Problem, Refinement, Region,
     RelaxationMass,
 };
-use mtled::selection::Selector;
-use mtled::tensor::Vector3;
 
 /// A family of bodies: what they have in common, and how one is made of random
 /// numbers.

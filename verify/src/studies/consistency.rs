@@ -5,10 +5,10 @@ use super::Workbench;
 use super::plain::{axis, curve, larger, number, text};
 use super::problems::{PLANE, Random, SIZE, block_shape, recipe};
 use crate::study::{Bound, Cell, Check, Column, Figure, Kind, Plot, Study, Table};
-use mtled::mls::{Approximation, Support};
-use mtled::nodes::{NodeCloud, node_cloud};
+use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::mls::{Approximation, Support};
+use mtled::discretisation::nodes::{NodeCloud, node_cloud};
 use mtled::problem::{Basis, Dimension, WeightFunction};
-use mtled::tensor::Vector3;
 use nalgebra::DMatrix;
 
 /// Nodal spacing \[m\]: six nodes along each edge.

@@ -8,13 +8,13 @@ use super::vibration::{Log, Vibration, vibrate};
 use crate::measure::median;
 use crate::run::{march, prepare};
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, Study, Table};
-use mtled::energy::Energies;
+use mtled::algebra::tensor::Vector3;
 use mtled::geometry::Shape;
-use mtled::observe::Unobserved;
+use mtled::motion::energy::Energies;
+use mtled::motion::observe::Unobserved;
 use mtled::problem::{
     Amplitude, BodyForce, Dimension, Friction, Motion, Obstacle, ObstacleSide, Problem, StepControl,
 };
-use mtled::tensor::Vector3;
 
 /// The largest of 21 families of clouds (`--seed` 0 to 20) \[–\].
 const FLUCTUATION: f64 = 3.87e-3;

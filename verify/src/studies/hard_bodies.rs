@@ -2,17 +2,17 @@
 #![allow(non_snake_case)]
 
 use super::problems::{Random, SIZE, free_body, recipe};
+use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::nodes::node_cloud;
 use mtled::geometry::Shape;
+use mtled::geometry::selection::{Extent, Selector};
 use mtled::material::{
     ElasticConstants, Law, Material, MooneyRivlin, NeoHookeanIsochoric, VolumetricTerm,
 };
-use mtled::nodes::node_cloud;
 use mtled::problem::{
     Amplitude, Cloud, Dimension, EssentialCondition, Motion, Prescribed, Problem, Recipe,
     Relaxation, RelaxationMass, StepControl,
 };
-use mtled::selection::{Extent, Selector};
-use mtled::tensor::Vector3;
 
 /// Angle by which outlines are turned about the vertical, so that no cell of
 /// the background grid fits \[rad\].

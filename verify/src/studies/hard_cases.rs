@@ -13,12 +13,12 @@ use super::problems::{SIZE, free_body, grid, tissue};
 use crate::exact::{torsion, uniaxial};
 use crate::study::{Bound, Kind};
 use anyhow::{Context, Result};
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::Shape;
+use mtled::geometry::selection::Selector;
 use mtled::problem::{
     Amplitude, Cloud, Dilatation, Dimension, Prescribed, Problem, Refinement, Region,
 };
-use mtled::selection::Selector;
-use mtled::tensor::{Matrix3, Vector3};
 
 /// Three-field finite elements, cube of brain tissue at 20 % \[N\] (method §6).
 const BONDED_REACTION: f64 = -18.76;

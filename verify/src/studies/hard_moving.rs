@@ -6,11 +6,11 @@ use super::hard_cases::{case, measured};
 use super::hard_run::{HardCase, Truth};
 use super::problems::SIZE;
 use anyhow::Result;
+use mtled::algebra::tensor::Vector3;
 use mtled::geometry::Shape;
 use mtled::problem::{
     Amplitude, BodyForce, Friction, Motion, Obstacle, ObstacleSide, Problem, StepControl,
 };
-use mtled::tensor::Vector3;
 
 pub fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     let resonates: &[&str] = &["finite", "Diverged", "Inverted"];

@@ -5,16 +5,16 @@ use super::plain::larger;
 use super::relative_error;
 use crate::run::{Prepared, Solved, march, prepare, prepare_to_run};
 use crate::study::{Bound, Kind};
-use mtled::critical_time_step::critical_time_step;
-use mtled::energy::Energies;
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
-use mtled::essential::Reaction;
-use mtled::internal_force::Workspace;
 use mtled::model::Model;
-use mtled::observe::{Continue, Observer, View};
+use mtled::model::essential::Reaction;
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::energy::Energies;
+use mtled::motion::internal_force::Workspace;
+use mtled::motion::observe::{Continue, Observer, View};
+use mtled::motion::simulate::Crushed;
 use mtled::problem::{Motion, Problem};
-use mtled::simulate::Crushed;
-use mtled::tensor::{Matrix3, Vector3};
 
 /// What a run may be compared with.
 #[derive(Debug, Clone)]

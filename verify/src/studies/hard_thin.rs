@@ -5,10 +5,10 @@ use super::hard_cases::{case, measured, rolled};
 use super::hard_run::{HardCase, Truth};
 use super::problems::{PLANE, SIZE, free_body, grid};
 use anyhow::Result;
+use mtled::algebra::tensor::Vector3;
 use mtled::geometry::Shape;
+use mtled::geometry::selection::Selector;
 use mtled::problem::{Dimension, Motion, Problem};
-use mtled::selection::Selector;
-use mtled::tensor::Vector3;
 
 pub fn thin(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     let (problem, truth) = slice(1.0, spacing)?;

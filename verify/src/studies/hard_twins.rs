@@ -9,14 +9,14 @@ use crate::measure::relative_max;
 use crate::run::{Prepared, march, prepare};
 use crate::study::{Bound, Cell, Check, Kind, Study, Table};
 use anyhow::Result;
+use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::discretisation::Discretisation;
+use mtled::discretisation::mls::Approximation;
 use mtled::geometry::Shape;
-use mtled::mls::Approximation;
+use mtled::geometry::selection::{Extent, Selector};
 use mtled::model::Model;
-use mtled::observe::Unobserved;
+use mtled::motion::observe::Unobserved;
 use mtled::problem::{Dimension, EssentialCondition, Field, Prescribed, Problem};
-use mtled::selection::{Extent, Selector};
-use mtled::tensor::{Matrix3, Vector3, rotation};
 
 /// A rigid change of place and a change of unit: X → scale · X + offset.
 #[derive(Debug, Clone, Copy)]

@@ -9,11 +9,11 @@ use crate::exact::manufactured::{Family, FieldKind, Manufactured};
 use crate::run::{Solved, march, prepare};
 use crate::study::Study;
 use anyhow::{Context, Result};
-use mtled::internal_force::projected_mean_stress;
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::material::ElasticConstants;
-use mtled::observe::Unobserved;
+use mtled::motion::internal_force::projected_mean_stress;
+use mtled::motion::observe::Unobserved;
 use mtled::problem::Problem;
-use mtled::tensor::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 /// Clouds per size, told apart by the seed of their jitter.

@@ -5,14 +5,14 @@ use super::manufactured::{Place, Scheme};
 use crate::exact::manufactured::Manufactured;
 use crate::scene::{one_error, parse_case};
 use anyhow::Result;
+use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
+use mtled::discretisation::quadrature::quadrature;
 use mtled::geometry::{Shape, Surface};
 use mtled::material::Material;
 use mtled::problem::{
     Amplitude, BodyForce, Dilatation, Enforcement, Field, Gradients, InsideRule, MassRule,
     Prescribed, Problem,
 };
-use mtled::quadrature::quadrature;
-use mtled::tensor::{Matrix3, Vector3, rotation};
 use std::path::Path;
 use std::sync::Arc;
 

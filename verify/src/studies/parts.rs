@@ -9,11 +9,11 @@ use super::plain::{larger, number, text};
 use super::problems::Random;
 use crate::study::{Bound, Cell, Check, Kind, Study, Table};
 use anyhow::Result;
+use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::material::{
     ElasticConstants, Law, LinearElastic, MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ,
     StVenantKirchhoff, VolumetricTerm,
 };
-use mtled::tensor::{Matrix3, Vector3, rotation};
 
 /// Random deformations per law, entries of F − I up to [`SIZE_OF_STRAIN`].
 const DEFORMATIONS: usize = 20;

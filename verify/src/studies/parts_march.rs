@@ -9,18 +9,18 @@ use super::problems::{Random, SIZE, bonded_face, grid, recipe};
 use crate::run::{march, prepare};
 use crate::study::Study;
 use anyhow::Result;
-use mtled::contact::{ContactState, gap};
+use mtled::algebra::tensor::Vector3;
 use mtled::geometry::Shape;
-use mtled::internal_force::{Workspace, internal_force};
 use mtled::model::Model;
-use mtled::observe::Unobserved;
+use mtled::model::contact::{ContactState, gap};
+use mtled::motion::internal_force::{Workspace, internal_force};
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
 use mtled::problem::{
     Amplitude, BodyForce, EssentialCondition, Friction, Motion, Obstacle, ObstacleSide, Prescribed,
     StepControl,
 };
-use mtled::simulate::simulate;
-use mtled::state::State;
-use mtled::tensor::Vector3;
 
 /// A step far below the critical one \[s\].
 const STEP: f64 = 1e-6;

@@ -9,15 +9,15 @@ use super::problems::{
 use crate::run::{Prepared, march, prepare};
 use crate::study::{Bound, Check, Kind, Study};
 use anyhow::{Context, Result};
+use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::observe::Unobserved;
+use mtled::geometry::selection::Selector;
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
 use mtled::problem::{
     Amplitude, BodyForce, Dimension, MassRule, Motion, Problem, StepControl, Traction,
 };
-use mtled::selection::Selector;
-use mtled::simulate::simulate;
-use mtled::state::State;
-use mtled::tensor::Vector3;
 
 pub fn exact(id: &str, words: &str, value: f64, bound: f64, source: &str) -> Check {
     Check::new(id, words, Kind::Exact, value, Bound::AtMost(bound), "1", source)

@@ -9,14 +9,14 @@ use super::problems::{
 };
 use crate::run::{Prepared, march, prepare};
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, Study, Table};
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::Shape;
-use mtled::observe::Unobserved;
+use mtled::geometry::selection::{Extent, Selector};
+use mtled::motion::observe::Unobserved;
 use mtled::problem::{
     Amplitude, Dimension, Enforcement, EssentialCondition, Field, Gradients, Prescribed, Problem,
     Traction,
 };
-use mtled::selection::{Extent, Selector};
-use mtled::tensor::{Matrix3, Vector3};
 
 /// A body with a cloud.
 #[derive(Debug, Clone)]

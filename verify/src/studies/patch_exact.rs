@@ -7,8 +7,8 @@ use super::plain::larger;
 use super::problems::Random;
 use crate::run::{Prepared, prepare};
 use crate::study::{Bound, Check, Kind, Study};
-use mtled::internal_force::{Workspace, internal_force};
-use mtled::tensor::{Matrix3, Vector3, rotation};
+use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
+use mtled::motion::internal_force::{Workspace, internal_force};
 
 /// What holds on any cloud, jittered too.
 pub(super) fn exact_checks(

@@ -1,15 +1,15 @@
 //! Problems that several studies pose: simple bodies with a recipe each.
 #![allow(non_snake_case)]
 
+use mtled::algebra::tensor::Vector3;
 use mtled::geometry::Shape;
+use mtled::geometry::selection::{Extent, Selector};
 use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use mtled::problem::{
     Amplitude, BackgroundGrid, Basis, Cloud, Dilatation, Dimension, Enforcement,
     EssentialCondition, GradientStorage, Gradients, InsideRule, Loads, MassRule, Motion,
     Prescribed, Problem, Recipe, Region, Relaxation, RelaxationMass, StepControl, WeightFunction,
 };
-use mtled::selection::{Extent, Selector};
-use mtled::tensor::Vector3;
 
 /// Plane strain in a slab of 1 m.
 pub const PLANE: Dimension = Dimension::PlaneStrain { thickness: 1.0, z: 0.0 };

@@ -4,10 +4,10 @@ use super::Workbench;
 use super::plain::{axis, curve, number, text};
 use super::problems::{SIZE, block_shape, bonded_face, free_body, recipe, relaxation, tissue};
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, Study, Table};
-use mtled::critical_time_step::critical_time_step;
 use mtled::discretisation::Discretisation;
-use mtled::internal_force::{Workspace, internal_force};
 use mtled::model::Model;
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::{Amplitude, Dimension, Gradients, Problem};
 use std::time::Instant;
 

@@ -8,7 +8,7 @@ use crate::exact::uniaxial;
 use crate::run::solve_case;
 use crate::scene::{Case, Knob, Setting, edited, parse_case};
 use crate::study::Study;
-use mtled::tensor::Vector3;
+use mtled::algebra::tensor::Vector3;
 use std::path::Path;
 
 /// Edge of the cube \[m\].

@@ -5,11 +5,11 @@ use super::problems::{
     PLANE, SIZE, block_shape, bonded_face, free_body, grid, recipe, relaxation, sphere_shape,
     tissue,
 };
+use mtled::algebra::tensor::Vector3;
+use mtled::geometry::selection::Selector;
 use mtled::problem::{
     Amplitude, Basis, Cloud, Dimension, MassRule, Motion, Problem, Refinement, RelaxationMass,
 };
-use mtled::selection::Selector;
-use mtled::tensor::Vector3;
 
 /// A problem whose stable step is to be found.
 #[derive(Debug, Clone)]

@@ -8,10 +8,10 @@ use crate::run::{Solved, Work, march, prepare};
 use crate::scene::Case;
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, Study, Table};
 use anyhow::{Context, Result, bail};
-use mtled::internal_force::{Workspace, stiffness_times};
-use mtled::observe::{Continue, Observer, Unobserved, View};
+use mtled::algebra::tensor::Vector3;
+use mtled::motion::internal_force::{Workspace, stiffness_times};
+use mtled::motion::observe::{Continue, Observer, Unobserved, View};
 use mtled::problem::{Cloud, Motion, Newton, Problem, RelaxationMass};
-use mtled::tensor::Vector3;
 use rayon::prelude::*;
 
 /// Cases with what is special about them.

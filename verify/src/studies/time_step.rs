@@ -8,13 +8,13 @@ use super::time_step_clouds::random_clouds;
 use super::time_step_runs::runs;
 use crate::run::prepare;
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, SeriesStyle, Study, Table};
-use mtled::critical_time_step::critical_time_step;
-use mtled::internal_force::Workspace;
 use mtled::model::Model;
-use mtled::observe::Unobserved;
-use mtled::simulate::simulate;
-use mtled::state::State;
-use mtled::step::{Buffers, Scheme, step};
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::internal_force::Workspace;
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
+use mtled::motion::step::{Buffers, Scheme, step};
 
 /// Steps of a trial run. A step 0.1 % above the limit multiplies the highest
 /// mode by 1 + √(8·0.001) = 1.09 in each step, by 10¹⁹ in all.

@@ -6,10 +6,10 @@ use super::plain::{axis, number, styled, text};
 use super::time_step::{largest_stable_step, trial_velocity};
 use crate::run::prepare;
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, SeriesStyle, Study, Table};
-use mtled::critical_time_step::critical_time_step;
-use mtled::internal_force::Workspace;
+use mtled::model::time_step_bound::comparison_bounds;
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::internal_force::Workspace;
 use mtled::problem::StepControl;
-use mtled::time_step_bound::comparison_bounds;
 use rayon::prelude::*;
 
 /// One cloud: steps over the largest stable one \[–\].

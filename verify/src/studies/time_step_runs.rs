@@ -5,12 +5,12 @@ use super::plain::{axis, line, number, text};
 use super::problems::{SIZE, block_shape, bonded_face, free_body, recipe, relaxation, tissue};
 use crate::run::{march_on, prepare};
 use crate::study::{Bound, Cell, Check, Figure, Kind, Plot, Study, Table};
-use mtled::critical_time_step::critical_time_step;
-use mtled::internal_force::Workspace;
+use mtled::algebra::tensor::Vector3;
 use mtled::model::Model;
-use mtled::observe::{Continue, Observer, View};
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::internal_force::Workspace;
+use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::{Amplitude, Dimension, EssentialCondition, Motion, Prescribed, Problem};
-use mtled::tensor::Vector3;
 use rayon::prelude::*;
 
 /// Steps between two comparisons with the limit.

@@ -3,16 +3,16 @@
 use super::plain::larger;
 use super::problems::{SIZE, block_shape, free_body, recipe, tissue};
 use crate::run::prepare;
-use mtled::critical_time_step::critical_time_step;
-use mtled::energy::Energies;
+use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::internal_force::Workspace;
 use mtled::model::Model;
-use mtled::observe::{Continue, Observer, View};
+use mtled::motion::critical_time_step::critical_time_step;
+use mtled::motion::energy::Energies;
+use mtled::motion::internal_force::Workspace;
+use mtled::motion::observe::{Continue, Observer, View};
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
 use mtled::problem::{Dimension, Motion, StepControl};
-use mtled::simulate::simulate;
-use mtled::state::State;
-use mtled::tensor::Vector3;
 
 /// Keeps the energies of every few steps.
 #[derive(Debug, Default)]

@@ -1,7 +1,7 @@
 //! Points from CSV: columns x, y and perhaps z, with or without a header.
 
 use crate::files::Mistake;
-use mtled::tensor::Vector3;
+use mtled::algebra::tensor::Vector3;
 
 const EXPECTED: &str = "two or three numbers x, y, z";
 

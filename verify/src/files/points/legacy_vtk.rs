@@ -3,7 +3,7 @@
 use crate::files::Mistake;
 use crate::files::error::start_of;
 use crate::files::voxels::{ByteOrder, Scalar};
-use mtled::tensor::Vector3;
+use mtled::algebra::tensor::Vector3;
 
 pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     if !bytes.starts_with(b"# vtk DataFile") {

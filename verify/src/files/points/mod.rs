@@ -6,7 +6,7 @@ mod npy;
 mod vtu;
 
 use super::{FileError, Mistake, bytes_of};
-use mtled::tensor::Vector3;
+use mtled::algebra::tensor::Vector3;
 use std::path::Path;
 
 /// Reads node positions, the kind of file told by its name. Files of two

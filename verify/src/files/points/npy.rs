@@ -1,7 +1,7 @@
 //! Points from a NumPy array of shape (n, 2) or (n, 3).
 
 use crate::files::Mistake;
-use mtled::tensor::Vector3;
+use mtled::algebra::tensor::Vector3;
 use npyz::{NpyFile, Order};
 
 pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {

@@ -2,7 +2,7 @@ use super::{csv, legacy_vtk, npy, read, vtu};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, write::ZlibEncoder};
-use mtled::tensor::Vector3;
+use mtled::algebra::tensor::Vector3;
 use npyz::WriterBuilder;
 use std::io::Write;
 

@@ -7,7 +7,7 @@ use crate::files::voxels::{ByteOrder, Scalar};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
-use mtled::tensor::Vector3;
+use mtled::algebra::tensor::Vector3;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::collections::HashMap;

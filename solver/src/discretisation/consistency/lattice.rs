@@ -1,0 +1,187 @@
+//! Nested lattices of quadratic B-splines over the box around the nodes.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::{Vector3, box_around};
+
+/// Functions along one axis of a lattice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Axis {
+    /// No extent: one constant.
+    Flat,
+    /// 1 and s − ½ over the whole extent, s from 0 to 1.
+    Affine,
+    /// Quadratic B-splines on this many cells; function i lives on the cells
+    /// i − 2 to i.
+    Splines(usize),
+}
+
+/// Products of functions along the axes of the box around the nodes. An axis
+/// that has become short against the cells is left with affine functions, so
+/// that the long waves of slender bodies are seen.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lattice {
+    origin: Vector3,
+    extent: Vector3,
+    axes: [Axis; 3],
+    counts: [usize; 3],
+}
+
+impl Axis {
+    /// Cells of about `edge`, as many as can be halved down to 1 or 3.
+    fn new(extent: f64, edge: f64) -> Axis {
+        let n = (extent / edge).ceil().max(1.0) as usize;
+        let power = n.next_power_of_two();
+        let fits = power >= 4 && n <= 3 * power / 4;
+        Axis::Splines(if fits { 3 * power / 4 } else { power })
+    }
+
+    fn count(self) -> usize {
+        match self {
+            Axis::Flat => 1,
+            Axis::Affine => 2,
+            Axis::Splines(cells) => cells + 2,
+        }
+    }
+
+    fn coarser(self) -> Axis {
+        match self {
+            Axis::Splines(cells) if cells.is_multiple_of(2) => Axis::Splines(cells / 2),
+            Axis::Splines(_) => Axis::Affine,
+            axis => axis,
+        }
+    }
+
+    /// First of up to three functions at s in \[0, 1\], and their values.
+    fn at(self, s: f64) -> (usize, [f64; 3]) {
+        match self {
+            Axis::Flat => (0, [1.0, 0.0, 0.0]),
+            Axis::Affine => (0, [1.0, s - 0.5, 0.0]),
+            Axis::Splines(cells) => {
+                let x = s * cells as f64;
+                let index = (x.max(0.0) as usize).min(cells - 1);
+                let t = (x - index as f64).clamp(0.0, 1.0);
+                (index, [0.5 * (1.0 - t) * (1.0 - t), 0.5 + t * (1.0 - t), 0.5 * t * t])
+            }
+        }
+    }
+
+    /// Function `index` of the coarser axis as a sum of functions of this one:
+    /// (1, 3, 3, 1)/4 for halved splines, values at the middles of the
+    /// splines for affine functions.
+    fn parts(self, index: usize) -> Vec<(usize, f64)> {
+        match (self, self.coarser()) {
+            (Axis::Splines(cells), Axis::Splines(_)) => {
+                let fine = |m: usize| (2 * index + m).checked_sub(2).filter(|&i| i < cells + 2);
+                (0..4).filter_map(|m| fine(m).map(|i| (i, [0.25, 0.75, 0.75, 0.25][m]))).collect()
+            }
+            (Axis::Splines(cells), _) => (0..cells + 2)
+                .map(|i| match index {
+                    0 => (i, 1.0),
+                    _ => (i, (i as f64 - 0.5) / cells as f64 - 0.5),
+                })
+                .collect(),
+            _ => vec![(index, 1.0)],
+        }
+    }
+}
+
+impl Lattice {
+    pub fn new(nodes: &[Vector3], edge: f64, components: usize) -> Lattice {
+        let (min, max) = box_around(nodes);
+        let extent = max - min;
+        let axes =
+            [0, 1, 2].map(|k| if k < components { Axis::new(extent[k], edge) } else { Axis::Flat });
+        Lattice { origin: min, extent, axes, counts: axes.map(Axis::count) }
+    }
+
+    pub fn len(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    pub fn coarser(&self) -> Lattice {
+        let axes = self.axes.map(Axis::coarser);
+        Lattice { axes, counts: axes.map(Axis::count), ..*self }
+    }
+
+    /// Whether only affine functions are left, which the operator ignores.
+    pub fn is_affine(&self) -> bool {
+        !self.axes.iter().any(|axis| matches!(axis, Axis::Splines(_)))
+    }
+
+    /// The functions that may not be 0 at X.
+    pub fn at(&self, X: &Vector3) -> Reach {
+        let [(i, x), (j, y), (k, z)] = [0, 1, 2]
+            .map(|axis| self.axes[axis].at((X[axis] - self.origin[axis]) / self.extent[axis]));
+        let counts = self.counts.map(|n| n.min(3));
+        Reach { first: [i, j, k], counts, size: self.counts, values: [x, y, z] }
+    }
+
+    /// Along which axes a function is s − ½, as bits: functions of one kind
+    /// bend alike.
+    pub fn kind(&self, index: [usize; 3]) -> usize {
+        (0..3).filter(|&k| self.axes[k] == Axis::Affine && index[k] == 1).map(|k| 1 << k).sum()
+    }
+
+    /// Indices of a function along the axes.
+    pub fn index(&self, function: usize) -> [usize; 3] {
+        let [nx, ny, _] = self.counts;
+        [function % nx, function / nx % ny, function / (nx * ny)]
+    }
+
+    /// Calls `visit(coarse, fine, factor)` for all pairs with the next coarser
+    /// lattice.
+    pub fn for_each_transfer(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        let coarse = self.coarser();
+        let parts = |axis: usize| -> Vec<Vec<(usize, f64)>> {
+            (0..coarse.counts[axis]).map(|index| self.axes[axis].parts(index)).collect()
+        };
+        let [columns, rows, layers] = [parts(0), parts(1), parts(2)];
+        let mut target = 0;
+        for layer in &layers {
+            for row in &rows {
+                for column in &columns {
+                    for &(k, wz) in layer {
+                        for &(j, wy) in row {
+                            let start = (k * self.counts[1] + j) * self.counts[0];
+                            for &(i, wx) in column {
+                                visit(target, start + i, wx * wy * wz);
+                            }
+                        }
+                    }
+                    target += 1;
+                }
+            }
+        }
+    }
+}
+
+/// Up to three functions along each axis, and their values.
+pub(super) struct Reach {
+    pub first: [usize; 3],
+    pub counts: [usize; 3],
+    /// Functions along the axes of the box that `first` counts in.
+    size: [usize; 3],
+    values: [[f64; 3]; 3],
+}
+
+impl Reach {
+    /// The same functions in the box that starts at `origin` and holds `size`.
+    pub fn within(&self, origin: [usize; 3], size: [usize; 3]) -> Reach {
+        let first = [0, 1, 2].map(|axis| self.first[axis] - origin[axis]);
+        Reach { first, size, ..*self }
+    }
+
+    /// Calls `visit(place in the box, value)`.
+    #[inline]
+    pub fn for_each(&self, mut visit: impl FnMut(usize, f64)) {
+        let ([x, y, z], [i, j, k]) = (&self.values, self.first);
+        for (c, wz) in z[..self.counts[2]].iter().enumerate() {
+            for (b, wy) in y[..self.counts[1]].iter().enumerate() {
+                let row = ((k + c) * self.size[1] + j + b) * self.size[0] + i;
+                for (a, wx) in x[..self.counts[0]].iter().enumerate() {
+                    visit(row + a, wx * (wy * wz));
+                }
+            }
+        }
+    }
+}

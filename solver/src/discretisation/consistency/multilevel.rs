@@ -1,0 +1,221 @@
+//! An additive multilevel preconditioner (Bramble, Pasciak, Xu 1990) on
+//! nested lattices of quadratic B-splines.
+//!
+//! B r = D₀⁻¹ r + Σ_l P_l D_l⁻¹ P_lᵀ r: P_l takes coefficients on lattice l to
+//! nodes, D_l estimates the diagonal of P_lᵀ K P_l. The number of iterations
+//! does not grow with the number of nodes (method §3).
+#![allow(non_snake_case)]
+
+use super::lattice::{Lattice, Reach};
+use super::operator::{Layout, Operator};
+use crate::algebra::tensor::Vector3;
+use nalgebra::Vector4;
+use rayon::prelude::*;
+
+/// Spacing of the finest lattice over that of the nodes \[–\].
+const FINEST: f64 = 1.5;
+/// Points from which the size of a level's diagonal is estimated.
+const SAMPLES: usize = 1000;
+/// More functions than this make the finest lattice coarser.
+const MOST_FUNCTIONS: usize = 4_000_000;
+/// Shares of the nodes that are taken to the finest lattice one beside the other,
+/// and the fewest nodes of one.
+const SHARES: (usize, usize) = (16, 2048);
+/// Samples that are taken one after the other.
+const SAMPLES_TOGETHER: usize = 50;
+
+/// The preconditioner, ready to be applied.
+pub(super) struct Multilevel {
+    /// Functions of the finest lattice at each node.
+    reaches: Vec<Reach>,
+    inverse_diagonal: Vec<f64>,
+    /// From fine to coarse.
+    levels: Vec<Level>,
+}
+
+struct Level {
+    lattice: Lattice,
+    inverse_diagonal: Vec<f64>,
+}
+
+impl Multilevel {
+    pub fn new(operator: &Operator, layout: &Layout) -> Multilevel {
+        let diagonal = operator.diagonal();
+        let mean = layout.spacing.iter().sum::<f64>() / layout.spacing.len() as f64;
+        let smallest = layout.spacing.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut edge = FINEST * smallest;
+        let mut lattice = Lattice::new(layout.nodes, edge, layout.components);
+        let room = MOST_FUNCTIONS.min(8 * layout.nodes.len() + 64);
+        while lattice.len() > room {
+            edge *= 1.2;
+            lattice = Lattice::new(layout.nodes, edge, layout.components);
+        }
+        // Bending of a smooth function between neighbours grows as h⁴.
+        let bending: Vec<f64> = layout.spacing.iter().map(|h| (h / mean).powi(4)).collect();
+        let sample = sample(layout.points.len());
+        let reaches = layout.nodes.par_iter().map(|X| lattice.at(X)).collect();
+        let mut lattices = vec![lattice];
+        while !lattice.coarser().is_affine() {
+            lattice = lattice.coarser();
+            lattices.push(lattice);
+        }
+        let level = |lattice| level(operator, layout, lattice, &diagonal, &bending, &sample);
+        let levels = lattices.into_par_iter().map(level).collect();
+        let inverse_diagonal = diagonal.iter().map(|d| inverse(*d)).collect();
+        Multilevel { reaches, inverse_diagonal, levels }
+    }
+
+    /// B r.
+    pub fn apply(&self, r: &[Vector3]) -> Vec<Vector3> {
+        let mut moments = vec![self.to_finest(r)];
+        for pair in self.levels.windows(2) {
+            let fine = &moments[moments.len() - 1];
+            let mut coarse = vec![Vector3::zeros(); pair[1].lattice.len()];
+            pair[0].lattice.for_each_transfer(|I, i, w| {
+                coarse[I] += w * fine[i];
+            });
+            moments.push(coarse);
+        }
+        for (level, values) in self.levels.iter().zip(&mut moments) {
+            values.iter_mut().zip(&level.inverse_diagonal).for_each(|(v, d)| *v *= *d);
+        }
+        for l in (1..self.levels.len()).rev() {
+            let (fine, coarse) = moments.split_at_mut(l);
+            let (fine, coarse) = (&mut fine[l - 1], &coarse[0]);
+            self.levels[l - 1].lattice.for_each_transfer(|I, i, w| {
+                fine[i] += w * coarse[I];
+            });
+        }
+        let finest = &moments[0];
+        let at_node = |((reach, r), d): ((&Reach, &Vector3), &f64)| {
+            let mut sum = r * *d;
+            reach.for_each(|i, b| sum += b * finest[i]);
+            sum
+        };
+        self.reaches.par_iter().zip(r).zip(&self.inverse_diagonal).map(at_node).collect()
+    }
+
+    /// Moments of a nodal field with the functions of the finest lattice.
+    fn to_finest(&self, r: &[Vector3]) -> Vec<Vector3> {
+        let lattice = &self.levels[0].lattice;
+        let share = r.len().div_ceil(SHARES.0).max(SHARES.1);
+        let moments = |(reaches, values): (&[Reach], &[Vector3])| {
+            let mut moments = vec![Vector3::zeros(); lattice.len()];
+            for (reach, value) in reaches.iter().zip(values) {
+                reach.for_each(|i, b| moments[i] += b * value);
+            }
+            moments
+        };
+        let shares = self.reaches.par_chunks(share).zip(r.par_chunks(share));
+        let shares: Vec<Vec<Vector3>> = shares.map(moments).collect();
+        let mut sum = vec![Vector3::zeros(); lattice.len()];
+        for share in shares {
+            sum.iter_mut().zip(share).for_each(|(sum, moment)| *sum += moment);
+        }
+        sum
+    }
+}
+
+fn inverse(diagonal: f64) -> f64 {
+    if diagonal > 0.0 { 1.0 / diagonal } else { 0.0 }
+}
+
+/// Points at random, the same each time: evenly strided ones would follow
+/// the grid.
+fn sample(points: usize) -> Vec<usize> {
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let draw = |_| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state % points as u64) as usize
+    };
+    (0..SAMPLES.min(4 * points)).map(draw).collect()
+}
+
+/// The lattice with D_l = ρ_l Σ_a d_a bending_a over the nodes that a function
+/// reaches, scaled so that the trace is that of P_lᵀ K P_l on the sample. The
+/// values of the functions do not enter: at the rim of the body, where only
+/// their tails reach, they bend as much as elsewhere.
+fn level(
+    operator: &Operator,
+    layout: &Layout,
+    lattice: Lattice,
+    diagonal: &[f64],
+    bending: &[f64],
+    sample: &[usize],
+) -> Level {
+    let mut lumped = vec![0.0; lattice.len()];
+    for ((X, d), bend) in layout.nodes.iter().zip(diagonal).zip(bending) {
+        lattice.at(X).for_each(|i, b| lumped[i] += if b != 0.0 { d * bend } else { 0.0 });
+    }
+    let measure = |q: &usize| energies(operator, layout, &lattice, bending, *q);
+    let together = |samples: &[usize]| samples.iter().map(measure).fold(NOTHING, add);
+    let parts: Vec<Energies> = sample.par_chunks(SAMPLES_TOGETHER).map(together).collect();
+    let sums = parts.into_iter().fold(NOTHING, add);
+    let factor = |i: usize| {
+        let (energy, plain) = sums[lattice.kind(lattice.index(i))];
+        if energy > 1e-14 * plain { plain / energy } else { 0.0 }
+    };
+    let inverse_diagonal =
+        lumped.iter().enumerate().map(|(i, d)| factor(i) * inverse(*d)).collect();
+    Level { lattice, inverse_diagonal }
+}
+
+/// What a point adds to the traces of P_lᵀ K P_l and of its estimate, by the kinds of
+/// functions.
+type Energies = [(f64, f64); 8];
+
+const NOTHING: Energies = [(0.0, 0.0); 8];
+
+fn add(mut sums: Energies, others: Energies) -> Energies {
+    for (sum, other) in sums.iter_mut().zip(others) {
+        *sum = (sum.0 + other.0, sum.1 + other.1);
+    }
+    sums
+}
+
+/// Sums over the support of a point for one function f: Σ W f², Σ W f p and what
+/// lumping makes of the first.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    whole: f64,
+    moments: Vector4<f64>,
+    plain: f64,
+}
+
+fn energies(
+    operator: &Operator,
+    layout: &Layout,
+    lattice: &Lattice,
+    bending: &[f64],
+    q: usize,
+) -> Energies {
+    let reaches: Vec<_> =
+        operator.row(q).map(|entry| lattice.at(&layout.nodes[operator.node(entry)])).collect();
+    let all = |axis: usize| reaches.iter().map(move |reach| reach.first[axis]);
+    let low = [0, 1, 2].map(|axis| all(axis).min().unwrap_or(0));
+    let high = [0, 1, 2].map(|axis| all(axis).max().unwrap_or(0));
+    let size = [0, 1, 2].map(|axis| high[axis] - low[axis] + reaches[0].counts[axis]);
+    let mut sums = vec![Sums::default(); size.iter().product()];
+    for (entry, reach) in operator.row(q).zip(&reaches) {
+        let p = operator.local(q, entry);
+        let metric = operator.metric(entry);
+        let share = operator.diagonal_share(q, entry) * bending[operator.node(entry)];
+        reach.within(low, size).for_each(|place, b| {
+            let sum = &mut sums[place];
+            sum.whole += metric * b * b;
+            sum.moments += p * (metric * b);
+            sum.plain += if b != 0.0 { share } else { 0.0 };
+        });
+    }
+    let mut energies = NOTHING;
+    for (place, sum) in sums.iter().enumerate().filter(|(_, sum)| sum.plain > 0.0) {
+        let at = [place % size[0], place / size[0] % size[1], place / (size[0] * size[1])];
+        let (energy, plain) = &mut energies[lattice.kind([0, 1, 2].map(|k| low[k] + at[k]))];
+        let seen = (sum.whole - operator.square(q, &sum.moments)).max(0.0);
+        *energy += layout.weights[q] * seen;
+        *plain += sum.plain;
+    }
+    energies
+}

@@ -1,0 +1,65 @@
+//! Nodes given one by one.
+#![allow(non_snake_case)]
+
+use super::{NodeCloud, refuse_too_many};
+use crate::algebra::tensor::{Vector3, box_around};
+use crate::geometry::{GeometryError, PointHash, Shape};
+use crate::problem::Dimension;
+use rayon::prelude::*;
+
+/// A node this close to the boundary is on it \[spacing\].
+const ON_BOUNDARY: f64 = 0.25;
+/// A node this far outside the body is a mistake \[spacing\].
+const OUTSIDE: f64 = 0.5;
+
+/// Takes the positions as they are. The spacing is the mean distance to the
+/// nearest four nodes in a plane, six in space.
+pub(super) fn given(
+    body: &Shape,
+    nodes: &[Vector3],
+    dimension: &Dimension,
+) -> Result<NodeCloud, GeometryError> {
+    let count = nodes.len();
+    let needed = dimension.components() + 1;
+    if count == 0 {
+        return Err(GeometryError::NoNodes);
+    }
+    if count < needed {
+        return Err(GeometryError::TooFewNodes { count, needed });
+    }
+    refuse_too_many(count as f64)?;
+    if !nodes.iter().all(|X| X.iter().all(|c| c.is_finite())) {
+        return Err(GeometryError::NotFinite { name: "the list of given nodes" });
+    }
+    let hash = hashed(nodes, dimension);
+    let nearest: Vec<Vec<(f64, usize)>> = (0..count)
+        .into_par_iter()
+        .map(|node| hash.nearest(&nodes[node], node, 2 * dimension.components()))
+        .collect();
+    let mut cloud = NodeCloud { positions: nodes.to_vec(), spacing: vec![], on_boundary: vec![] };
+    for (node, near) in nearest.iter().enumerate() {
+        let spacing = near.iter().map(|(d, _)| d).sum::<f64>() / near.len() as f64;
+        let (distance, other) = near[0];
+        if distance <= 1e-9 * spacing {
+            let (first, second) = (node.min(other), node.max(other));
+            return Err(GeometryError::DuplicateNodes { first, second, distance });
+        }
+        let distance = body.signed_distance(&nodes[node]);
+        if distance > OUTSIDE * spacing {
+            return Err(GeometryError::NodeOutside { node, distance, spacing });
+        }
+        cloud.spacing.push(spacing);
+        cloud.on_boundary.push(distance.abs() < ON_BOUNDARY * spacing);
+    }
+    Ok(cloud)
+}
+
+fn hashed(nodes: &[Vector3], dimension: &Dimension) -> PointHash {
+    let (lower, upper) = box_around(nodes);
+    let largest = (upper - lower).max().max(f64::MIN_POSITIVE);
+    // The spacing if the nodes filled their bounding box, and less.
+    let across = (nodes.len() as f64).powf(1.0 / dimension.components() as f64);
+    let mut hash = PointHash::new(0.5 * largest / across, 4.0 * largest / across);
+    nodes.iter().for_each(|X| hash.insert(*X));
+    hash
+}

@@ -1,0 +1,155 @@
+//! φ and Grad φ at many points, packed.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::{Matrix3, Vector3};
+use crate::discretisation::mls::{Approximation, PoorSupport, Scratch, Support};
+use rayon::prelude::*;
+
+/// Rows of φ and Grad φ, one for each evaluation point, packed.
+#[derive(Debug, Clone)]
+pub struct Rows {
+    /// Row i is `starts[i]..starts[i + 1]` \[row + 1\].
+    pub starts: Vec<usize>,
+    pub nodes: Vec<u32>,
+    /// \[–\]
+    pub phi: Vec<f64>,
+    /// \[1/m\]
+    pub grad_phi: Vec<Vector3>,
+}
+
+impl Default for Rows {
+    fn default() -> Rows {
+        Rows { starts: vec![0], nodes: Vec::new(), phi: Vec::new(), grad_phi: Vec::new() }
+    }
+}
+
+/// What rows are evaluated for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Wanted {
+    Values,
+    ValuesAndGradients,
+}
+
+/// Rows and what evaluating them has shown.
+#[derive(Debug, Default)]
+pub(crate) struct Evaluated {
+    pub rows: Rows,
+    /// Points whose influence radii had to be enlarged.
+    pub enlarged: usize,
+    /// Largest condition number of a moment matrix.
+    pub worst_condition: f64,
+}
+
+/// Points that are evaluated one after the other.
+const PIECE: usize = 128;
+/// Points that are evaluated before their rows are packed: the rows of so many
+/// stand in memory twice.
+const BATCH: usize = 128 * PIECE;
+
+impl Evaluated {
+    fn of(
+        approximation: &Approximation,
+        positions: &[Vector3],
+        wanted: Wanted,
+    ) -> Result<Evaluated, (usize, PoorSupport)> {
+        let mut all = Evaluated::default();
+        let (mut scratch, mut support) = (Scratch::default(), Support::default());
+        for (point, X) in positions.iter().enumerate() {
+            approximation
+                .evaluate_into(X, &mut scratch, &mut support)
+                .map_err(|poor| (point, poor))?;
+            all.rows.push(&support, wanted);
+            all.enlarged += (support.enlargement > 1.0) as usize;
+            all.worst_condition = all.worst_condition.max(support.condition);
+        }
+        Ok(all)
+    }
+
+    fn append(&mut self, other: Evaluated) {
+        let rows = &mut self.rows;
+        let offset = rows.nodes.len();
+        rows.starts.extend(other.rows.starts[1..].iter().map(|start| start + offset));
+        rows.nodes.extend(other.rows.nodes);
+        rows.phi.extend(other.rows.phi);
+        rows.grad_phi.extend(other.rows.grad_phi);
+        self.enlarged += other.enlarged;
+        self.worst_condition = self.worst_condition.max(other.worst_condition);
+    }
+}
+
+impl Rows {
+    pub fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Entries of row `i` in the packed arrays.
+    pub fn row(&self, i: usize) -> std::ops::Range<usize> {
+        self.starts[i]..self.starts[i + 1]
+    }
+
+    /// Rows at many points, or the first point that has no sound one.
+    pub(crate) fn at(
+        approximation: &Approximation,
+        positions: &[Vector3],
+        wanted: Wanted,
+    ) -> Result<Evaluated, (usize, PoorSupport)> {
+        let mut all = Evaluated::default();
+        for batch in positions.chunks(BATCH) {
+            let first = all.rows.len();
+            let evaluate = |piece: &[Vector3]| Evaluated::of(approximation, piece, wanted);
+            let pieces: Vec<_> = batch.par_chunks(PIECE).map(evaluate).collect();
+            for (index, piece) in pieces.into_iter().enumerate() {
+                all.append(piece.map_err(|(point, poor)| (first + index * PIECE + point, poor))?);
+            }
+        }
+        all.rows.shrink();
+        Ok(all)
+    }
+
+    fn push(&mut self, support: &Support, wanted: Wanted) {
+        self.nodes.extend(&support.nodes);
+        self.phi.extend(&support.phi);
+        if wanted == Wanted::ValuesAndGradients {
+            self.grad_phi.extend(&support.grad_phi);
+        }
+        self.starts.push(self.nodes.len());
+    }
+
+    /// Gives back what growing has reserved in advance.
+    fn shrink(&mut self) {
+        self.starts.shrink_to_fit();
+        self.nodes.shrink_to_fit();
+        self.phi.shrink_to_fit();
+        self.grad_phi.shrink_to_fit();
+    }
+
+    /// The value at row `i` of a nodal field with `components` per node.
+    pub fn interpolate(&self, i: usize, field: &[f64], components: usize) -> Vector3 {
+        let mut value = Vector3::zeros();
+        for entry in self.row(i) {
+            let node = self.nodes[entry] as usize;
+            for k in 0..components {
+                value[k] += self.phi[entry] * field[components * node + k];
+            }
+        }
+        value
+    }
+
+    /// F = I + Σ_a u_a ⊗ Grad φ_a at row `i`.
+    pub fn deformation_gradient(&self, i: usize, field: &[f64], components: usize) -> Matrix3 {
+        let mut F = Matrix3::identity();
+        for entry in self.row(i) {
+            let node = self.nodes[entry] as usize;
+            let mut u = Vector3::zeros();
+            for k in 0..components {
+                u[k] = field[components * node + k];
+            }
+            F += u * self.grad_phi[entry].transpose();
+        }
+        F
+    }
+}

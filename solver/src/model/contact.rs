@@ -1,0 +1,158 @@
+//! Nodes against rigid obstacles given as signed distance.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::{Vector3, vector_at};
+use crate::discretisation::Discretisation;
+use crate::error::Error;
+use crate::model::essential::Constraints;
+use crate::problem::{Friction, Obstacle, ObstacleSide, Problem};
+
+/// The obstacles of a problem and the nodes that may touch them.
+#[derive(Debug, Clone, Default)]
+pub struct ContactPlan {
+    pub obstacles: Vec<Obstacle>,
+    /// Boundary nodes without a prescribed component.
+    pub nodes: Vec<u32>,
+    /// Nodes farther than this from an obstacle \[m\] are left alone until the
+    /// body has moved so far.
+    pub skin: f64,
+}
+
+/// What contact remembers from step to step.
+#[derive(Debug, Clone, Default)]
+pub struct ContactState {
+    /// (obstacle, node) pairs that could touch before the next search.
+    candidates: Vec<(u32, u32)>,
+    /// Largest displacement that the candidates allow for \[m\].
+    travelled: f64,
+    searched: bool,
+    /// Where a sticking node touched: (obstacle, node, current position).
+    anchors: Vec<(u32, u32, Vector3)>,
+    /// Nodes in contact after the last step.
+    pub touching: Vec<u32>,
+}
+
+impl ContactPlan {
+    pub fn new(
+        problem: &Problem,
+        discretisation: &Discretisation,
+        constraints: &Constraints,
+    ) -> Result<ContactPlan, Error> {
+        let cloud = &discretisation.cloud;
+        if problem.obstacles.is_empty() {
+            return Ok(ContactPlan::default());
+        }
+        let free =
+            |node: &u32| cloud.on_boundary[*node as usize] && !constraints.always_holds(*node);
+        let mean = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
+        let section = |obstacle: &Obstacle| -> Result<Obstacle, Error> {
+            let shape = obstacle.shape.section(&problem.dimension)?;
+            Ok(Obstacle { shape, ..obstacle.clone() })
+        };
+        Ok(ContactPlan {
+            obstacles: problem.obstacles.iter().map(section).collect::<Result<_, _>>()?,
+            nodes: (0..cloud.positions.len() as u32).filter(free).collect(),
+            skin: mean,
+        })
+    }
+}
+
+/// Signed gap \[m\], open if positive.
+pub fn gap(obstacle: &Obstacle, x: &Vector3) -> f64 {
+    let distance = obstacle.shape.signed_distance(x) - obstacle.offset;
+    match obstacle.side {
+        ObstacleSide::Outside => distance,
+        ObstacleSide::Inside => -distance,
+    }
+}
+
+/// The unit normal that points out of the obstacle towards the body.
+fn normal(obstacle: &Obstacle, x: &Vector3, components: usize) -> Vector3 {
+    let mut normal = obstacle.shape.gradient(x);
+    if obstacle.side == ObstacleSide::Inside {
+        normal = -normal;
+    }
+    if components == 2 {
+        normal.z = 0.0;
+    }
+    normal.try_normalize(1e-12).unwrap_or_else(Vector3::zeros)
+}
+
+impl ContactState {
+    /// Moves nodes that entered an obstacle back to its surface, on u(t+Δt)
+    /// as in the seed (section 2.7), and tells each change of an entry of `u`
+    /// to `also(index, Δu)`.
+    pub fn enforce(
+        &mut self,
+        plan: &ContactPlan,
+        positions: &[Vector3],
+        largest_increment: f64,
+        u: &mut [f64],
+        mut also: impl FnMut(usize, f64),
+    ) {
+        let components = u.len() / positions.len();
+        self.travelled += largest_increment * (components as f64).sqrt();
+        if !self.searched || self.travelled > plan.skin {
+            self.search(plan, positions, u);
+        }
+        self.touching.clear();
+        for i in 0..self.candidates.len() {
+            let (index, node) = self.candidates[i];
+            let obstacle = &plan.obstacles[index as usize];
+            let x = positions[node as usize] + vector_at(u, node as usize, components);
+            let Some(target) = self.target(obstacle, index, node, &x, components) else {
+                continue;
+            };
+            self.touching.push(node);
+            for k in 0..components {
+                let entry = components * node as usize + k;
+                u[entry] += target[k] - x[k];
+                also(entry, target[k] - x[k]);
+            }
+        }
+    }
+
+    /// Where a node at `x` has to go, if it has entered the obstacle: to the
+    /// nearest point of the surface, or to where it sticks.
+    fn target(
+        &mut self,
+        obstacle: &Obstacle,
+        index: u32,
+        node: u32,
+        x: &Vector3,
+        components: usize,
+    ) -> Option<Vector3> {
+        let opening = gap(obstacle, x);
+        let stuck = self.anchors.iter().position(|anchor| (anchor.0, anchor.1) == (index, node));
+        if opening >= 0.0 {
+            stuck.map(|place| self.anchors.swap_remove(place));
+            return None;
+        }
+        let nearest = x - normal(obstacle, x, components) * opening;
+        match (obstacle.friction, stuck) {
+            (Friction::Frictionless, _) => Some(nearest),
+            (Friction::NoSlip, Some(place)) => Some(self.anchors[place].2),
+            (Friction::NoSlip, None) => {
+                self.anchors.push((index, node, nearest));
+                Some(nearest)
+            }
+        }
+    }
+
+    /// Lists the nodes that can reach an obstacle while the body moves by
+    /// less than twice the skin.
+    fn search(&mut self, plan: &ContactPlan, positions: &[Vector3], u: &[f64]) {
+        let components = u.len() / positions.len();
+        self.candidates.clear();
+        for (index, obstacle) in plan.obstacles.iter().enumerate() {
+            for &node in &plan.nodes {
+                let x = positions[node as usize] + vector_at(u, node as usize, components);
+                if gap(obstacle, &x) < 2.0 * plan.skin {
+                    self.candidates.push((index as u32, node));
+                }
+            }
+        }
+        self.travelled = 0.0;
+        self.searched = true;
+    }
+}

@@ -1,0 +1,250 @@
+//! The two forms whose quotient tells what the quadrature sees.
+#![allow(non_snake_case)]
+
+use super::LARGEST_COUNT;
+use crate::algebra::tensor::{Matrix3, Vector3};
+use crate::discretisation::Discretisation;
+use crate::discretisation::quadrature::quadrature;
+use crate::discretisation::rows::Rows;
+use crate::error::Error;
+use crate::model::Model;
+use crate::model::essential::ConstraintForces;
+use crate::problem::{BackgroundGrid, Enforcement, Problem};
+use faer::{Mat, Side};
+use nalgebra::DMatrix;
+
+/// The finer rule has at least this many times more points than the model …
+const FINER: f64 = 3.0;
+/// … and than nodes: enough to see every motion.
+const POINTS_PER_NODE: f64 = 5.0;
+
+/// δ L² \[–\]: far below the energy of any strained motion, far above round-off.
+const ANCHOR: f64 = 1e-4;
+
+/// vᵀ(K + δM)v and vᵀ(K̂ + δM)v under the conditions of the start.
+pub(super) struct Pencil<'a> {
+    pub model: &'a Model,
+    discretisation: &'a Discretisation,
+    finer: Rows,
+    finer_weights: Vec<f64>,
+    /// δM per component of node.
+    anchor: Vec<f64>,
+    /// Constrained components: rows of φ, and which component they hold.
+    constraints: Vec<(usize, Rows)>,
+}
+
+impl<'a> Pencil<'a> {
+    pub fn new(
+        problem: &Problem,
+        discretisation: &'a Discretisation,
+        model: &'a Model,
+    ) -> Result<Pencil<'a>, Error> {
+        let (finer, finer_weights) = finer_rule(problem, discretisation)?;
+        let supports = &discretisation.supports;
+        let d = model.components;
+        let mut anchor = vec![0.0; model.size()];
+        for (q, weight) in discretisation.quadrature.weights.iter().enumerate() {
+            let row = supports.row(q);
+            let share = ANCHOR * weight / row.len() as f64 / model.extent.powi(2);
+            for &node in &supports.nodes[row] {
+                for k in 0..d {
+                    anchor[d * node as usize + k] += share;
+                }
+            }
+        }
+        let constraints = constraints(problem, discretisation, model)?;
+        Ok(Pencil { model, discretisation, finer, finer_weights, anchor, constraints })
+    }
+
+    pub fn finer_points(&self) -> usize {
+        self.finer_weights.len()
+    }
+
+    /// (K + δM)v.
+    pub fn seen(&self, v: &[f64]) -> Vec<f64> {
+        let weights = &self.discretisation.quadrature.weights;
+        self.product(&self.discretisation.supports, weights, v)
+    }
+
+    /// (K̂ + δM)v.
+    pub fn whole(&self, v: &[f64]) -> Vec<f64> {
+        self.product(&self.finer, &self.finer_weights, v)
+    }
+
+    fn product(&self, rows: &Rows, weights: &[f64], v: &[f64]) -> Vec<f64> {
+        let d = self.model.components;
+        let mut out: Vec<f64> = self.anchor.iter().zip(v).map(|(m, v)| m * v).collect();
+        for (q, weight) in weights.iter().enumerate() {
+            let H = rows.deformation_gradient(q, v, d) - Matrix3::identity();
+            let strain = (H + H.transpose()) * (0.5 * weight);
+            for entry in rows.row(q) {
+                let force = strain * rows.grad_phi[entry];
+                for k in 0..d {
+                    out[d * rows.nodes[entry] as usize + k] += force[k];
+                }
+            }
+        }
+        out
+    }
+
+    /// Removes from `v` what the conditions forbid.
+    pub fn project(&self, v: &mut [f64]) {
+        let mut forces = ConstraintForces::default();
+        self.model.constraints.project(0.0, &self.model.lumped_mass, v, &mut forces);
+    }
+
+    /// Number of motions of which less than the share `seen` is seen, by the
+    /// inertia of K − seen K̂ + (1 − seen) δM bordered with the constraints C
+    /// (Sylvester: their number is that of the negative pivots less that of
+    /// the rows of C); `None` where that is too large.
+    pub fn count_below(&self, seen: f64) -> Option<usize> {
+        let n = self.model.size();
+        let held: usize = self.constraints.iter().map(|(_, rows)| rows.len()).sum();
+        if n + held > LARGEST_COUNT {
+            return None;
+        }
+        let mut matrix = Mat::<f64>::zeros(n + held, n + held);
+        let weights = &self.discretisation.quadrature.weights;
+        self.add(&mut matrix, &self.discretisation.supports, weights, 1.0);
+        self.add(&mut matrix, &self.finer, &self.finer_weights, -seen);
+        let size = (0..n).map(|i| matrix[(i, i)].abs()).sum::<f64>() / n as f64;
+        for i in 0..n {
+            matrix[(i, i)] += (1.0 - seen) * self.anchor[i];
+        }
+        let mut next = n;
+        for (component, rows) in &self.constraints {
+            for i in 0..rows.len() {
+                for entry in rows.row(i) {
+                    let column = self.model.components * rows.nodes[entry] as usize + component;
+                    matrix[(next, column)] = size * rows.phi[entry];
+                }
+                next += 1;
+            }
+        }
+        Some(negative_pivots(&matrix).saturating_sub(held))
+    }
+
+    /// matrix += factor · K of these points, lower triangle.
+    fn add(&self, matrix: &mut Mat<f64>, rows: &Rows, weights: &[f64], factor: f64) {
+        let d = self.model.components;
+        for (q, weight) in weights.iter().enumerate() {
+            let half = 0.5 * factor * weight;
+            for a in rows.row(q) {
+                let (node, g) = (d * rows.nodes[a] as usize, rows.grad_phi[a] * half);
+                // Nodes of a support ascend.
+                for b in rows.row(q).take_while(|&b| b <= a) {
+                    let (other, h) = (d * rows.nodes[b] as usize, &rows.grad_phi[b]);
+                    let diagonal = g.dot(h);
+                    for i in 0..d {
+                        matrix[(node + i, other + i)] += diagonal;
+                        for j in 0..d {
+                            matrix[(node + i, other + j)] += g[j] * h[i];
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Rigid motions that the constraints leave free: the dimension of the
+    /// kernel of the constraints on them.
+    pub fn free_rigid_motions(&self) -> usize {
+        let d = self.model.components;
+        let motions = rigid_motions(d, self.model.extent);
+        let mut products = DMatrix::<f64>::zeros(motions.len(), motions.len());
+        let mut rows = 0.0;
+        for (component, held) in &self.constraints {
+            for i in 0..held.len() {
+                let X: Vector3 = held
+                    .row(i)
+                    .map(|e| self.model.positions[held.nodes[e] as usize] * held.phi[e])
+                    .sum::<Vector3>()
+                    - self.model.positions[0];
+                let values = motions.iter().map(|motion| motion(&X)[*component]);
+                let values = nalgebra::DVector::from_iterator(motions.len(), values);
+                products.ger(1.0, &values, &values, 1.0);
+                rows += 1.0;
+            }
+        }
+        let small = 1e-10 * f64::max(rows, 1.0);
+        products.symmetric_eigenvalues().iter().filter(|&&value| value < small).count()
+    }
+}
+
+type Motion = Box<dyn Fn(&Vector3) -> Vector3>;
+
+/// Translations and rotations about the origin, of size one over the extent.
+fn rigid_motions(d: usize, extent: f64) -> Vec<Motion> {
+    let unit = |k: usize| Vector3::ith(k, 1.0);
+    let mut motions: Vec<Motion> = Vec::new();
+    for k in 0..d {
+        motions.push(Box::new(move |_| unit(k)));
+    }
+    for k in if d == 3 { 0..3 } else { 2..3 } {
+        motions.push(Box::new(move |X| unit(k).cross(X) / extent));
+    }
+    motions
+}
+
+/// Points of smaller cells with the plain gradients of the same functions.
+fn finer_rule(
+    problem: &Problem,
+    discretisation: &Discretisation,
+) -> Result<(Rows, Vec<f64>), Error> {
+    let (points, nodes) = (discretisation.supports.len(), discretisation.cloud.positions.len());
+    let more = f64::max(FINER, POINTS_PER_NODE * nodes as f64 / points as f64);
+    let factor = more.powf(-1.0 / problem.dimension.components() as f64);
+    let mut grid: BackgroundGrid = problem.recipe.grid.clone();
+    grid.cell *= factor;
+    grid.boundary_cell = grid.boundary_cell.map(|edge| factor * edge);
+    grid.refinements.iter_mut().for_each(|refinement| refinement.size *= factor);
+    let body = problem.body.section(&problem.dimension)?;
+    let rule = quadrature(&body, &problem.regions, &grid, &problem.dimension)?;
+    Ok((discretisation.rows_at(&rule.positions)?, rule.weights))
+}
+
+fn constraints(
+    problem: &Problem,
+    discretisation: &Discretisation,
+    model: &Model,
+) -> Result<Vec<(usize, Rows)>, Error> {
+    let rows = |set: &crate::model::essential::ConstraintSet| {
+        let rows = match problem.recipe.enforcement {
+            Enforcement::Collocation => {
+                let at = set.rows.iter().map(|row| model.positions[row.node as usize]);
+                discretisation.rows_at(&at.collect::<Vec<_>>())?
+            }
+            Enforcement::Direct => Rows {
+                starts: (0..=set.rows.len()).collect(),
+                nodes: set.rows.iter().map(|row| row.node).collect(),
+                phi: vec![1.0; set.rows.len()],
+                grad_phi: Vec::new(),
+            },
+        };
+        Ok((set.component, rows))
+    };
+    model.constraints.active(0.0).iter().map(rows).collect()
+}
+
+/// Negative eigenvalues of a symmetric matrix, from its Bunch–Kaufman factors.
+fn negative_pivots(matrix: &Mat<f64>) -> usize {
+    let factors = matrix.lblt(Side::Lower);
+    let (diagonal, below) = (factors.B_diag(), factors.B_subdiag());
+    let (n, mut i, mut negative) = (matrix.nrows(), 0, 0);
+    while i < n {
+        if i + 1 < n && below[i] != 0.0 {
+            // A block of two: by its determinant and trace.
+            let (a, b, c) = (diagonal[i], diagonal[i + 1], below[i]);
+            negative += match a * b - c * c < 0.0 {
+                true => 1,
+                false if a + b < 0.0 => 2,
+                false => 0,
+            };
+            i += 2;
+        } else {
+            negative += (diagonal[i] < 0.0) as usize;
+            i += 1;
+        }
+    }
+    negative
+}

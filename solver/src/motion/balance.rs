@@ -1,0 +1,76 @@
+//! How far a body is from equilibrium.
+
+use crate::algebra::packed::{dot, largest};
+use crate::model::Model;
+use crate::model::essential::ConstraintForces;
+use crate::motion::internal_force::{SmallestJacobian, internal_force};
+use crate::motion::step::Buffers;
+
+/// Forces that do not balance at some displacements.
+#[derive(Debug)]
+pub(crate) struct Imbalance {
+    /// f_ext − f_int \[component of node\] \[N\].
+    pub force: Vec<f64>,
+    /// Π M⁻¹(f_ext − f_int), the acceleration that the conditions leave free
+    /// \[component of node\] \[m/s²\].
+    pub acceleration: Vec<f64>,
+    /// Largest nodal force, external or internal \[N\].
+    pub scale: f64,
+    pub smallest_jacobian: SmallestJacobian,
+}
+
+impl Imbalance {
+    /// At displacements `u` \[m\] under the conditions of time `t` \[s\] and the
+    /// external forces in `buffers`; what the conditions take goes to `forces`.
+    pub fn new(
+        model: &Model,
+        u: &[f64],
+        t: f64,
+        buffers: &mut Buffers,
+        forces: &mut ConstraintForces,
+    ) -> Imbalance {
+        let d = model.components;
+        let smallest_jacobian =
+            internal_force(model, u, &mut buffers.workspace, &mut buffers.f_int);
+        let force: Vec<f64> =
+            buffers.f_ext.iter().zip(&buffers.f_int).map(|(given, own)| given - own).collect();
+        let mut acceleration: Vec<f64> =
+            force.iter().enumerate().map(|(i, f)| f / model.inertia[i / d]).collect();
+        model.constraints.project(t, &model.inertia, &mut acceleration, forces);
+        let scale = largest(&buffers.f_int).max(largest(&buffers.f_ext));
+        Imbalance { force, acceleration, scale, smallest_jacobian }
+    }
+
+    /// Leaves out nodes whose balance is not theirs to keep.
+    pub fn ignore(&mut self, model: &Model, nodes: &[u32]) {
+        let d = model.components;
+        for &node in nodes {
+            self.acceleration[d * node as usize..d * (node as usize + 1)].fill(0.0);
+        }
+    }
+
+    /// Largest free unbalanced nodal force \[N\]; NaN if there is one.
+    pub fn largest(&self, model: &Model) -> f64 {
+        let d = model.components;
+        let free =
+            self.acceleration.iter().enumerate().map(|(i, a)| (a * model.inertia[i / d]).abs());
+        free.fold(0.0, |a, f| if f.is_nan() || f > a { f } else { a })
+    }
+
+    /// Largest free unbalanced nodal force over the largest nodal force \[–\].
+    pub fn relative(&self, model: &Model) -> f64 {
+        self.largest(model) / self.scale.max(f64::MIN_POSITIVE)
+    }
+
+    /// M Π M⁻¹(f_ext − f_int), the forces that do work on free displacements \[N\].
+    pub fn free(&self, model: &Model) -> Vec<f64> {
+        let d = model.components;
+        self.acceleration.iter().enumerate().map(|(i, a)| a * model.inertia[i / d]).collect()
+    }
+
+    /// √(rᵀ M⁻¹ r) of the free unbalanced forces r \[N/√kg\]. Not from the full
+    /// forces: next to reactions the rest would drown in round-off.
+    pub fn norm(&self, model: &Model) -> f64 {
+        dot(&self.free(model), &self.acceleration).sqrt()
+    }
+}

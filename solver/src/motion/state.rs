@@ -1,0 +1,61 @@
+//! What evolves.
+
+use crate::algebra::tensor::{Vector3, vector_at};
+use crate::model::Model;
+use crate::model::contact::ContactState;
+use crate::model::essential::ConstraintForces;
+
+/// Displacements and velocities at one instant, and what has been done so far.
+#[derive(Debug)]
+pub struct State {
+    /// Steps taken.
+    pub step: usize,
+    /// \[s\]
+    pub time: f64,
+    /// Nodal parameters u(t) \[component of node\] \[m\].
+    pub displacement: Vec<f64>,
+    /// Velocity at t − Δt/2 \[component of node\] \[m/s\].
+    pub velocity: Vec<f64>,
+    /// The step that led here \[s\]; 0 at the start.
+    pub time_step: f64,
+    /// Turns multipliers m Δu of the last step into forces \[1/s²\].
+    pub force_factor: f64,
+    pub constraint_forces: ConstraintForces,
+    pub(crate) residual_scratch: ConstraintForces,
+    pub contact: ContactState,
+    pub work: Work,
+}
+
+/// Work done up to t − Δt/2 \[J\]; kept up only if asked for.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Work {
+    /// By body forces and tractions.
+    pub external: f64,
+    /// By prescribed displacements and by contact.
+    pub constraint: f64,
+    /// Taken out by damping.
+    pub damping: f64,
+}
+
+impl State {
+    /// At rest in the reference configuration, or with the initial velocity.
+    pub fn new(model: &Model) -> State {
+        State {
+            step: 0,
+            time: 0.0,
+            displacement: vec![0.0; model.size()],
+            velocity: model.initial_velocity.clone(),
+            time_step: 0.0,
+            force_factor: 0.0,
+            constraint_forces: ConstraintForces::default(),
+            residual_scratch: ConstraintForces::default(),
+            contact: ContactState::default(),
+            work: Work::default(),
+        }
+    }
+
+    /// Nodal parameter of a node as a vector; z is 0 in a plane \[m\].
+    pub fn displacement_of(&self, node: usize, components: usize) -> Vector3 {
+        vector_at(&self.displacement, node, components)
+    }
+}

@@ -1,0 +1,229 @@
+//! One step of the central difference method or of dynamic relaxation.
+
+use crate::algebra::tensor::{Vector3, vector_at};
+use crate::model::Model;
+use crate::motion::internal_force::{SmallestJacobian, Workspace, internal_force};
+use crate::motion::state::State;
+use rayon::prelude::*;
+
+/// v(t + Δt/2) = keep · v(t − Δt/2) + push · M⁻¹(f_ext − f_int), then
+/// u(t + Δt) = u(t) + Δt v(t + Δt/2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scheme {
+    /// \[s\]
+    pub time_step: f64,
+    /// \[–\]
+    pub keep: f64,
+    /// \[s\]
+    pub push: f64,
+    /// From the middle of the last step to the middle of this one \[s\].
+    pub mean_step: f64,
+    /// Mass-proportional damping α \[1/s\]; for the work of damping only.
+    pub damping: f64,
+}
+
+impl Scheme {
+    /// Central differences with damping α: with a = αΔt̄/2 and Δt̄ the mean of
+    /// the two steps, (1 + a) v⁺ = (1 − a) v⁻ + Δt̄ M⁻¹f. For
+    /// α = 0 and equal steps this is the seed's eq. 3. The first step starts
+    /// from v(0), half a step back.
+    pub fn central_difference(time_step: f64, last_step: f64, damping: f64) -> Scheme {
+        let mean_step = 0.5 * (time_step + last_step);
+        let a = 0.5 * damping * mean_step;
+        Scheme {
+            time_step,
+            keep: (1.0 - a) / (1.0 + a),
+            push: mean_step / (1.0 + a),
+            mean_step,
+            damping,
+        }
+    }
+
+    /// Dynamic relaxation (Joldes, Wittek, Miller 2011, eq. 10):
+    /// u⁺ = α M⁻¹f + (1 + c²)u − c²u⁻ with α = ((c + 1)Δt/2)².
+    pub fn relaxation(time_step: f64, c: f64) -> Scheme {
+        Scheme {
+            time_step,
+            keep: c * c,
+            push: 0.25 * (c + 1.0) * (c + 1.0) * time_step,
+            mean_step: time_step,
+            damping: 0.0,
+        }
+    }
+}
+
+/// Vectors that a step needs, kept between steps.
+#[derive(Debug)]
+pub struct Buffers {
+    pub workspace: Workspace,
+    /// \[component of node\] \[N\]
+    pub f_int: Vec<f64>,
+    pub f_ext: Vec<f64>,
+    velocity_before: Vec<f64>,
+    /// Whether work is kept up.
+    pub track_work: bool,
+}
+
+impl Buffers {
+    pub fn new(model: &Model, track_work: bool) -> Buffers {
+        let zeros = || vec![0.0; model.size()];
+        Buffers {
+            workspace: Workspace::new(model),
+            f_int: zeros(),
+            f_ext: zeros(),
+            velocity_before: if track_work { zeros() } else { Vec::new() },
+            track_work,
+        }
+    }
+}
+
+/// What a step has seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepReport {
+    pub smallest_jacobian: SmallestJacobian,
+    /// Largest change of a displacement component \[m\]; NaN if there is one.
+    pub largest_increment: f64,
+}
+
+/// Advances `state` by one step; external forces at time `load_time` \[s\],
+/// conditions at `target_time` \[s\].
+pub fn step(
+    model: &Model,
+    scheme: &Scheme,
+    load_time: f64,
+    target_time: f64,
+    state: &mut State,
+    buffers: &mut Buffers,
+) -> StepReport {
+    let smallest_jacobian =
+        internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
+    external_force(model, load_time, &mut buffers.f_ext);
+    if buffers.track_work {
+        buffers.velocity_before.copy_from_slice(&state.velocity);
+    }
+    predict(model, scheme, state, buffers);
+    state.force_factor = 1.0 / (scheme.time_step * scheme.push);
+    let largest_increment = constrain(model, scheme, target_time, state);
+    if buffers.track_work {
+        add_work(model, scheme, state, buffers);
+    }
+    state.step += 1;
+    state.time = target_time;
+    state.time_step = scheme.time_step;
+    StepReport { smallest_jacobian, largest_increment }
+}
+
+/// Sum of all load patterns at time `t` \[s\].
+pub fn external_force(model: &Model, t: f64, f_ext: &mut [f64]) {
+    let length = STRETCH * model.components;
+    let add = |(stretch, f_ext): (usize, &mut [f64])| {
+        f_ext.fill(0.0);
+        for load in &model.loads {
+            let (amplitude, force) = (load.amplitude.at(t), &load.force[stretch * length..]);
+            f_ext.iter_mut().zip(force).for_each(|(f, pattern)| *f += amplitude * pattern);
+        }
+    };
+    match f_ext.len() <= length {
+        true => add((0, f_ext)),
+        false => f_ext.par_chunks_mut(length).enumerate().for_each(add),
+    }
+}
+
+/// Nodes that one thread takes at a time; smaller models stay on one.
+const STRETCH: usize = 4096;
+
+/// The free step.
+fn predict(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers) {
+    let (d, inertia) = (model.components, &model.inertia);
+    let State { velocity, displacement, .. } = state;
+    let Buffers { f_ext, f_int, .. } = buffers;
+    if inertia.len() <= STRETCH {
+        return predict_stretch(d, scheme, inertia, (velocity, displacement), (f_ext, f_int));
+    }
+    let moving = velocity.par_chunks_mut(d * STRETCH).zip(displacement.par_chunks_mut(d * STRETCH));
+    let forces = f_ext.par_chunks(d * STRETCH).zip(f_int.par_chunks(d * STRETCH));
+    inertia.par_chunks(STRETCH).zip(moving).zip(forces).for_each(|((inertia, moving), forces)| {
+        predict_stretch(d, scheme, inertia, moving, forces);
+    });
+}
+
+fn predict_stretch(
+    d: usize,
+    scheme: &Scheme,
+    inertia: &[f64],
+    (velocity, displacement): (&mut [f64], &mut [f64]),
+    (f_ext, f_int): (&[f64], &[f64]),
+) {
+    for (node, mass) in inertia.iter().enumerate() {
+        let push = scheme.push / mass;
+        for i in d * node..d * (node + 1) {
+            velocity[i] = scheme.keep * velocity[i] + push * (f_ext[i] - f_int[i]);
+            displacement[i] += scheme.time_step * velocity[i];
+        }
+    }
+}
+
+/// Prescribed displacements, then contact, on u(t + Δt). Returns the largest
+/// change of a component \[m\].
+fn constrain(model: &Model, scheme: &Scheme, t: f64, state: &mut State) -> f64 {
+    let State { displacement, velocity, constraint_forces, contact, .. } = state;
+    let rate = 1.0 / scheme.time_step;
+    let (positions, mass) = (&model.positions, &model.inertia);
+    model.constraints.enforce(t, positions, mass, displacement, constraint_forces, |i, delta| {
+        velocity[i] += delta * rate;
+    });
+    let increment = largest_or_nan(velocity) * scheme.time_step;
+    if !model.contact.obstacles.is_empty() {
+        contact.enforce(&model.contact, positions, increment, displacement, |i, delta| {
+            velocity[i] += delta * rate;
+        });
+    }
+    increment
+}
+
+/// Largest size of an entry; NaN if there is one, which `f64::max` drops.
+fn largest_or_nan(values: &[f64]) -> f64 {
+    let largest = |values: &[f64]| {
+        let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+        let sum: f64 = values.iter().sum();
+        if sum.is_nan() { f64::NAN } else { largest }
+    };
+    if values.len() <= 3 * STRETCH {
+        return largest(values);
+    }
+    let larger = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+    values.par_chunks(3 * STRETCH).map(largest).reduce(|| 0.0, larger)
+}
+
+/// Adds the work from the middle of the last step to the middle of this one:
+/// force at t times Δt̄ times the mean of the two velocities.
+fn add_work(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers) {
+    let d = model.components;
+    let (mut external, mut total, mut damping) = (0.0, 0.0, 0.0);
+    for (node, mass) in model.inertia.iter().enumerate() {
+        for i in d * node..d * (node + 1) {
+            let mean = 0.5 * (state.velocity[i] + buffers.velocity_before[i]);
+            let gained = mass * (state.velocity[i] - buffers.velocity_before[i]);
+            let dissipated = scheme.damping * mass * mean * mean * scheme.mean_step;
+            let given = (buffers.f_ext[i] - buffers.f_int[i]) * mean * scheme.mean_step;
+            external += buffers.f_ext[i] * mean * scheme.mean_step;
+            // What the forces did not give, constraints and contact gave.
+            total += gained * mean - given + dissipated;
+            damping += dissipated;
+        }
+    }
+    state.work.external += external;
+    state.work.constraint += total;
+    state.work.damping += damping;
+}
+
+/// The node whose displacement is largest or not a number, and that size \[m\].
+pub fn worst_node(model: &Model, state: &State) -> (usize, Vector3, f64) {
+    let size = |node: usize| {
+        let norm = vector_at(&state.displacement, node, model.components).norm();
+        if norm.is_nan() { f64::INFINITY } else { norm }
+    };
+    let worst =
+        (0..model.positions.len()).max_by(|&a, &b| size(a).total_cmp(&size(b))).unwrap_or_default();
+    (worst, model.positions[worst], size(worst))
+}

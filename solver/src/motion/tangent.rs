@@ -1,0 +1,60 @@
+//! Products with the tangent operator K = ∂f_int/∂u, without a matrix.
+#![allow(non_snake_case)]
+
+use crate::model::Model;
+use crate::model::essential::ConstraintForces;
+use crate::motion::internal_force::{Workspace, stiffness_times};
+
+/// v ↦ Π M^(−1/2) K M^(−1/2) Π v with Π the projection onto free displacements.
+pub(crate) struct Tangent<'a> {
+    model: &'a Model,
+    u: &'a [f64],
+    t: f64,
+    workspace: &'a mut Workspace,
+    /// √m per component of node \[√kg\].
+    pub root_mass: Vec<f64>,
+    forces: ConstraintForces,
+}
+
+impl<'a> Tangent<'a> {
+    pub fn new(
+        model: &'a Model,
+        u: &'a [f64],
+        t: f64,
+        workspace: &'a mut Workspace,
+    ) -> Tangent<'a> {
+        let d = model.components;
+        let root_mass =
+            model.inertia.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
+        Tangent { model, u, t, workspace, root_mass, forces: ConstraintForces::default() }
+    }
+
+    pub fn free_size(&self) -> usize {
+        let fixed: usize =
+            self.model.constraints.active(self.t).iter().map(|set| set.rows.len()).sum();
+        self.model.size().saturating_sub(fixed).max(1)
+    }
+
+    /// Removes what the conditions forbid from M^(1/2) u.
+    pub fn project(&mut self, vector: &mut [f64]) {
+        vector.iter_mut().zip(&self.root_mass).for_each(|(x, r)| *x /= r);
+        self.model.constraints.project(self.t, &self.model.inertia, vector, &mut self.forces);
+        vector.iter_mut().zip(&self.root_mass).for_each(|(x, r)| *x *= r);
+    }
+
+    /// The scaled product, projected.
+    pub fn apply(&mut self, vector: &[f64]) -> Vec<f64> {
+        let direction: Vec<f64> = vector.iter().zip(&self.root_mass).map(|(x, r)| x / r).collect();
+        let mut product = self.stiffness_times(&direction);
+        product.iter_mut().zip(&self.root_mass).for_each(|(p, r)| *p /= r);
+        self.project(&mut product);
+        product
+    }
+
+    /// K v \[N\], not projected.
+    pub fn stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.u.len()];
+        stiffness_times(self.model, self.u, direction, self.workspace, &mut product);
+        product
+    }
+}
