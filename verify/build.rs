@@ -29,7 +29,7 @@ fn fingerprint() -> u64 {
     let here = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").unwrap_or_default());
     let mut hasher = DefaultHasher::new();
     for folder in
-        ["../solver/src", "src/accuracy", "src/files", "src/run", "src/scene", "src/store"]
+        ["../solver/src", "src/accuracy", "src/files", "src/run", "src/scene", "src/explore/store"]
     {
         println!("cargo::rerun-if-changed={folder}");
         for file in sources(&here.join(folder)) {

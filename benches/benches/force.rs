@@ -4,10 +4,10 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use mtled::discretisation::Discretisation;
 use mtled_benches::{Limit, Size, Unit, note, settings, smoke};
-use mtled_verify::bench::limits::{Triad, multiply_adds, operations};
-use mtled_verify::bench::plain::PlainLoop;
-use mtled_verify::bench::pose::{Place, Subject, cube};
 use mtled_verify::machine::caches;
+use mtled_verify::speed::bench::limits::{Triad, multiply_adds, operations};
+use mtled_verify::speed::bench::plain::PlainLoop;
+use mtled_verify::speed::bench::pose::{Place, Subject, cube};
 use rayon::ThreadPoolBuilder;
 
 const TMP: &str = env!("CARGO_TARGET_TMPDIR");

@@ -4,11 +4,11 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use mtled::discretisation::Discretisation;
 use mtled::problem::Problem;
 use mtled_benches::{Size, note, settings, smoke};
-use mtled_verify::bench::pose::cube;
-use mtled_verify::bench::{Marcher, carried};
-use mtled_verify::cases::unpack;
+use mtled_verify::bundled::unpack;
 use mtled_verify::run::solve_case;
 use mtled_verify::scene::Case;
+use mtled_verify::speed::bench::pose::cube;
+use mtled_verify::speed::bench::{Marcher, carried};
 use std::path::Path;
 
 const TMP: &str = env!("CARGO_TARGET_TMPDIR");

@@ -10,7 +10,7 @@ use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
 use mtled::problem::{Basis, Gradients, Problem};
 use mtled_benches::{Size, note, settings, smoke};
-use mtled_verify::bench::pose::cube;
+use mtled_verify::speed::bench::pose::cube;
 use std::hint::black_box;
 
 const TMP: &str = env!("CARGO_TARGET_TMPDIR");

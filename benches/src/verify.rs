@@ -1,8 +1,8 @@
 //! The table of studies from a `results.json` of `mtled verify`.
 
 use anyhow::Result;
-use mtled_verify::report::{bound_text, four_digits, read_report};
-use mtled_verify::study::{Check, Report};
+use mtled_checks::report::{bound_text, four_digits, read_report};
+use mtled_checks::study::{Check, Report};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -67,7 +67,7 @@ fn cell(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mtled_verify::study::{Bound, Kind, Provenance, Study};
+    use mtled_checks::study::{Bound, Kind, Provenance, Study};
 
     fn check(id: &str, value: f64) -> Check {
         Check::new(id, "error", Kind::Exact, value, Bound::AtMost(0.05), "m", "theory")

@@ -1,33 +1,25 @@
 //! Verification harness of the meshless solver `mtled`: case files
 //! ([`scene`]) become problems, runs ([`run`]) become results, studies
-//! ([`studies`], [`race`]) become plain data ([`study`]), and [`report`] turns those into
-//! pages and files.
+//! ([`studies`], [`explore`], [`speed`]) become the plain data of [`mtled_checks::study`],
+//! and [`mtled_checks::report`] turns those into pages and files.
 
+// The rooms of the house: each uses only what stands above it.
 pub mod exact;
 pub mod files;
+pub mod machine;
+
 pub mod scene;
 
-pub mod measure;
 pub mod reference;
-pub mod study;
 
-pub mod gate;
-pub mod report;
-
-pub mod cases;
-pub mod machine;
+pub mod bundled;
 pub mod run;
 
 pub mod accuracy;
+pub mod specimens;
 pub mod studies;
 
-pub mod bench;
-pub mod race;
-
-pub mod store;
-pub mod sweep;
-
-pub mod budget;
-pub mod tune;
+pub mod explore;
+pub mod speed;
 
 pub mod cli;

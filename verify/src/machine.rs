@@ -1,6 +1,6 @@
 //! Which code runs where, and what it has used.
 
-use crate::study::Provenance;
+use mtled_checks::study::Provenance;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Version, commit, compiler and processor of this run.

@@ -1,7 +1,7 @@
 //! The gate: what is the same, what got worse, and what a baseline remembers.
 
-use mtled_verify::gate::{Baseline, Clouds, Reason, compare, compare_runs, difference, update};
-use mtled_verify::study::{
+use mtled_checks::gate::{Baseline, Clouds, Reason, compare, compare_runs, difference, update};
+use mtled_checks::study::{
     BandSource, Bound, Check, Comparison, Kind, Provenance, Report, Scale, Study, Verdict,
 };
 
@@ -219,7 +219,7 @@ fn an_update_without_new_clouds_keeps_the_scatter_and_moves_the_band() {
     assert_eq!(new.band.spread, old.band.spread);
     assert!(new.band.low < 0.001 && new.band.high > 0.001 && new.band.high < 0.002);
     // Two runs are further apart than a run and a mean: √2 and not √(1 + 1/21).
-    let width = |band: mtled_verify::study::Band| (band.high / band.low).ln();
+    let width = |band: mtled_checks::study::Band| (band.high / band.low).ln();
     let ratio = width(new.band) / width(old.band);
     assert!((ratio - (2.0f64 / (1.0 + 1.0 / 21.0)).sqrt()).abs() < 1e-9, "{ratio}");
     let lines = difference(Some(&first), &second);

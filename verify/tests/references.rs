@@ -3,7 +3,7 @@
 mod common;
 
 use common::{BLOCK, block, json, synthetic};
-use mtled_verify::cases::{CASES, REFERENCES};
+use mtled_verify::bundled::{CASES, REFERENCES};
 use mtled_verify::reference::compare::compare;
 use mtled_verify::reference::{Basis, Family, Values, agree, read_reference};
 use mtled_verify::scene::{parse_case, problem_hash, read_case};

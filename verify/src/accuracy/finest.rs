@@ -1,6 +1,6 @@
 //! A field of the bonded block on a finer mesh than the reference has.
 
-use crate::cases::carried_reference;
+use crate::bundled::carried_reference;
 use crate::reference::read_reference;
 use crate::scene::Case;
 use anyhow::{Context, Result};

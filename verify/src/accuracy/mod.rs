@@ -8,7 +8,7 @@ pub use finest::{Finest, finest};
 pub use own::extrapolated;
 pub use values::{SAMPLES, values};
 
-use crate::cases::REFERENCES;
+use crate::bundled::REFERENCES;
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{Agreed, Family, Quantity, ReferenceError, agree, read_reference};
 use crate::scene::{Case, ProbeKind};

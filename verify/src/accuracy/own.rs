@@ -4,8 +4,8 @@
 use super::Truth;
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{Agreed, Family, Quantity, quantities, size_of};
-use crate::report::four_digits;
 use crate::scene::Case;
+use mtled_checks::report::four_digits;
 use std::collections::BTreeMap;
 
 /// The order in which displacements of this method fall with the spacing, at least,

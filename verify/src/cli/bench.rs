@@ -1,7 +1,7 @@
 //! `mtled bench`.
 
-use super::{Common, Format, print_data};
-use crate::bench::{measure, to_markdown};
+use crate::cli::{Common, Format, print_data};
+use crate::speed::bench::{measure, to_markdown};
 use clap::Args;
 
 #[derive(Debug, Args)]

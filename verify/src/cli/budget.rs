@@ -1,16 +1,16 @@
 //! `mtled budget`.
 
-use super::progress::ManyRuns;
-use super::sweep::{STORE, command_line, truth};
-use super::{Common, Format, print_data};
 use crate::accuracy::Group;
-use crate::budget::{Wanted, budget, budget_study, budget_text};
+use crate::cli::progress::ManyRuns;
+use crate::cli::sweep::{STORE, command_line, truth};
+use crate::cli::{Common, Format, print_data};
+use crate::explore::budget::{Wanted, budget, budget_study, budget_text};
+use crate::explore::store::{Source, Store};
 use crate::machine::provenance;
-use crate::report::{json, write_report};
-use crate::store::{Source, Store};
-use crate::study::Report;
 use anyhow::Result;
 use clap::Args;
+use mtled_checks::report::{json, write_report};
+use mtled_checks::study::Report;
 use std::path::PathBuf;
 use std::time::Instant;
 

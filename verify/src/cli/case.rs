@@ -1,7 +1,7 @@
 //! `mtled case …`.
 
-use super::{COULD_NOT_RUN, print_data};
-use crate::cases::CASES;
+use crate::bundled::CASES;
+use crate::cli::{COULD_NOT_RUN, print_data};
 use crate::run::refuse_beyond_memory;
 use crate::scene::{Case, Diagnostic, read_case, schema};
 use anyhow::bail;

@@ -1,9 +1,9 @@
 //! Progress of many runs: a bar with the time left on a terminal, a line now and then
 //! elsewhere.
 
-use super::Common;
-use super::sweep::stopped;
-use crate::store::Progress;
+use crate::cli::Common;
+use crate::cli::sweep::stopped;
+use crate::explore::store::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};

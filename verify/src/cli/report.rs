@@ -1,9 +1,9 @@
 //! `mtled report`.
 
-use super::{Common, Format, print_data};
-use crate::gate::{compare as compare_with, compare_runs, read_baseline};
-use crate::report::{human, json, read_report, versus, write_atomically, write_report};
+use crate::cli::{Common, Format, print_data};
 use clap::Args;
+use mtled_checks::gate::{compare as compare_with, compare_runs, read_baseline};
+use mtled_checks::report::{human, json, read_report, versus, write_atomically, write_report};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

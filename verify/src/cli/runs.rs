@@ -1,8 +1,8 @@
 //! `mtled runs` and `mtled merge`.
 
-use super::sweep::STORE;
-use super::{Common, Format, print_data};
-use crate::store::{Outcome, Record, Store, solver_identity};
+use crate::cli::sweep::STORE;
+use crate::cli::{Common, Format, print_data};
+use crate::explore::store::{Outcome, Record, Store, solver_identity};
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand};
 use comfy_table::{Table, presets};

@@ -1,7 +1,7 @@
 //! `mtled solve`.
 
-use super::case::{diagnose, fits, load};
-use super::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
+use crate::cli::case::{diagnose, fits, load};
+use crate::cli::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
 use crate::run::{
     Prepared, Record, Recorder, Solved, march_on, prepare_to_run, summary_text, write_outputs,
     write_recorded,

@@ -1,15 +1,15 @@
 //! `mtled study`: cases over ranges of recipes, and the race.
 
-use super::python::installed;
-use super::sweep::{SweepArgs, sweep};
-use super::{Common, Format, print_data};
+use crate::cli::python::installed;
+use crate::cli::sweep::{SweepArgs, sweep};
+use crate::cli::{Common, Format, print_data};
+use crate::explore::sweep::Subject;
 use crate::machine::provenance;
-use crate::race::{Challenge, Code, Interpreter, Race, race, run_here};
-use crate::report::{json, markdown_tables, write_atomically, write_report};
-use crate::study::Report;
-use crate::sweep::Subject;
+use crate::speed::race::{Challenge, Code, Interpreter, Race, race, run_here};
 use anyhow::Result;
 use clap::{Args, Subcommand, ValueEnum};
+use mtled_checks::report::{json, markdown_tables, write_atomically, write_report};
+use mtled_checks::study::Report;
 use std::path::PathBuf;
 
 #[derive(Debug, Subcommand)]
@@ -110,7 +110,7 @@ fn race_study(arguments: &RaceArgs, common: &Common) -> Result<u8> {
 /// The finite-element codes that are installed here.
 fn interpreters(arguments: &RaceArgs, say: &dyn Fn(&str)) -> Vec<Interpreter> {
     let Ok(reference) =
-        arguments.reference.clone().map_or_else(super::reference_solve::checkout, Ok)
+        arguments.reference.clone().map_or_else(crate::cli::reference::solve::checkout, Ok)
     else {
         say("no checkout is around: the finite-element codes are shown by stored timings");
         return Vec::new();

@@ -1,16 +1,16 @@
 //! `mtled study consistency|patch|timestep|convergence|stability`.
 
-use super::progress::ManyRuns;
-use super::{Common, Format, STOPPED, print_data};
 use crate::accuracy::Group;
+use crate::cli::progress::ManyRuns;
+use crate::cli::{Common, Format, STOPPED, print_data};
+use crate::explore::store::{Source, Stopped, Store};
+use crate::explore::sweep::{Axis, Plan, Subject, Sweep, TruthWanted};
 use crate::machine::provenance;
-use crate::report::{json, markdown_tables, write_report};
 use crate::scene::Knob;
-use crate::store::{Source, Stopped, Store};
-use crate::study::Report;
-use crate::sweep::{Axis, Plan, Subject, Sweep, TruthWanted};
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use mtled_checks::report::{json, markdown_tables, write_report};
+use mtled_checks::study::Report;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

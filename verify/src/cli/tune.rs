@@ -1,20 +1,20 @@
 //! `mtled tune`.
 
-use super::progress::ManyRuns;
-use super::sweep::{Ranges, STORE, command_line, publish, truth};
-use super::{Common, Format, print_data};
 use crate::accuracy::Group;
-use crate::cases::CASES;
-use crate::machine::provenance;
-use crate::report::{json, write_atomically, write_report};
-use crate::scene::{Knob, Setting, movable};
-use crate::store::{Source, Store};
-use crate::study::{Report, Study};
-use crate::tune::{
+use crate::bundled::CASES;
+use crate::cli::progress::ManyRuns;
+use crate::cli::sweep::{Ranges, STORE, command_line, publish, truth};
+use crate::cli::{Common, Format, print_data};
+use crate::explore::store::{Source, Store};
+use crate::explore::tune::{
     Goal, Tuned, Wanted, recommend, recommendation_study, tune, tune_study, tune_text,
 };
+use crate::machine::provenance;
+use crate::scene::{Knob, Setting, movable};
 use anyhow::Result;
 use clap::Args;
+use mtled_checks::report::{json, write_atomically, write_report};
+use mtled_checks::study::{Report, Study};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

@@ -26,7 +26,7 @@
 //! Convergence; the limits of p after Oberkampf and Roy, Verification and
 //! Validation in Scientific Computing, 2010, section 8.6.
 
-use crate::measure::{observed_order, richardson};
+use mtled_checks::measure::{observed_order, richardson};
 use std::fmt;
 
 /// Relative size of differences that say nothing \[–\].
@@ -182,8 +182,8 @@ fn cosine(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::{asymptotic_ratio, grid_convergence_index};
     use approx::assert_relative_eq;
+    use mtled_checks::measure::{asymptotic_ratio, grid_convergence_index};
     use proptest::prelude::*;
 
     /// NASA NPARC: pressure recovery on three grids, ratio 2.

@@ -2,12 +2,12 @@
 #![allow(non_snake_case)]
 
 use crate::machine::available_memory;
-use crate::report::four_digits;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::nodes::{SizeField, WantedSizes};
 use mtled::geometry::GeometryError;
 use mtled::geometry::selection::Selector;
 use mtled::problem::{Cloud, Dimension, InsideRule, Problem, Refinement};
+use mtled_checks::report::four_digits;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -210,7 +210,7 @@ mod tests {
 
     fn carried(name: &str) -> Problem {
         let folder = tempfile::tempdir().unwrap();
-        let cases = crate::cases::unpack(folder.path()).unwrap();
+        let cases = crate::bundled::unpack(folder.path()).unwrap();
         read_case(&cases.join(format!("{name}.toml"))).unwrap().problem
     }
 

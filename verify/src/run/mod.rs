@@ -5,6 +5,7 @@ mod output;
 mod probes;
 mod record;
 mod result;
+pub mod vtu;
 mod work;
 
 pub use memory::{Footprint, MemoryShortage, refuse_beyond_memory};

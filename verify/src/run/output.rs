@@ -2,13 +2,13 @@
 #![allow(non_snake_case)]
 
 use super::{Prepared, Record, Solved, result_json};
-use crate::report::vtu::{PointArray, VtuFrame, write_pvd, write_vtu};
-use crate::report::write_atomically;
+use crate::run::vtu::{PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::scene::Case;
 use anyhow::Result;
 use mtled::algebra::tensor::Matrix3;
 use mtled::motion::internal_force::projected_mean_stress;
 use mtled::problem::{Motion, Problem};
+use mtled_checks::report::write_atomically;
 use std::path::Path;
 
 /// Writes everything of a run to `dir` and returns what stands in

@@ -2,11 +2,11 @@
 
 use super::{Footprint, Record, Solved, Work};
 use crate::machine::{peak_memory, provenance};
-use crate::report::four_digits;
 use crate::scene::{Case, ProbeKind};
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Warning;
 use mtled::problem::Motion;
+use mtled_checks::report::four_digits;
 use serde_json::{Value, json};
 
 /// Version of the layout of `result.json`.

@@ -1,6 +1,6 @@
 //! The text of a case file with the place of every key in it.
 
-use super::diagnostic::{Diagnostic, Location};
+use crate::scene::diagnostic::{Diagnostic, Location};
 use std::ops::Range;
 use toml_edit::{Item, TableLike};
 

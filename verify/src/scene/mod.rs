@@ -2,26 +2,18 @@
 //! reported with file, line, column, key and what was expected.
 
 mod build;
-mod build_conditions;
-mod build_geometry;
-mod build_material;
-mod build_recipe;
-mod build_time;
 mod diagnostic;
 mod document;
 mod edit;
-mod edit_load;
 mod format;
-mod format_geometry;
-mod format_recipe;
 mod knob;
 mod problem_hash;
 mod reading;
 
-pub use build_recipe::defaults;
+pub use build::recipe::defaults;
 pub use diagnostic::{Diagnostic, Location, one_error};
+pub use edit::load::movable;
 pub use edit::{EditError, edited};
-pub use edit_load::movable;
 pub use knob::{KNOBS, Knob, Level, Setting};
 pub use problem_hash::problem_hash;
 

@@ -1,9 +1,9 @@
 //! TOML text → the structs of the format, with serde's complaints turned into
 //! located diagnostics.
 
-use super::diagnostic::Diagnostic;
-use super::document::Document;
-use super::format::CaseFormat;
+use crate::scene::diagnostic::Diagnostic;
+use crate::scene::document::Document;
+use crate::scene::format::CaseFormat;
 use std::ops::Range;
 
 /// Reads the tables; the first mistake of a key or type is returned.

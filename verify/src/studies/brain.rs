@@ -1,17 +1,17 @@
 //! The seed's experiment: a slice of brain pushed at a craniotomy.
 #![allow(non_snake_case)]
 
-use super::{Workbench, respaced, spacing_of};
 use crate::run::{MassCentre, Recorder, Solved, centres_of_mass, march, prepare};
 use crate::scene::Case;
-use crate::study::{
-    Bound, Cell, Check, Column, Drawing, Figure, Kind, Layer, LayerStyle, Study, Table,
-};
+use crate::studies::workbench::{Workbench, respaced, spacing_of};
 use anyhow::{Context, Result};
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{LabelField, Shape};
 use mtled::model::contact::gap;
 use mtled::problem::{Dimension, Motion};
+use mtled_checks::study::{
+    Bound, Cell, Check, Column, Drawing, Figure, Kind, Layer, LayerStyle, Study, Table,
+};
 
 /// What one run of the slice gives.
 struct Run {

@@ -1,0 +1,253 @@
+//! What an inspection says, to people and to programs.
+
+use crate::cli::inspect::{Inspection, LARGEST_SEARCH, Place};
+use crate::machine::peak_memory;
+use crate::run::Footprint;
+use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::Warning;
+use mtled::model::zero_energy::{SEEN, SoftMotion, ZeroEnergyModes};
+use mtled::problem::{Dimension, Motion};
+use mtled_checks::report::four_digits;
+use serde_json::{Value, json};
+
+/// Beyond this share of the largest accepted condition a support is called poor.
+const POOR: f64 = 0.1;
+/// A step that is set where the spacing is below this share of the largest is worth a word.
+const FINE: f64 = 0.5;
+
+pub fn to_text(inspection: &Inspection) -> String {
+    let Inspection { case, prepared, .. } = inspection;
+    let (discretisation, model) = (&prepared.discretisation, &prepared.model);
+    let (nodes, points) = (model.positions.len(), discretisation.supports.len());
+    let (few, many) = inspection.support;
+    let mut lines = vec![
+        format!("{}: {}", case.name, case.title),
+        format!(
+            "nodes               {nodes}, {} of them on the boundary; all are covered",
+            discretisation.cloud.on_boundary.iter().filter(|b| **b).count()
+        ),
+        format!(
+            "quadrature points   {points}: {} per node",
+            four_digits(points as f64 / nodes as f64)
+        ),
+        format!(
+            "nodes per support   {} in the mean, {few} to {many}; {} supports enlarged",
+            four_digits(discretisation.mean_support()),
+            discretisation.enlarged
+        ),
+        range("nodal spacing", "m", &inspection.spacings),
+        range("lumped mass", "kg", &inspection.masses),
+        format!(
+            "worst conditions    of at most {} that are accepted",
+            four_digits(inspection.largest_condition)
+        ),
+    ];
+    lines.extend(inspection.conditions.iter().map(|place| {
+        let Place { value, index, position } = place;
+        format!("                    {} at point {index} ({})", four_digits(*value), show(position))
+    }));
+    if let Some(correction) = discretisation.correction {
+        lines.push(format!(
+            "gradients           consistent to {:.1e} of {:.1e} wanted, {} iterations; plain ones miss \
+             by {:.1e}",
+            correction.residual, correction.tolerance, correction.iterations, correction.defect
+        ));
+    }
+    lines.push(format!(
+        "critical step       {} s at rest, {} times the per-point bound of {} s; weakest about node \
+         {} ({})",
+        four_digits(inspection.critical.time_step),
+        four_digits(inspection.critical.time_step / model.bound),
+        four_digits(model.bound),
+        inspection.weakest.index,
+        show(&inspection.weakest.position)
+    ));
+    lines.push(format!(
+        "memory              {} MB are read in each step, {:.0} bytes per point",
+        four_digits(model.bytes_per_step() as f64 / 1e6),
+        model.bytes_per_step() as f64 / points as f64
+    ));
+    lines.extend(memory_text(inspection));
+    lines.extend(modes_text(inspection.modes.as_ref()));
+    lines.push("advice".into());
+    lines.extend(advice(inspection).into_iter().map(|line| format!("  {line}")));
+    lines.join("\n") + "\n"
+}
+
+/// Memory of the set-up at its peak, and what was estimated before.
+fn memory_text(inspection: &Inspection) -> Option<String> {
+    let (peak, model) = (peak_memory()? as f64, &inspection.prepared.model);
+    let (nodes, points) = (model.positions.len() as f64, model.point_positions.len() as f64);
+    let estimate = Footprint::of(&inspection.case.problem).ok()?.bytes;
+    Some(format!(
+        "                    {:.0} MB at the peak of the set-up ({:.0} estimated): {:.0} bytes per point, {:.0} per \
+         node",
+        peak / 1e6,
+        estimate / 1e6,
+        peak / points,
+        peak / nodes
+    ))
+}
+
+fn modes_text(modes: Option<&ZeroEnergyModes>) -> Vec<String> {
+    let Some(modes) = modes else {
+        return vec![format!(
+            "zero-energy modes   not looked for above {LARGEST_SEARCH} nodes or with --modes never; \
+             --modes always looks"
+        )];
+    };
+    let number = match modes.count {
+        Some(count) => count.to_string(),
+        None => format!("at least {} (too large a body to count all)", modes.at_least()),
+    };
+    let mut lines = vec![
+        format!("rigid motions       {} left free by the conditions of the start", modes.rigid),
+        format!(
+            "zero-energy modes   {number} beyond the rigid ones: motions of which less than {SEEN} of the \
+             strain energy is seen, compared with {} points",
+            modes.finer_points
+        ),
+    ];
+    lines.extend(modes.softest.iter().take(3).map(|motion| {
+        let SoftMotion { share, node, position } = motion;
+        format!(
+            "                    {share:.4} is seen, largest at node {node} ({})",
+            show(position)
+        )
+    }));
+    lines
+}
+
+/// What should be done, in plain sentences.
+pub fn advice(inspection: &Inspection) -> Vec<String> {
+    let (discretisation, problem) = (&inspection.prepared.discretisation, &inspection.case.problem);
+    let mut advice: Vec<String> = Vec::new();
+    if let Some(modes) = &inspection.modes {
+        if modes.at_least() > 0 {
+            advice.push(
+                "There are motions that cost no energy and will grow without a word: use smaller cells. \
+                 discretisation.grid.cells_per_spacing = 1.26 gives two points per node in space."
+                    .into(),
+            );
+        }
+        if modes.rigid > 0 && matches!(problem.motion, Motion::Static(_)) {
+            advice.push(format!(
+                "The conditions leave {} rigid motions free: a static answer is settled only if the loads \
+                 balance; hold the body, or run it as time.method = \"dynamic\".",
+                modes.rigid
+            ));
+        }
+    }
+    advice.extend(discretisation.warnings().iter().map(|warning| {
+        let text = warning.to_string();
+        text[..1].to_uppercase() + &text[1..] + "."
+    }));
+    let worst = inspection.conditions.first();
+    if let Some(place) = worst.filter(|place| place.value > POOR * inspection.largest_condition) {
+        advice.push(format!(
+            "The support of point {} is close to being refused: raise discretisation.dilation from {}, or \
+             add nodes at ({}).",
+            place.index,
+            problem.recipe.dilation,
+            show(&place.position)
+        ));
+    }
+    let [_, largest] = inspection.spacings;
+    if inspection.weakest.value < FINE * largest.value {
+        advice.push(format!(
+            "The step is set by the fine nodes about ({}): a coarser spacing there makes every step \
+             longer.",
+            show(&inspection.weakest.position)
+        ));
+    }
+    if advice.is_empty() {
+        advice.push("Nothing stands against running this case.".into());
+    }
+    advice
+}
+
+pub fn to_json(inspection: &Inspection) -> Value {
+    let Inspection { case, prepared, .. } = inspection;
+    let (discretisation, model) = (&prepared.discretisation, &prepared.model);
+    let (nodes, points) = (model.positions.len(), discretisation.supports.len());
+    let [smallest, largest] = &inspection.spacings;
+    json!({
+        "schema_version": 1,
+        "case": case.name,
+        "dimension": match case.problem.dimension {
+            Dimension::Three => "3d",
+            Dimension::PlaneStrain { .. } => "plane_strain",
+        },
+        "nodes": nodes,
+        "quadrature_points": points,
+        "points_per_node": points as f64 / nodes as f64,
+        "support": {
+            "smallest": inspection.support.0,
+            "mean": discretisation.mean_support(),
+            "largest": inspection.support.1,
+            "enlarged": discretisation.enlarged,
+        },
+        "uncovered_nodes": 0,
+        "worst_conditions": inspection.conditions.iter().map(|p| located(p, "point")).collect::<Vec<_>>(),
+        "largest_condition_accepted": inspection.largest_condition,
+        "mass_kg": inspection.masses.iter().map(|p| located(p, "node")).collect::<Vec<_>>(),
+        "spacing_m": inspection.spacings.iter().map(|p| located(p, "node")).collect::<Vec<_>>(),
+        "spacing_ratio": largest.value / smallest.value,
+        "gradients": discretisation.correction.map(|c| json!({
+            "iterations": c.iterations,
+            "relative_residual": c.residual,
+            "tolerance": c.tolerance,
+            "plain_defect": c.defect,
+            "bodies": c.bodies,
+        })),
+        "critical_time_step_s": inspection.critical.time_step,
+        "per_point_bound_s": model.bound,
+        "weakest": {
+            "node": inspection.weakest.index,
+            "position_m": array(&inspection.weakest.position),
+        },
+        "bytes_per_step": model.bytes_per_step(),
+        "estimated_memory_bytes": Footprint::of(&case.problem).ok().map(|f| f.bytes.round()),
+        "peak_memory_bytes": peak_memory(),
+        "zero_energy_modes": inspection.modes.as_ref().map(|modes| json!({
+            "count": modes.count,
+            "at_least": modes.at_least(),
+            "threshold": SEEN,
+            "free_rigid_motions": modes.rigid,
+            "finer_points": modes.finer_points,
+            "softest": modes.softest.iter().map(|motion| json!({
+                "share": motion.share,
+                "node": motion.node,
+                "position_m": array(&motion.position),
+            })).collect::<Vec<_>>(),
+        })),
+        "warnings": discretisation.warnings().iter().map(Warning::to_string).collect::<Vec<_>>(),
+        "advice": advice(inspection),
+    })
+}
+
+fn range(name: &str, unit: &str, [least, most]: &[Place; 2]) -> String {
+    format!(
+        "{name:<20}{} {unit} at node {} ({}) to {} {unit} at node {} ({}): ratio {}",
+        four_digits(least.value),
+        least.index,
+        show(&least.position),
+        four_digits(most.value),
+        most.index,
+        show(&most.position),
+        four_digits(most.value / least.value)
+    )
+}
+
+fn located(place: &Place, what: &str) -> Value {
+    json!({ "value": place.value, what: place.index, "position_m": array(&place.position) })
+}
+
+fn array(v: &Vector3) -> [f64; 3] {
+    [v.x, v.y, v.z]
+}
+
+/// Coordinates in metres.
+fn show(v: &Vector3) -> String {
+    format!("{}, {}, {} m", four_digits(v.x), four_digits(v.y), four_digits(v.z))
+}

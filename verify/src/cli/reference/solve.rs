@@ -1,0 +1,261 @@
+//! `mtled reference solve`: runs the Python side.
+
+use crate::cli::python::{Python, python_for};
+use crate::cli::reference::case_names;
+use crate::cli::solve::progress_bar;
+use crate::cli::{Common, STOPPED, print_data};
+use crate::reference::compare::{SAME, compare};
+use crate::reference::{CODES, ReferenceFile, read_reference};
+use crate::run::interrupted;
+use crate::scene::read_case;
+use anyhow::{Context, Result, anyhow, bail};
+use clap::Args;
+use indicatif::ProgressBar;
+use serde::Deserialize;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+#[derive(Debug, Args)]
+pub struct SolveReferenceArgs {
+    /// Names of cases [default: all].
+    cases: Vec<String>,
+    /// The code to solve with; both if left out.
+    #[arg(long, value_parser = CODES)]
+    code: Option<String>,
+    /// Solve this mesh only, 0 the coarsest; may be repeated. The solution is
+    /// written to OUT/CASE.CODE.json and not merged.
+    #[arg(long = "mesh", value_name = "N", value_parser = clap::value_parser!(u8).range(0..=2))]
+    meshes: Vec<u8>,
+    /// Folder of the references [default: data in the folder `reference`].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write nothing: compare with what is stored, the coarsest mesh if none is
+    /// named. Exit code 1 where a number has moved by more than 1e-6.
+    #[arg(long)]
+    compare: bool,
+    /// The folder `reference` of a checkout [default: found upward from here].
+    #[arg(long, value_name = "DIR")]
+    reference: Option<PathBuf>,
+}
+
+/// A line of progress from Python.
+#[derive(Debug, Deserialize)]
+struct Progress {
+    progress: f64,
+    #[serde(default)]
+    message: String,
+}
+
+/// How a run of Python ended.
+enum Ended {
+    Well,
+    Stopped,
+}
+
+pub fn solve(arguments: &SolveReferenceArgs, common: &Common) -> Result<u8> {
+    let reference = match &arguments.reference {
+        Some(folder) => folder.clone(),
+        None => checkout()?,
+    };
+    let known = case_names(&reference.join("cases"))?;
+    if let Some(name) = arguments.cases.iter().find(|name| !known.contains(name)) {
+        bail!("there is no case \"{name}\"; there are {}", known.join(", "));
+    }
+    let cases = if arguments.cases.is_empty() { known } else { arguments.cases.clone() };
+    let partial = !arguments.meshes.is_empty();
+    if partial && !arguments.compare && arguments.out.is_none() {
+        bail!("--mesh needs --out DIR or --compare: some meshes alone are no reference");
+    }
+    let say = |text: &str| {
+        if !common.quiet {
+            eprintln!("{text}");
+        }
+    };
+    let mut code = 0;
+    for name in CODES.iter().filter(|c| arguments.code.as_deref().is_none_or(|code| code == **c)) {
+        let python = python_for(name, &reference, &say)?;
+        for case in &cases {
+            let job =
+                Job { arguments, common, reference: &reference, python: &python, case, code: name };
+            match job.run()? {
+                None => return Ok(STOPPED),
+                Some(worse) => code = code.max(worse),
+            }
+        }
+    }
+    Ok(code)
+}
+
+/// The folder `reference` of the checkout around the working directory.
+pub fn checkout() -> Result<PathBuf> {
+    let here = std::env::current_dir()?;
+    let found = here.ancestors().map(|folder| folder.join("reference"));
+    let found = found.into_iter().find(|folder| folder.join("pyproject.toml").is_file());
+    found.ok_or_else(|| {
+        anyhow!("no folder `reference` with the Python package was found; work in a checkout or name it with --reference DIR")
+    })
+}
+
+/// One case with one code.
+struct Job<'a> {
+    arguments: &'a SolveReferenceArgs,
+    common: &'a Common,
+    reference: &'a Path,
+    python: &'a Python,
+    case: &'a str,
+    code: &'a str,
+}
+
+impl Job<'_> {
+    /// The exit code, none if the user stopped it.
+    fn run(&self) -> Result<Option<u8>> {
+        let scratch = tempfile::tempdir()?;
+        let solution = scratch.path().join("solution.json");
+        let bar = progress_bar(self.common);
+        let ended = self.solve(&solution, &bar);
+        bar.finish_and_clear();
+        if let Ended::Stopped = ended? {
+            return Ok(None);
+        }
+        if self.arguments.compare {
+            return self.compared(&solution).map(Some);
+        }
+        let out = self.arguments.out.clone().unwrap_or_else(|| self.reference.join("data"));
+        std::fs::create_dir_all(&out)?;
+        if self.arguments.meshes.is_empty() {
+            let mut merge = self.python.module(self.reference);
+            merge.arg("merge").arg(self.case_file()).arg("--data").arg(&out).arg(&solution);
+            run(merge, &mut |_| {}).with_context(|| self.words())?;
+        } else {
+            std::fs::copy(&solution, out.join(format!("{}.{}.json", self.case, self.code)))?;
+        }
+        if !self.common.quiet {
+            print_data(&format!("{}: written to {}\n", self.words(), out.display()))?;
+        }
+        Ok(Some(0))
+    }
+
+    fn words(&self) -> String {
+        format!("{} with {}", self.case, self.code)
+    }
+
+    fn case_file(&self) -> PathBuf {
+        self.reference.join("cases").join(format!("{}.toml", self.case))
+    }
+
+    fn solve(&self, solution: &Path, bar: &ProgressBar) -> Result<Ended> {
+        let mut command = self.python.module(self.reference);
+        command.arg("solve").arg(self.case_file()).args(["--code", self.code]);
+        let coarsest: &[u8] = if self.arguments.compare { &[0] } else { &[] };
+        let named = &self.arguments.meshes[..];
+        for mesh in if named.is_empty() { coarsest } else { named } {
+            command.args(["--mesh", &mesh.to_string()]);
+        }
+        command.arg("--out").arg(solution);
+        bar.set_message(self.words());
+        let mut show = |line: &str| {
+            if let Ok(report) = serde_json::from_str::<Progress>(line) {
+                bar.set_position((1000.0 * report.progress) as u64);
+                bar.set_message(format!("{}: {}", self.words(), report.message));
+            }
+        };
+        run(command, &mut show).with_context(|| self.words())
+    }
+
+    /// Compares a solution with what is stored: 0 if it is the same, else 1.
+    fn compared(&self, solution: &Path) -> Result<u8> {
+        let case = read_case(&self.case_file()).map_err(|mistakes| {
+            anyhow!(mistakes.iter().map(|m| m.to_string()).collect::<Vec<_>>().join("\n"))
+        })?;
+        let data = self.arguments.out.clone().unwrap_or_else(|| self.reference.join("data"));
+        let path = data.join(format!("{}.json", self.case));
+        let text = std::fs::read_to_string(&path)
+            .with_context(|| format!("{}: cannot read {}", self.case, path.display()))?;
+        let stored = match read_reference(&case, &text) {
+            Ok(stored) => stored,
+            Err(error) => {
+                eprintln!("{error}");
+                return Ok(1);
+            }
+        };
+        let again: ReferenceFile = serde_json::from_str(&std::fs::read_to_string(solution)?)?;
+        let mut code = 0;
+        for change in compare(&case, &stored, &again).map_err(|reason| anyhow!(reason))? {
+            let words = format!(
+                "{}, {} elements: largest change {:.1e}, in {}",
+                self.words(),
+                change.elements,
+                change.relative,
+                change.quantity
+            );
+            if change.relative <= SAME {
+                if !self.common.quiet {
+                    print_data(&format!("{words}\n"))?;
+                }
+            } else {
+                eprintln!("{words}; more than {SAME:.0e}");
+                code = 1;
+            }
+        }
+        Ok(code)
+    }
+}
+
+/// Runs a command to its end and hands every line of its output to `see`;
+/// kills it, with its children, when the user stops the program.
+fn run(mut command: Command, see: &mut dyn FnMut(&str)) -> Result<Ended> {
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    let command = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().context("cannot start Python")?;
+    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+    let (sender, receiver) = channel();
+    std::thread::spawn(move || {
+        for line in stdout.into_iter().flat_map(|out| BufReader::new(out).lines()) {
+            let Ok(line) = line else { break };
+            if sender.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    let complaint = std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        if let Some(mut stream) = stderr {
+            // What was read before a failure is still worth telling.
+            let _ = stream.read_to_end(&mut bytes);
+        }
+        String::from_utf8_lossy(&bytes).trim().to_string()
+    });
+    loop {
+        if interrupted() {
+            stop(&mut child)?;
+            return Ok(Ended::Stopped);
+        }
+        match receiver.recv_timeout(Duration::from_millis(100)) {
+            Ok(line) => see(&line),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+    }
+    let status: ExitStatus = child.wait()?;
+    if !status.success() {
+        let complaint = complaint.join().unwrap_or_default();
+        bail!("Python ended with {status}\n{complaint}");
+    }
+    Ok(Ended::Well)
+}
+
+/// Ends a process and its group.
+fn stop(child: &mut Child) -> Result<()> {
+    if cfg!(unix) {
+        let group = format!("-{}", child.id());
+        Command::new("kill").args(["-TERM", "--", &group]).stderr(Stdio::null()).status()?;
+    } else {
+        child.kill()?;
+    }
+    child.wait()?;
+    Ok(())
+}

@@ -1,0 +1,200 @@
+//! Fields at points as VTK XML, readable by ParaView, PyVista and meshio.
+
+use anyhow::{Result, ensure};
+use mtled_checks::report::write_atomically;
+use std::fmt::Write;
+use std::path::Path;
+
+/// VTK's number of a cell that is a single point.
+const VTK_VERTEX: u8 = 1;
+
+/// One moment of a cloud of points; every point becomes a vertex cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VtuFrame<'a> {
+    /// \[s\]
+    pub time: f64,
+    /// \[m\]
+    pub points: &'a [[f64; 3]],
+    pub point_data: Vec<PointArray>,
+}
+
+/// A field at the points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointArray {
+    pub name: String,
+    /// 1 for a scalar, 3 for a vector, 9 for a tensor by rows.
+    pub components: usize,
+    /// \[point\]\[component\], in the unit of the field.
+    pub values: Vec<f64>,
+}
+
+impl PointArray {
+    pub fn new(name: &str, components: usize, values: Vec<f64>) -> PointArray {
+        PointArray { name: name.to_string(), components, values }
+    }
+}
+
+/// Header and raw blocks of the appended data, grown side by side.
+#[derive(Default)]
+struct Blocks {
+    bytes: Vec<u8>,
+}
+
+impl Blocks {
+    /// Appends a block with its UInt64 length and returns its `DataArray`.
+    fn array(&mut self, kind: &str, attributes: &str, data: impl Iterator<Item = u8>) -> String {
+        let offset = self.bytes.len();
+        self.bytes.extend([0; 8]);
+        self.bytes.extend(data);
+        let length = (self.bytes.len() - offset - 8) as u64;
+        self.bytes[offset..offset + 8].copy_from_slice(&length.to_le_bytes());
+        format!(
+            "<DataArray type=\"{kind}\" {attributes} format=\"appended\" offset=\"{offset}\"/>\n"
+        )
+    }
+
+    fn reals<'a>(&mut self, attributes: &str, values: impl Iterator<Item = &'a f64>) -> String {
+        self.array("Float64", attributes, values.flat_map(|v| v.to_le_bytes()))
+    }
+
+    fn integers(&mut self, name: &str, values: impl Iterator<Item = i64>) -> String {
+        self.array("Int64", &named(name), values.flat_map(i64::to_le_bytes))
+    }
+}
+
+/// The bytes of an UnstructuredGrid 1.0, little endian, raw appended data; the
+/// same frame gives the same bytes. Refuses arrays of the wrong length.
+pub fn to_vtu(frame: &VtuFrame) -> Result<Vec<u8>> {
+    let count = frame.points.len();
+    for array in &frame.point_data {
+        let expected = count * array.components;
+        ensure!(
+            array.values.len() == expected && array.components > 0,
+            "point data {} has {} values, {count} points with {} components need {expected}",
+            array.name,
+            array.values.len(),
+            array.components
+        );
+    }
+    let mut blocks = Blocks::default();
+    let xml = header(frame, &mut blocks);
+    let mut bytes = xml.into_bytes();
+    bytes.extend(blocks.bytes);
+    // meshio looks for the closing tag at the start of a line.
+    bytes.extend(b"\n</AppendedData>\n</VTKFile>\n");
+    Ok(bytes)
+}
+
+fn header(frame: &VtuFrame, blocks: &mut Blocks) -> String {
+    let count = frame.points.len();
+    let time = blocks.reals("Name=\"TimeValue\" NumberOfTuples=\"1\"", [frame.time].iter());
+    let places =
+        blocks.reals("Name=\"Points\" NumberOfComponents=\"3\"", frame.points.iter().flatten());
+    let connectivity = blocks.integers("connectivity", 0..count as i64);
+    let offsets = blocks.integers("offsets", 1..=count as i64);
+    let types = blocks.array("UInt8", &named("types"), std::iter::repeat_n(VTK_VERTEX, count));
+    let mut fields = String::new();
+    for array in &frame.point_data {
+        let attributes =
+            format!("{} NumberOfComponents=\"{}\"", named(&array.name), array.components);
+        fields += &blocks.reals(&attributes, array.values.iter());
+    }
+    format!(
+        "<?xml version=\"1.0\"?>\n\
+         <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n{time}</FieldData>\n\
+         <Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">\n\
+         <PointData>\n{fields}</PointData>\n<Points>\n{places}</Points>\n\
+         <Cells>\n{connectivity}{offsets}{types}</Cells>\n</Piece>\n</UnstructuredGrid>\n\
+         <AppendedData encoding=\"raw\">\n_"
+    )
+}
+
+fn named(name: &str) -> String {
+    format!("Name=\"{}\"", mtled_checks::report::svg::escape(name))
+}
+
+/// Writes a frame to `path` at once.
+pub fn write_vtu(path: &Path, frame: &VtuFrame) -> Result<()> {
+    write_atomically(path, &to_vtu(frame)?)
+}
+
+/// Writes a collection of frames: times \[s\] and file names relative to `path`.
+pub fn write_pvd(path: &Path, frames: &[(f64, String)]) -> Result<()> {
+    let mut text = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
+         byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
+    for (time, file) in frames {
+        let file = mtled_checks::report::svg::escape(file);
+        let _ = writeln!(text, "<DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>");
+    }
+    text.push_str("</Collection>\n</VTKFile>\n");
+    write_atomically(path, text.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const POINTS: [[f64; 3]; 2] = [[0.0, 0.5, 1.0], [2.0, -1.0, 0.25]];
+
+    fn frame(time: f64) -> VtuFrame<'static> {
+        let tensor = (0..18).map(|i| 100.0 * f64::from(i) * time).collect();
+        let point_data = vec![
+            PointArray::new("displacement", 3, vec![0.1, 0.2, 0.3, 0.4, 0.5, time]),
+            PointArray::new("J", 1, vec![1.0, 0.98]),
+            PointArray::new("cauchy_stress", 9, tensor),
+        ];
+        VtuFrame { time, points: &POINTS, point_data }
+    }
+
+    /// The reals of the array called `name`, found the way a reader finds them.
+    fn read_back(bytes: &[u8], name: &str) -> Vec<f64> {
+        let start = bytes.windows(2).position(|pair| pair == b"\n_").unwrap();
+        let header = std::str::from_utf8(&bytes[..start]).unwrap();
+        let line = header.lines().find(|l| l.contains(&format!("Name=\"{name}\""))).unwrap();
+        let offset = line.split("offset=\"").nth(1).unwrap().split('"').next().unwrap();
+        let block = &bytes[start + 2 + offset.parse::<usize>().unwrap()..];
+        let length = u64::from_le_bytes(block[..8].try_into().unwrap()) as usize;
+        let real = |b: &[u8]| f64::from_le_bytes(b.try_into().unwrap());
+        block[8..8 + length].chunks(8).map(real).collect()
+    }
+
+    #[test]
+    fn a_frame_is_read_back_bit_for_bit() {
+        let bytes = to_vtu(&frame(0.75)).unwrap();
+        assert_eq!(read_back(&bytes, "Points"), POINTS.concat());
+        assert_eq!(read_back(&bytes, "TimeValue"), [0.75]);
+        assert_eq!(read_back(&bytes, "J"), [1.0, 0.98]);
+        assert_eq!(read_back(&bytes, "cauchy_stress"), frame(0.75).point_data[2].values);
+        assert_eq!(bytes, to_vtu(&frame(0.75)).unwrap());
+        assert!(bytes.ends_with(b"\n</AppendedData>\n</VTKFile>\n"));
+    }
+
+    #[test]
+    fn an_array_of_the_wrong_length_is_refused_with_the_numbers() {
+        let mut short = frame(0.0);
+        short.point_data[1].values.pop();
+        let error = to_vtu(&short).unwrap_err().to_string();
+        assert_eq!(error, "point data J has 1 values, 2 points with 1 components need 2");
+    }
+
+    /// Set MTLED_SAMPLE_VTU to a folder to try other readers on the files.
+    #[test]
+    fn a_collection_names_every_frame_with_its_time() {
+        let scratch = tempfile::tempdir().unwrap();
+        let kept = std::env::var_os("MTLED_SAMPLE_VTU").map(std::path::PathBuf::from);
+        let folder = kept.unwrap_or(scratch.path().to_path_buf());
+        let mut frames = Vec::new();
+        for (index, time) in [0.0, 0.5, 1.0].into_iter().enumerate() {
+            let name = format!("frame_{index:04}.vtu");
+            write_vtu(&folder.join(&name), &frame(time)).unwrap();
+            frames.push((time, name));
+        }
+        let collection = folder.join("frames.pvd");
+        write_pvd(&collection, &frames).unwrap();
+        let text = std::fs::read_to_string(collection).unwrap();
+        assert!(text.contains("timestep=\"0.5\" part=\"0\" file=\"frame_0001.vtu\""), "{text}");
+    }
+}

@@ -1,0 +1,152 @@
+//! Conditions, loads and obstacles of a case file → those of the solver.
+
+use crate::scene::build::Builder;
+use crate::scene::format::{
+    AmplitudeFormat, CaseFormat, DisplacementFormat, ExtentFormat, FrictionFormat, ObstacleFormat,
+    PrescribeFormat, RotationFormat, SideFormat,
+};
+use mtled::algebra::tensor::Vector3;
+use mtled::geometry::selection::Extent;
+use mtled::problem::{
+    Amplitude, BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed,
+    Traction,
+};
+
+impl Builder<'_> {
+    pub fn conditions(&mut self, rows: &[PrescribeFormat]) -> Vec<EssentialCondition> {
+        let read: Vec<Option<EssentialCondition>> = (rows.iter().enumerate())
+            .map(|(n, row)| self.condition(&format!("prescribe[{n}]"), row))
+            .collect();
+        read.into_iter().flatten().collect()
+    }
+
+    fn condition(&mut self, key: &str, row: &PrescribeFormat) -> Option<EssentialCondition> {
+        let part = self.selector(&format!("{key}.where"), &row.part);
+        let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
+        if let Some(release) = row.release {
+            self.positive(&format!("{key}.release"), release);
+        }
+        let prescribed = match (&row.displacement, &row.rotation) {
+            (Some(displacement), None) => {
+                self.displacement(&format!("{key}.displacement"), displacement)
+            }
+            (None, Some(rotation)) => self.rotation(&format!("{key}.rotation"), rotation),
+            (Some(_), Some(_)) => {
+                let message = "cannot be given together with displacement; remove one";
+                self.mistake(&format!("{key}.rotation"), message);
+                return None;
+            }
+            (None, None) => {
+                let message = "prescribes nothing; it needs a displacement or a rotation";
+                self.mistake(key, message);
+                return None;
+            }
+        };
+        let extent = match row.of {
+            ExtentFormat::Surface => Extent::Surface,
+            ExtentFormat::Volume => Extent::Volume,
+        };
+        let (name, release) = (row.name.clone(), row.release);
+        Some(EssentialCondition { name, extent, part: part?, prescribed, amplitude, release })
+    }
+
+    fn displacement(&mut self, key: &str, format: &DisplacementFormat) -> Prescribed {
+        let components = [format.x, format.y, format.z];
+        if components.iter().all(Option::is_none) {
+            self.mistake(key, "has no component; give at least one of x, y, z");
+        }
+        if self.is_plane() && format.z.is_some() {
+            let message = "there is no motion along z in plane strain; remove it";
+            self.mistake(&format!("{key}.z"), message);
+        }
+        Prescribed::Displacement(components)
+    }
+
+    fn rotation(&mut self, key: &str, format: &RotationFormat) -> Prescribed {
+        let axis = self.direction(&format!("{key}.axis"), &format.axis);
+        if self.is_plane() && (axis.x != 0.0 || axis.y != 0.0) {
+            let message = format!("is {:?}; in plane strain it must be along z", format.axis);
+            self.mistake(&format!("{key}.axis"), message);
+        }
+        Prescribed::Rotation { point: Vector3::from(format.point), axis, angle: format.angle }
+    }
+
+    fn amplitude(&mut self, key: &str, format: &AmplitudeFormat) -> Amplitude {
+        match format {
+            AmplitudeFormat::Constant => Amplitude::Constant,
+            AmplitudeFormat::Linear { duration } => {
+                self.positive(&format!("{key}.linear.duration"), *duration);
+                Amplitude::Linear { duration: *duration }
+            }
+            AmplitudeFormat::Smooth { duration } => {
+                self.positive(&format!("{key}.smooth.duration"), *duration);
+                Amplitude::Smooth { duration: *duration }
+            }
+            AmplitudeFormat::Table(rows) => {
+                self.table(&format!("{key}.table"), rows);
+                Amplitude::Table(rows.clone())
+            }
+        }
+    }
+
+    fn table(&mut self, key: &str, rows: &[(f64, f64)]) {
+        if rows.is_empty() {
+            self.mistake(key, "is empty; it needs rows of time and factor");
+        }
+        for (n, pair) in rows.windows(2).enumerate() {
+            let ((before, _), (after, _)) = (pair[0], pair[1]);
+            if after <= before {
+                let message = format!("has time {after} after {before}; times must increase");
+                self.mistake(&format!("{key}[{}]", n + 1), message);
+            }
+        }
+    }
+
+    pub fn loads(&mut self, format: &CaseFormat) -> Loads {
+        let mut loads = Loads::default();
+        for (n, row) in format.body_force.iter().enumerate() {
+            let key = format!("body_force[{n}]");
+            self.no_z(&format!("{key}.acceleration"), &row.acceleration);
+            let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
+            let acceleration = Vector3::from(row.acceleration).into();
+            loads.body_forces.push(BodyForce { acceleration, amplitude });
+        }
+        for (n, row) in format.traction.iter().enumerate() {
+            let key = format!("traction[{n}]");
+            self.no_z(&format!("{key}.traction"), &row.traction);
+            let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
+            let part = self.selector(&format!("{key}.where"), &row.part);
+            let (name, traction) = (row.name.clone(), Vector3::from(row.traction));
+            loads.tractions.extend(part.map(|part| Traction { name, part, traction, amplitude }));
+        }
+        for (n, row) in format.initial_velocity.iter().enumerate() {
+            let key = format!("initial_velocity[{n}]");
+            self.no_z(&format!("{key}.velocity"), &row.velocity);
+            let part = self.selector(&format!("{key}.where"), &row.part);
+            let velocity = Vector3::from(row.velocity);
+            loads.initial_velocities.extend(part.map(|part| (part, velocity)));
+        }
+        loads
+    }
+
+    pub fn obstacles(&mut self, rows: &[ObstacleFormat]) -> Vec<Obstacle> {
+        let read: Vec<Option<Obstacle>> = (rows.iter().enumerate())
+            .map(|(n, row)| {
+                Some(Obstacle {
+                    name: row.name.clone(),
+                    shape: self.solid(&format!("obstacle[{n}].shape"), &row.shape)?,
+                    offset: row.offset,
+                    side: match row.side {
+                        SideFormat::Outside => ObstacleSide::Outside,
+                        SideFormat::Inside => ObstacleSide::Inside,
+                    },
+                    friction: match row.friction {
+                        FrictionFormat::Frictionless => Friction::Frictionless,
+                        FrictionFormat::NoSlip => Friction::NoSlip,
+                    },
+                })
+            })
+            .collect();
+        read.into_iter().flatten().collect()
+    }
+}

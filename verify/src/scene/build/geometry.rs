@@ -1,0 +1,298 @@
+//! Shapes and selectors of a case file → those of the solver.
+
+use crate::files::{self, LengthUnit};
+use crate::scene::build::Builder;
+use crate::scene::format::geometry::{SelectorFormat, ShapeFormat, UnitFormat};
+use mtled::algebra::tensor::Vector3;
+use mtled::geometry::selection::Selector;
+use mtled::geometry::{LabelField, LabelMap, Shape, Surface};
+use mtled::problem::Dimension;
+use std::path::Path;
+use std::sync::Arc;
+
+impl From<UnitFormat> for LengthUnit {
+    fn from(unit: UnitFormat) -> LengthUnit {
+        match unit {
+            UnitFormat::M => LengthUnit::Metre,
+            UnitFormat::Mm => LengthUnit::Millimetre,
+        }
+    }
+}
+
+impl Builder<'_> {
+    /// The solid that deforms; its label map becomes that of label selectors.
+    pub fn read_body(&mut self, format: &ShapeFormat) {
+        let key = "geometry.shape";
+        let Some(body) = self.sound_shape(key, format) else { return };
+        let section = body.validate_body().and_then(|()| body.section(&self.dimension));
+        self.section = section.map_err(|error| self.mistake(key, error)).ok();
+        self.body_map = first_map(&body);
+        self.body = Some(body);
+    }
+
+    /// A sound shape, in plane strain its cross-section.
+    pub fn solid(&mut self, key: &str, format: &ShapeFormat) -> Option<Shape> {
+        let shape = self.sound_shape(key, format)?;
+        shape.section(&self.dimension).map_err(|error| self.mistake(key, error)).ok()
+    }
+
+    /// A shape that the solver accepts.
+    fn sound_shape(&mut self, key: &str, format: &ShapeFormat) -> Option<Shape> {
+        let before = self.count();
+        let shape = self.shape(key, format).filter(|_| self.count() == before)?;
+        shape.validate().map_err(|error| self.mistake(key, error)).ok()?;
+        Some(shape)
+    }
+
+    /// A shape, or `None` and a mistake.
+    fn shape(&mut self, key: &str, format: &ShapeFormat) -> Option<Shape> {
+        match format {
+            ShapeFormat::Box { min, max } => Some(self.box_shape(&format!("{key}.box"), min, max)),
+            ShapeFormat::Cylinder { base, axis, radius, height } => {
+                self.positive(&format!("{key}.cylinder.radius"), *radius);
+                self.positive(&format!("{key}.cylinder.height"), *height);
+                let axis = self.direction(&format!("{key}.cylinder.axis"), axis);
+                let base = Vector3::from(*base);
+                Some(Shape::Cylinder { base, axis, radius: *radius, height: *height })
+            }
+            ShapeFormat::Sphere { centre, radius } => {
+                self.positive(&format!("{key}.sphere.radius"), *radius);
+                Some(Shape::Sphere { centre: Vector3::from(*centre), radius: *radius })
+            }
+            ShapeFormat::Ellipsoid { centre, radii } => {
+                for (n, radius) in radii.iter().enumerate() {
+                    self.positive(&format!("{key}.ellipsoid.radii[{n}]"), *radius);
+                }
+                let (centre, radii) = (Vector3::from(*centre), Vector3::from(*radii));
+                Some(Shape::Ellipsoid { centre, radii })
+            }
+            ShapeFormat::Polygon { points, z } => {
+                Some(self.polygon(&format!("{key}.polygon"), points, z))
+            }
+            ShapeFormat::HalfSpace { point, normal } => {
+                let normal = self.direction(&format!("{key}.half_space.normal"), normal);
+                Some(Shape::HalfSpace { point: Vector3::from(*point), normal })
+            }
+            ShapeFormat::Union(parts) => self.union(&format!("{key}.union"), parts),
+            ShapeFormat::Difference(first, second) => {
+                let first = self.shape(&format!("{key}.difference[0]"), first);
+                let second = self.shape(&format!("{key}.difference[1]"), second);
+                Some(Shape::Difference(Box::new(first?), Box::new(second?)))
+            }
+            ShapeFormat::Stl { file, unit } => self.surface(&format!("{key}.stl"), file, *unit),
+            ShapeFormat::LabelMap { file, labels, unit } => {
+                self.labels(&format!("{key}.label_map"), file, labels, *unit)
+            }
+        }
+    }
+
+    fn box_shape(&mut self, key: &str, min: &[f64; 3], max: &[f64; 3]) -> Shape {
+        for n in 0..3 {
+            if min[n] >= max[n] {
+                let message =
+                    format!("is {}; it must be larger than min, which is {}", max[n], min[n]);
+                self.mistake(&format!("{key}.max[{n}]"), message);
+            }
+        }
+        Shape::Box { min: Vector3::from(*min), max: Vector3::from(*max) }
+    }
+
+    fn polygon(&mut self, key: &str, points: &[[f64; 2]], z: &[f64; 2]) -> Shape {
+        if points.len() < 3 {
+            let message = format!("has {} corners; a polygon needs at least 3", points.len());
+            self.mistake(&format!("{key}.points"), message);
+        }
+        if z[0] >= z[1] {
+            let message = format!("is [{}, {}]; the second must be larger", z[0], z[1]);
+            self.mistake(&format!("{key}.z"), message);
+        }
+        Shape::Polygon { points: points.to_vec(), z: (z[0], z[1]) }
+    }
+
+    fn union(&mut self, key: &str, parts: &[ShapeFormat]) -> Option<Shape> {
+        if parts.is_empty() {
+            self.mistake(key, "is empty; it needs at least one shape");
+        }
+        let shapes: Vec<Option<Shape>> = (parts.iter().enumerate())
+            .map(|(n, part)| self.shape(&format!("{key}[{n}]"), part))
+            .collect();
+        Some(Shape::Union(shapes.into_iter().collect::<Option<_>>()?))
+    }
+
+    /// A label map file, read once.
+    fn map(&mut self, key: &str, file: &Path, unit: Option<UnitFormat>) -> Option<Arc<LabelMap>> {
+        let path = self.resolve(file);
+        if let Some(map) = self.maps.get(&(path.clone(), unit)) {
+            return Some(map.clone());
+        }
+        match files::read_label_map(&path, unit.map(LengthUnit::from)) {
+            Ok(read) => {
+                for path in &read.files {
+                    self.hash_file(key, path);
+                }
+                let map = Arc::new(read.map);
+                self.maps.insert((path, unit), map.clone());
+                Some(map)
+            }
+            Err(error) => {
+                self.mistake(key, error);
+                None
+            }
+        }
+    }
+
+    fn labels(
+        &mut self,
+        key: &str,
+        file: &Path,
+        labels: &[u32],
+        unit: Option<UnitFormat>,
+    ) -> Option<Shape> {
+        let map = self.map(&format!("{key}.file"), file, unit)?;
+        let before = self.count();
+        if labels.is_empty() {
+            self.mistake(&format!("{key}.labels"), "is empty; it needs at least one label");
+        }
+        for (n, label) in labels.iter().enumerate() {
+            self.known_label(&format!("{key}.labels[{n}]"), *label, &map);
+        }
+        if self.count() > before {
+            return None;
+        }
+        self.field(key, map, labels).map(Shape::Labels)
+    }
+
+    /// The solid of some labels, made once.
+    fn field(&mut self, key: &str, map: Arc<LabelMap>, labels: &[u32]) -> Option<Arc<LabelField>> {
+        let same =
+            |made: &&Arc<LabelField>| Arc::ptr_eq(made.map(), &map) && made.labels() == labels;
+        if let Some(made) = self.fields.iter().find(same) {
+            return Some(made.clone());
+        }
+        let made = match self.dimension {
+            Dimension::Three => LabelField::new(map, labels),
+            Dimension::PlaneStrain { z, .. } => LabelField::section(map, labels, z),
+        };
+        let made = made.map_err(|error| self.mistake(key, error)).ok()?;
+        self.fields.push(Arc::new(made));
+        self.fields.last().cloned()
+    }
+
+    fn known_label(&mut self, key: &str, label: u32, map: &LabelMap) {
+        if label == 0 {
+            self.mistake(key, "is 0, which means outside; labels of the body are larger");
+        } else if !map.labels.contains(&label) {
+            let mut present: Vec<u32> = map.labels.iter().copied().filter(|&l| l > 0).collect();
+            present.sort_unstable();
+            present.dedup();
+            present.truncate(20);
+            self.mistake(key, format!("label {label} does not occur; the map has {present:?}"));
+        }
+    }
+
+    /// A part of the body, or `None` and a mistake.
+    pub fn selector(&mut self, key: &str, format: &SelectorFormat) -> Option<Selector> {
+        match format {
+            SelectorFormat::All => Some(Selector::All),
+            SelectorFormat::Plane { point, normal, tolerance } => {
+                let normal = self.direction(&format!("{key}.plane.normal"), normal);
+                let tolerance = self.tolerance(&format!("{key}.plane"), *tolerance);
+                Some(Selector::Plane { point: Vector3::from(*point), normal, tolerance })
+            }
+            SelectorFormat::HalfSpace { point, normal, tolerance } => {
+                let normal = self.direction(&format!("{key}.half_space.normal"), normal);
+                let shape = Shape::HalfSpace { point: Vector3::from(*point), normal };
+                Some(self.inside(&format!("{key}.half_space"), shape, *tolerance))
+            }
+            SelectorFormat::Box { min, max, tolerance } => {
+                let shape = self.box_shape(&format!("{key}.box"), min, max);
+                Some(self.inside(&format!("{key}.box"), shape, *tolerance))
+            }
+            SelectorFormat::Sphere { centre, radius, tolerance } => {
+                self.positive(&format!("{key}.sphere.radius"), *radius);
+                let shape = Shape::Sphere { centre: Vector3::from(*centre), radius: *radius };
+                Some(self.inside(&format!("{key}.sphere"), shape, *tolerance))
+            }
+            SelectorFormat::Shape(shape) => {
+                let key = format!("{key}.shape");
+                let shape = self.sound_shape(&key, shape)?;
+                Some(self.inside(&key, shape, None))
+            }
+            SelectorFormat::Label { value, file, unit } => {
+                self.label(&format!("{key}.label"), *value, file.as_deref(), *unit)
+            }
+            SelectorFormat::Union(parts) => {
+                self.selectors(&format!("{key}.union"), parts).map(Selector::Union)
+            }
+            SelectorFormat::Intersection(parts) => {
+                self.selectors(&format!("{key}.intersection"), parts).map(Selector::Intersection)
+            }
+            SelectorFormat::Not(part) => {
+                let part = self.selector(&format!("{key}.not"), part)?;
+                Some(Selector::Not(Box::new(part)))
+            }
+        }
+    }
+
+    fn inside(&mut self, key: &str, shape: Shape, tolerance: Option<f64>) -> Selector {
+        Selector::Inside { shape, tolerance: self.tolerance(key, tolerance) }
+    }
+
+    fn tolerance(&mut self, key: &str, stated: Option<f64>) -> f64 {
+        self.not_negative(&format!("{key}.tolerance"), stated.unwrap_or(0.0));
+        stated.unwrap_or(self.tolerance)
+    }
+
+    fn selectors(&mut self, key: &str, parts: &[SelectorFormat]) -> Option<Vec<Selector>> {
+        if parts.is_empty() {
+            self.mistake(key, "is empty; it needs at least one selector");
+        }
+        let read: Vec<Option<Selector>> = (parts.iter().enumerate())
+            .map(|(n, part)| self.selector(&format!("{key}[{n}]"), part))
+            .collect();
+        read.into_iter().collect()
+    }
+
+    fn label(
+        &mut self,
+        key: &str,
+        label: u32,
+        file: Option<&Path>,
+        unit: Option<UnitFormat>,
+    ) -> Option<Selector> {
+        let map = match file {
+            Some(file) => self.map(&format!("{key}.file"), file, unit)?,
+            None => match &self.body_map {
+                Some(map) => map.clone(),
+                None => {
+                    self.mistake(key, "needs a `file`, since the body is not made of a label map");
+                    return None;
+                }
+            },
+        };
+        self.known_label(&format!("{key}.value"), label, &map);
+        Some(Selector::Label { map, label })
+    }
+
+    /// A closed surface from an STL file.
+    fn surface(&mut self, key: &str, file: &Path, unit: UnitFormat) -> Option<Shape> {
+        let path = self.resolve(file);
+        let key = format!("{key}.file");
+        let read = files::stl::read(&path, unit.into());
+        let read = read.map_err(|error| self.mistake(&key, error)).ok()?;
+        self.hash_file(&key, &path);
+        let surface = Surface::new(read.vertices, read.triangles);
+        let surface = surface.map_err(|error| self.mistake(&key, error)).ok()?;
+        Some(Shape::Surface(Arc::new(surface)))
+    }
+}
+
+/// The first label map in a shape.
+fn first_map(shape: &Shape) -> Option<Arc<LabelMap>> {
+    match shape {
+        Shape::Labels(field) => Some(field.map().clone()),
+        Shape::Union(parts) => parts.iter().find_map(first_map),
+        Shape::Difference(first, second) => first_map(first).or_else(|| first_map(second)),
+        _ => None,
+    }
+}

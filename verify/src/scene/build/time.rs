@@ -1,0 +1,214 @@
+//! Time, probes and output of a case file.
+
+use crate::scene::build::Builder;
+use crate::scene::format::{
+    CaseFormat, LatticeFormat, MethodFormat, OutputFormat, ProbeFormat, SolverFormat, TimeFormat,
+};
+use crate::scene::{Outputs, Probe, ProbeKind};
+use mtled::algebra::tensor::Vector3;
+use mtled::problem::{Dimension, Motion, Newton, Relaxation, RelaxationMass, StepControl};
+
+/// Wanted relative error of a static solution \[–\].
+const TOLERANCE: f64 = 1e-4;
+/// Wanted relative residual of Newton's method \[–\].
+const RESIDUAL: f64 = 1e-10;
+/// Step over the critical one where nothing damps: large vibrations near the
+/// limit resonate with the step and blow up (study "energy").
+const UNDAMPED_SAFETY_FACTOR: f64 = 0.8;
+/// Steps over which a static load is applied.
+const LOAD_STEPS: usize = 500;
+const MAX_STEPS: usize = 200_000;
+
+impl Builder<'_> {
+    pub fn motion(&mut self, format: &TimeFormat) -> Motion {
+        self.keys_of_method(format);
+        let step = self.step(format);
+        match format.method {
+            MethodFormat::Dynamic => {
+                if format.end.is_none() {
+                    self.mistake("time.end", "is missing; method = \"dynamic\" needs it");
+                }
+                let end = format.end.unwrap_or(1.0);
+                self.positive("time.end", end);
+                let damping = format.damping.unwrap_or(0.0);
+                self.not_negative("time.damping", damping);
+                Motion::Dynamic { end, step, damping }
+            }
+            MethodFormat::Static if format.solver == Some(SolverFormat::Newton) => {
+                self.newton(format)
+            }
+            MethodFormat::Static => {
+                let relaxation = Relaxation {
+                    load_end: format.load_end.unwrap_or(1.0),
+                    load_steps: format.load_steps.unwrap_or(LOAD_STEPS),
+                    tolerance: format.tolerance.unwrap_or(TOLERANCE),
+                    max_steps: format.max_steps.unwrap_or(MAX_STEPS),
+                    step,
+                    mass: RelaxationMass::default(),
+                };
+                self.positive("time.load_end", relaxation.load_end);
+                self.at_least_one("time.load_steps", relaxation.load_steps);
+                self.at_least_one("time.max_steps", relaxation.max_steps);
+                self.tolerance_of_time(relaxation.tolerance);
+                Motion::Static(relaxation)
+            }
+        }
+    }
+
+    fn newton(&mut self, format: &TimeFormat) -> Motion {
+        let keys = [
+            ("load_steps", format.load_steps.is_some()),
+            ("max_steps", format.max_steps.is_some()),
+            ("safety_factor", format.safety_factor.is_some()),
+            ("reevaluate_every", format.reevaluate_every.is_some()),
+            ("fixed_step", format.fixed_step.is_some()),
+        ];
+        for (name, _) in keys.into_iter().filter(|(_, given)| *given) {
+            let message = "does not belong to solver = \"newton\", which takes no time steps";
+            self.mistake(&format!("time.{name}"), message);
+        }
+        let load_end = format.load_end.unwrap_or(1.0);
+        let tolerance = format.tolerance.unwrap_or(RESIDUAL);
+        self.positive("time.load_end", load_end);
+        self.tolerance_of_time(tolerance);
+        Motion::Equilibrium(Newton { load_end, tolerance })
+    }
+
+    fn tolerance_of_time(&mut self, tolerance: f64) {
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            self.mistake("time.tolerance", format!("is {tolerance}; it must lie in (0, 1)"));
+        }
+    }
+
+    /// Refuses keys that belong to the other method.
+    fn keys_of_method(&mut self, format: &TimeFormat) {
+        let is_static = format.method == MethodFormat::Static;
+        let keys = [
+            ("end", format.end.is_some(), !is_static),
+            ("damping", format.damping.is_some(), !is_static),
+            ("mass_scaling", format.mass_scaling.is_some(), !is_static),
+            ("solver", format.solver.is_some(), is_static),
+            ("load_end", format.load_end.is_some(), is_static),
+            ("load_steps", format.load_steps.is_some(), is_static),
+            ("tolerance", format.tolerance.is_some(), is_static),
+            ("max_steps", format.max_steps.is_some(), is_static),
+        ];
+        let other = if is_static { "dynamic" } else { "static" };
+        for (name, given, belongs) in keys {
+            if given && !belongs {
+                self.mistake(&format!("time.{name}"), format!("belongs to method = \"{other}\""));
+            }
+        }
+    }
+
+    fn step(&mut self, format: &TimeFormat) -> StepControl {
+        let preset = StepControl::default();
+        let undamped =
+            format.method == MethodFormat::Dynamic && format.damping.unwrap_or(0.0) == 0.0;
+        let safety_factor = if undamped { UNDAMPED_SAFETY_FACTOR } else { preset.safety_factor };
+        let step = StepControl {
+            safety_factor: format.safety_factor.unwrap_or(safety_factor),
+            reevaluate_every: format.reevaluate_every.unwrap_or(preset.reevaluate_every),
+            fixed: format.fixed_step,
+            mass_scaling: format.mass_scaling.unwrap_or(preset.mass_scaling),
+        };
+        if !(step.mass_scaling >= 1.0 && step.mass_scaling.is_finite()) {
+            let message = format!("is {}; it must be 1 or more", step.mass_scaling);
+            self.mistake("time.mass_scaling", message);
+        }
+        if !(step.safety_factor > 0.0 && step.safety_factor <= 1.0) {
+            let message = format!("is {}; it must lie in (0, 1]", step.safety_factor);
+            self.mistake("time.safety_factor", message);
+        }
+        self.at_least_one("time.reevaluate_every", step.reevaluate_every);
+        if let Some(fixed) = step.fixed {
+            self.positive("time.fixed_step", fixed);
+        }
+        step
+    }
+
+    pub fn probes(&mut self, format: &CaseFormat) -> Vec<Probe> {
+        let regions: Vec<&str> = match format.region.is_empty() {
+            true => vec!["body"],
+            false => format.region.iter().map(|region| region.name.as_str()).collect(),
+        };
+        let spacing = format.discretisation.spacing;
+        let read: Vec<Option<Probe>> = (format.probe.iter().enumerate())
+            .map(|(n, row)| self.probe(&format!("probe[{n}]"), row, &regions))
+            .collect();
+        for (n, probe) in read.iter().enumerate() {
+            if let (Some(probe), Some(spacing)) = (probe, spacing) {
+                self.in_the_body(&format!("probe[{n}]"), probe, 0.5 * spacing);
+            }
+        }
+        read.into_iter().flatten().collect()
+    }
+
+    fn probe(&mut self, key: &str, row: &ProbeFormat, regions: &[&str]) -> Option<Probe> {
+        let kind = match (&row.point, &row.lattice, &row.centre_of_mass) {
+            (Some(point), None, None) => ProbeKind::Point(self.in_the_plane(point)),
+            (None, Some(lattice), None) => self.lattice(&format!("{key}.lattice"), lattice),
+            (None, None, Some(region)) => {
+                if !regions.contains(&region.as_str()) {
+                    let key = format!("{key}.centre_of_mass");
+                    self.unknown_name(&key, "region", region, regions);
+                }
+                ProbeKind::CentreOfMass { region: region.clone() }
+            }
+            _ => {
+                self.mistake(key, "needs exactly one of point, lattice, centre_of_mass");
+                return None;
+            }
+        };
+        Some(Probe { name: row.name.clone(), kind })
+    }
+
+    /// Refuses positions further outside the body than `margin` \[m\], where
+    /// there is no displacement to record.
+    fn in_the_body(&mut self, key: &str, probe: &Probe, margin: f64) {
+        let Some(body) = self.section.clone() else { return };
+        let mut outside = probe.kind.positions().into_iter().filter_map(|position| {
+            let distance = body.signed_distance(&position);
+            (distance > margin).then_some((position, distance))
+        });
+        if let Some((position, distance)) = outside.next() {
+            let [x, y, z]: [f64; 3] = position.into();
+            let message = format!("({x}, {y}, {z}) m lies {distance:.3} m outside the body");
+            self.mistake(key, message);
+        }
+    }
+
+    fn lattice(&mut self, key: &str, format: &LatticeFormat) -> ProbeKind {
+        for n in 0..3 {
+            let (min, max) = (format.min[n], format.max[n]);
+            if max < min {
+                let message = format!("is {max}; it must not be smaller than min, which is {min}");
+                self.mistake(&format!("{key}.max[{n}]"), message);
+            }
+            self.at_least_one(&format!("{key}.counts[{n}]"), format.counts[n]);
+        }
+        if self.is_plane() && format.counts[2] != 1 {
+            self.mistake(&format!("{key}.counts[2]"), "must be 1 in plane strain");
+        }
+        let (min, max) = (self.in_the_plane(&format.min), self.in_the_plane(&format.max));
+        ProbeKind::Lattice { min, max, counts: format.counts }
+    }
+
+    /// A point, in plane strain moved along z into the cross-section.
+    fn in_the_plane(&self, point: &[f64; 3]) -> Vector3 {
+        match self.dimension {
+            Dimension::Three => Vector3::from(*point),
+            Dimension::PlaneStrain { z, .. } => Vector3::new(point[0], point[1], z),
+        }
+    }
+
+    pub fn outputs(&mut self, format: &OutputFormat) -> Outputs {
+        let outputs = Outputs {
+            frames: format.frames.unwrap_or(20),
+            history: format.history.unwrap_or(200),
+            moment_about: Vector3::from(format.moment_about.unwrap_or_default()),
+        };
+        self.at_least_one("output.history", outputs.history);
+        outputs
+    }
+}

@@ -1,0 +1,195 @@
+//! The manufactured solutions as problems for the solver.
+#![allow(non_snake_case)]
+
+use crate::exact::manufactured::Manufactured;
+use crate::scene::{one_error, parse_case};
+use anyhow::Result;
+use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
+use mtled::discretisation::quadrature::quadrature;
+use mtled::geometry::{Shape, Surface};
+use mtled::material::Material;
+use mtled::problem::{
+    Amplitude, BodyForce, Dilatation, Enforcement, Field, Gradients, InsideRule, MassRule,
+    Prescribed, Problem,
+};
+use std::path::Path;
+use std::sync::Arc;
+
+/// How the cube lies in the background grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Its faces run along the grid.
+    Along,
+    /// It is turned by 1.1 rad about (1, 2, 3), a body of triangles like any other:
+    /// nodes lie on a lattice inside and along its faces, cells are cut anyhow.
+    Turned,
+}
+
+/// How a solution is discretised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scheme {
+    /// Everything that is not stated is the default.
+    Default,
+    /// The default with 2 cells per spacing, that is eight points per node.
+    Finer,
+    /// The seed's: plain gradients, cells kept whole where their centre is inside,
+    /// nodal parameters prescribed, J point by point, masses split evenly; with
+    /// no fewer points than this.
+    Plain { points: usize },
+}
+
+/// \[Pa\]
+pub const YOUNG_MODULUS: f64 = 3000.0;
+/// \[kg/m³\]
+pub const DENSITY: f64 = 1000.0;
+
+/// A solution after X → R X.
+#[derive(Debug, Clone, Copy)]
+pub struct Placed {
+    solution: Manufactured,
+    place: Place,
+    /// R
+    pub turn: Matrix3,
+}
+
+impl Placed {
+    pub fn new(solution: Manufactured, place: Place) -> Placed {
+        let turn = match place {
+            Place::Along => Matrix3::identity(),
+            Place::Turned => rotation(&Vector3::new(1.0, 2.0, 3.0).normalize(), 1.1),
+        };
+        Placed { solution, place, turn }
+    }
+
+    /// R u(Rᵀ X) \[m\].
+    pub fn displacement(&self, X: &Vector3) -> Vector3 {
+        self.turn * self.solution.displacement(&self.turn.tr_mul(X))
+    }
+
+    /// R F(Rᵀ X) Rᵀ.
+    pub fn deformation_gradient(&self, X: &Vector3) -> Matrix3 {
+        let F = self.solution.deformation_gradient(&self.turn.tr_mul(X));
+        self.turn * F * self.turn.transpose()
+    }
+
+    /// R b(Rᵀ X) \[N/kg\]: the laws know no direction.
+    pub fn body_force(&self, X: &Vector3) -> Vector3 {
+        self.turn * self.solution.body_force(&self.turn.tr_mul(X))
+    }
+}
+
+/// Everything about the discretisation that is not stated is the default.
+fn case_text(nodes_per_edge: usize, seed: u64) -> String {
+    format!(
+        r#"
+title = "Manufactured solution"
+description = "A cube whose boundary follows a given field, under the body force that belongs to it."
+source = "reference/manufactured/derive.py"
+
+[geometry]
+shape = {{ box = {{ min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 1.0] }} }}
+
+[material.solid]
+law = "neo_hookean_log_j"
+density = {DENSITY:?}
+young_modulus = {YOUNG_MODULUS:?}
+poisson_ratio = 0.3
+
+[discretisation]
+cloud = "jittered"
+spacing = {:?}
+jitter = 0.3
+seed = {seed}
+
+[[prescribe]]
+name = "boundary"
+of = "surface"
+where = "all"
+displacement = {{ x = 0.0, y = 0.0, z = 0.0 }}
+amplitude = {{ smooth = {{ duration = 1.0 }} }}
+
+[time]
+method = "static"
+load_steps = {}
+tolerance = 3e-5
+
+[[probe]]
+name = "middle"
+point = [0.5, 0.5, 0.5]
+"#,
+        1.0 / (nodes_per_edge - 1) as f64,
+        // A wave needs more steps to cross a finer cloud.
+        if nodes_per_edge > 9 { 800 } else { 200 },
+    )
+}
+
+/// The problem whose solution is known.
+pub fn pose(placed: Placed, nodes_per_edge: usize, seed: u64, scheme: Scheme) -> Result<Problem> {
+    let text = case_text(nodes_per_edge, seed);
+    let case = parse_case(&text, "manufactured", Path::new(".")).map_err(one_error)?;
+    let mut problem = case.problem;
+    if placed.place == Place::Turned {
+        problem.body = turned_cube(&placed.turn)?;
+    }
+    match scheme {
+        Scheme::Default => {}
+        Scheme::Finer => problem.recipe.grid.cell = 0.5 / (nodes_per_edge - 1) as f64,
+        Scheme::Plain { points } => make_plain(&mut problem, points)?,
+    }
+    impose(&mut problem, placed)?;
+    Ok(problem)
+}
+
+/// Gives a body of one region with one condition the material, boundary values and
+/// body force of a solution.
+pub fn impose(problem: &mut Problem, placed: Placed) -> Result<()> {
+    let solution = placed.solution;
+    let law = solution.family.law(solution.constants)?;
+    problem.regions[0].material = Material { density: solution.density, law };
+    problem.conditions[0].prescribed =
+        Prescribed::Field(Field::of(move |X| placed.displacement(X)));
+    problem.loads.body_forces = vec![BodyForce {
+        acceleration: Field::of(move |X| placed.body_force(X)),
+        amplitude: Amplitude::Smooth { duration: 1.0 },
+    }];
+    Ok(())
+}
+
+/// The unit cube after X → R X, as a closed surface of twelve triangles.
+fn turned_cube(turn: &Matrix3) -> Result<Shape> {
+    let corner = |n: usize| Vector3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2) as f64);
+    let vertices: Vec<Vector3> = (0..8).map(|n| turn * corner(n)).collect();
+    let faces =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let halves = faces.iter().flat_map(|&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]]);
+    Ok(Shape::Surface(Arc::new(Surface::new(vertices, halves.collect())?)))
+}
+
+/// The seed's scheme with the largest cells, by steps of half a percent, that give
+/// no fewer points. Along the grid they fit the cube, which is kind to it.
+fn make_plain(problem: &mut Problem, points: usize) -> Result<()> {
+    let recipe = &mut problem.recipe;
+    recipe.grid.inside = InsideRule::Centre;
+    recipe.gradients = Gradients::Plain;
+    recipe.enforcement = Enforcement::Direct;
+    recipe.dilatation = Dilatation::Pointwise;
+    recipe.mass = MassRule::EvenSplit;
+    let grid = &mut recipe.grid;
+    match problem.body {
+        Shape::Box { .. } => {
+            let cells_per_edge = (1..).find(|n: &usize| n.pow(3) >= points).unwrap_or(1);
+            grid.cell = 1.0 / cells_per_edge as f64;
+        }
+        _ => {
+            grid.cell = 1.02 / (points as f64).cbrt();
+            let laid = |grid: &_| {
+                quadrature(&problem.body, &problem.regions, grid, &problem.dimension)
+                    .map(|quadrature| quadrature.positions.len())
+            };
+            while laid(grid)? < points {
+                grid.cell *= 0.995;
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,121 @@
+//! What this machine can do at most: memory bandwidth and multiply-adds.
+
+use super::turns::{Clock, seconds_of};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use mtled_checks::measure::median;
+use rayon::prelude::*;
+use std::hint::black_box;
+
+/// a = b + s c over arrays that no cache holds (McCalpin 1995, STREAM).
+pub struct Triad {
+    a: Vec<f64>,
+    b: Vec<f64>,
+    c: Vec<f64>,
+}
+
+impl Triad {
+    /// Arrays of `bytes` each.
+    pub fn new(bytes: usize) -> Triad {
+        let count = bytes / size_of::<f64>();
+        Triad { a: vec![0.0; count], b: vec![1.0; count], c: vec![2.0; count] }
+    }
+
+    /// Bytes of one pass: two reads and a write, as STREAM counts them.
+    pub fn bytes(&self) -> usize {
+        3 * size_of::<f64>() * self.a.len()
+    }
+
+    /// One pass on this thread.
+    pub fn pass(&mut self) {
+        triad(&mut self.a, &self.b, &self.c);
+    }
+
+    /// One pass on all threads of the pool that is installed.
+    pub fn parallel_pass(&mut self) {
+        let part = self.a.len().div_ceil(rayon::current_num_threads()).max(1);
+        let Triad { a, b, c } = self;
+        a.par_chunks_mut(part)
+            .zip(b.par_chunks(part))
+            .zip(c.par_chunks(part))
+            .for_each(|((a, b), c)| triad(a, b, c));
+    }
+}
+
+fn triad(a: &mut [f64], b: &[f64], c: &[f64]) {
+    let factor = black_box(3.0);
+    dispatch!(Level::new(), simd => triad_with(simd, a, b, c, factor));
+    black_box(a);
+}
+
+#[inline(always)]
+fn triad_with<S: Simd>(_: S, a: &mut [f64], b: &[f64], c: &[f64], factor: f64) {
+    for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+        *a = b + factor * c;
+    }
+}
+
+/// Chains of multiply-adds that do not wait for each other: as many as hide
+/// the latency and fit the registers.
+const CHAINS: usize = 12;
+
+/// Sum of the chains, and numbers per vector.
+#[inline(always)]
+fn chains<S: Simd>(simd: S, rounds: usize) -> (f64, usize) {
+    let factor = S::f64s::splat(simd, black_box(0.999));
+    let shift = S::f64s::splat(simd, black_box(0.001));
+    let mut chains = [S::f64s::splat(simd, black_box(2.0)); CHAINS];
+    for _ in 0..rounds {
+        for chain in &mut chains {
+            *chain = chain.mul_add(factor, shift);
+        }
+    }
+    (chains.iter().map(|chain| chain.reduce_sum()).sum(), S::f64s::LEN)
+}
+
+/// So many multiply-adds in a row per chain, and returns the numbers per vector.
+pub fn multiply_adds(rounds: usize) -> usize {
+    let (sum, lanes) = dispatch!(Level::new(), simd => chains(simd, rounds));
+    black_box(sum);
+    lanes
+}
+
+/// Floating-point operations of [`multiply_adds`].
+pub fn operations(rounds: usize, lanes: usize) -> f64 {
+    (2 * CHAINS * rounds * lanes) as f64
+}
+
+/// Largest rate of multiply-adds of one thread \[flop/s\], and the numbers per
+/// vector; the best of some tries, since this is a limit.
+pub fn multiply_add_rate() -> (f64, usize) {
+    const ROUNDS: usize = 1_000_000;
+    let lanes = multiply_adds(ROUNDS);
+    let tries = (0..7).map(|_| {
+        seconds_of(Clock::Processor, || {
+            multiply_adds(ROUNDS);
+        })
+    });
+    (operations(ROUNDS, lanes) / tries.fold(f64::INFINITY, f64::min), lanes)
+}
+
+/// Median rate of the triad \[B/s\] over some passes.
+pub fn triad_rate(triad: &mut Triad, clock: Clock, passes: usize, pass: fn(&mut Triad)) -> f64 {
+    pass(triad);
+    let seconds: Vec<f64> = (0..passes).map(|_| seconds_of(clock, || pass(triad))).collect();
+    median(&seconds).map_or(f64::NAN, |seconds| triad.bytes() as f64 / seconds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_triad_is_the_same_on_one_thread_and_on_all() {
+        let mut triad = Triad::new(8 * 1001);
+        triad.pass();
+        assert!(triad.a.iter().all(|a| *a == 7.0));
+        triad.a.fill(0.0);
+        triad.parallel_pass();
+        assert!(triad.a.iter().all(|a| *a == 7.0));
+        assert_eq!(triad.bytes(), 24 * 1001);
+    }
+}

@@ -1,0 +1,4 @@
+//! How fast the solver is, beside the limits of the machine and other codes.
+
+pub mod bench;
+pub mod race;

@@ -1,0 +1,3 @@
+//! Studies of the shape functions.
+
+pub mod consistency;

@@ -1,0 +1,96 @@
+//! Hard cases that move: sudden loads, and contact that ends.
+
+use crate::specimens::simple::SIZE;
+use crate::studies::hard::bodies::{cube, face, rubber};
+use crate::studies::hard::cases::{case, measured};
+use crate::studies::hard::run::{HardCase, Truth};
+use crate::studies::workbench::Workbench;
+use anyhow::Result;
+use mtled::algebra::tensor::Vector3;
+use mtled::geometry::Shape;
+use mtled::problem::{
+    Amplitude, BodyForce, Friction, Motion, Obstacle, ObstacleSide, Problem, StepControl,
+};
+
+pub fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
+    let resonates: &[&str] = &["finite", "Diverged", "Inverted"];
+    for (id, words, safety_factor, ends, remark) in [
+        (
+            "sudden_08",
+            "half gravity all at once, no damping, 0.8 of the critical step",
+            0.8,
+            ["finite"].as_slice(),
+            "",
+        ),
+        (
+            "sudden_09",
+            "half gravity all at once, no damping, 0.9 of the critical step",
+            0.9,
+            resonates,
+            "resonates with the step: it diverges after 39 558 of 100 000 steps",
+        ),
+    ] {
+        list.push(HardCase {
+            steps: Some(bench.pick(4_000, 100_000)),
+            limit: measured(
+                1e-2,
+                "measured 3.2e-4 in 4000 steps, 1.3e-3 in 100 000; 1 % is wanted",
+            ),
+            ends,
+            remark,
+            ..case(id, words, sudden(safety_factor)?, Truth::Balance)
+        });
+    }
+    let mut problem = pressed(spacing)?;
+    let limit = measured(
+        1e-6,
+        "measured 3e-14, on 21 families of clouds up to 1.3e-7, 1.9 s after the ball has let go: the law \
+         is elastic and the shape at rest comes back, as exp(−15 t/s) on most clouds, slower on five",
+    );
+    let words = "pressed against a ball by 30 % and taken away, damped";
+    list.push(HardCase { limit, ..case("contact_release", words, problem.clone(), Truth::Rest) });
+    // Let go while pressed: the body leaps off.
+    problem.conditions[0].release = Some(0.6);
+    let step = StepControl { safety_factor: 0.8, ..StepControl::default() };
+    problem.motion = Motion::Dynamic { end: 1.2, step, damping: 0.0 };
+    list.push(HardCase {
+        limit: measured(
+            2.4e-2,
+            "measured 1.01e-2, on 21 families of clouds up to 2.2e-2; O(Δt²) in theory",
+        ),
+        ..case("contact_let_go", "let go while pressed, no damping", problem, Truth::Balance)
+    });
+    Ok(())
+}
+
+/// A bonded cube that starts at rest under a body force from the side.
+fn sudden(safety_factor: f64) -> Result<Problem> {
+    let mut problem = cube(rubber()?, SIZE / 4.0);
+    problem.conditions = vec![face(0.0, [Some(0.0); 3], Amplitude::Constant)];
+    problem.loads.body_forces = vec![BodyForce {
+        acceleration: Vector3::new(5.0, 0.0, 0.0).into(),
+        amplitude: Amplitude::Constant,
+    }];
+    let step = StepControl { safety_factor, ..StepControl::default() };
+    problem.motion = Motion::Dynamic { end: 1.0, step, damping: 0.0 };
+    Ok(problem)
+}
+
+/// A cube whose base lifts it by 30 % of its height into a fixed ball, which
+/// stands 5 % above it, and lowers it again.
+fn pressed(spacing: f64) -> Result<Problem> {
+    let mut problem = cube(rubber()?, spacing);
+    let there_and_back = Amplitude::Table(vec![(0.0, 0.0), (0.5, 1.0), (0.6, 1.0), (1.1, 0.0)]);
+    let base = face(0.0, [Some(0.0), Some(0.0), Some(0.3 * SIZE)], there_and_back);
+    problem.conditions = vec![base];
+    problem.obstacles = vec![Obstacle {
+        name: "ball".into(),
+        shape: Shape::Sphere { centre: Vector3::z() * (1.5 * SIZE), radius: 0.45 * SIZE },
+        offset: 0.0,
+        side: ObstacleSide::Outside,
+        friction: Friction::Frictionless,
+    }];
+    let step = StepControl { safety_factor: 0.8, ..StepControl::default() };
+    problem.motion = Motion::Dynamic { end: 3.0, step, damping: 30.0 };
+    Ok(problem)
+}
