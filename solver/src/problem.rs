@@ -45,7 +45,7 @@ pub struct Recipe {
     pub enforcement: Enforcement,
     pub gradients: Gradients,
     pub gradient_storage: GradientStorage,
-    pub dilatation: Dilatation,
+    pub volumetric_projection: VolumetricProjection,
 }
 
 /// Where the nodes come from.
@@ -150,14 +150,14 @@ pub enum GradientStorage {
     Single,
 }
 
-/// How the change of volume J enters the energy.
+/// Projection of the change of volume J in the bulk energy, against volumetric locking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dilatation {
-    /// Point by point: nearly incompressible materials lock.
-    Pointwise,
-    /// The bulk energy of nearly incompressible materials sees J projected on
-    /// patches of points; other materials are treated point by point.
-    Projected,
+pub enum VolumetricProjection {
+    /// J at every quadrature point: nearly incompressible materials lock.
+    None,
+    /// J projected onto linear functions on patches of quadrature points where the
+    /// material is nearly incompressible; at every point elsewhere.
+    Patches,
 }
 
 /// How prescribed displacements are enforced on functions that do not

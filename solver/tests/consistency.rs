@@ -102,7 +102,7 @@ fn two_bodies_are_made_consistent_each_by_itself() {
 fn projected_forces_are_the_derivative_of_the_projected_energy() {
     for law in objective_laws() {
         let mut problem = with_law(jittered(cube(5), 0.3, 4), law);
-        problem.recipe.dilatation = Dilatation::Projected;
+        problem.recipe.volumetric_projection = VolumetricProjection::Patches;
         let discretisation = Discretisation::new(&problem).unwrap();
         let model = Model::new(&problem, &discretisation).unwrap();
         let mut workspace = Workspace::new(&model);
@@ -126,7 +126,7 @@ fn projected_forces_are_the_derivative_of_the_projected_energy() {
 #[test]
 fn a_material_that_changes_its_volume_is_not_projected() {
     let mut problem = cube(5);
-    problem.recipe.dilatation = Dilatation::Projected;
+    problem.recipe.volumetric_projection = VolumetricProjection::Patches;
     let discretisation = Discretisation::new(&problem).unwrap();
     let projected = |problem: &Problem| {
         let model = Model::new(problem, &discretisation).unwrap();
@@ -141,7 +141,7 @@ fn a_material_that_changes_its_volume_is_not_projected() {
 fn held_all_around(storage: GradientStorage, field: Field) -> (Model, Vec<f64>) {
     let mut problem = collocated(jittered(cube(6), 0.3, 4));
     problem = with_law(problem, neo_hookean(3000.0, 0.49));
-    problem.recipe.dilatation = Dilatation::Projected;
+    problem.recipe.volumetric_projection = VolumetricProjection::Patches;
     problem.recipe.gradient_storage = storage;
     problem.recipe.gradients = Gradients::Consistent { tolerance: 1e-13 };
     let mut boundary = condition("boundary", Selector::All, [None; 3]);

@@ -8,7 +8,7 @@ use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::material::Law;
 use mtled::model::Model;
 use mtled::motion::internal_force::{Workspace, internal_force, stiffness_times, strain_energy};
-use mtled::problem::{Dilatation, Problem};
+use mtled::problem::{Problem, VolumetricProjection};
 use proptest::prelude::*;
 
 fn forces(model: &Model, u: &[f64]) -> Vec<f64> {
@@ -118,7 +118,7 @@ fn laws_of_the_tangent() -> Vec<Law> {
 fn the_tangent_is_the_derivative_of_the_internal_force() {
     for law in laws_of_the_tangent() {
         for mut problem in [with_stiff_half(cube(3), law), with_stiff_half(square(5), law)] {
-            problem.recipe.dilatation = Dilatation::Projected;
+            problem.recipe.volumetric_projection = VolumetricProjection::Patches;
             let (_, model) = build(&problem);
             let (u, v) = (noise(&model, 2e-3, 1), noise(&model, 1.0, 2));
             let moved = |sign: f64| -> Vec<f64> {
@@ -141,7 +141,7 @@ fn the_tangent_is_symmetric_to_round_off() {
     for law in laws_of_the_tangent() {
         for mut problem in bodies() {
             problem = with_stiff_half(problem, law);
-            problem.recipe.dilatation = Dilatation::Projected;
+            problem.recipe.volumetric_projection = VolumetricProjection::Patches;
             let (_, model) = build(&problem);
             let (u, v, w) = (noise(&model, 1e-3, 1), noise(&model, 1.0, 2), noise(&model, 1.0, 3));
             let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
@@ -158,7 +158,7 @@ fn every_set_of_vector_instructions_gives_the_same_forces_up_to_round_off() {
     for problem in bodies() {
         for law in laws_of_the_tangent() {
             let mut problem = with_stiff_half(problem.clone(), law);
-            problem.recipe.dilatation = Dilatation::Projected;
+            problem.recipe.volumetric_projection = VolumetricProjection::Patches;
             let (_, model) = build(&problem);
             let u = noise(&model, 1e-3, 4);
             let mut workspace = Workspace::new(&model);

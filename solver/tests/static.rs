@@ -240,7 +240,7 @@ fn difference(u: &[f64], v: &[f64]) -> f64 {
 fn newton_reaches_the_solution_of_relaxation_with_its_reactions() {
     let nearly_incompressible = |problem| {
         let mut problem = with_law(leaning(problem), neo_hookean(3000.0, 0.49));
-        problem.recipe.dilatation = Dilatation::Projected;
+        problem.recipe.volumetric_projection = VolumetricProjection::Patches;
         problem
     };
     for problem in [
@@ -339,7 +339,7 @@ fn the_stiffness_of_a_node_is_the_mean_diagonal_of_the_tangent_at_rest() {
         [(cube(3), 0.3), (jittered(cube(3), 0.2, 1), 0.49), (jittered(square(5), 0.2, 1), 0.49)]
     {
         let mut problem = with_law(problem, neo_hookean(3000.0, poisson_ratio));
-        problem.recipe.dilatation = Dilatation::Projected;
+        problem.recipe.volumetric_projection = VolumetricProjection::Patches;
         let (_, model) = build(&problem);
         let (d, size) = (model.components, model.size());
         let (mut plus, mut minus) = (vec![0.0; size], vec![0.0; size]);

@@ -5,7 +5,7 @@ use crate::discretisation::patches::orthonormal_basis;
 use crate::discretisation::rows::Rows;
 use crate::material::Law;
 use crate::model::projection::{Projection, Weighted};
-use crate::problem::{Dilatation, GradientStorage, Problem};
+use crate::problem::{GradientStorage, Problem, VolumetricProjection};
 use std::ops::Range;
 
 /// Grad φ as it is held, `components` per support entry \[1/m\].
@@ -173,9 +173,9 @@ fn block(problem: &Problem, patches: Range<usize>, discretisation: &Discretisati
         pack(rows, points.clone(), components, storage, discretisation.cloud.positions.len());
     let region = discretisation.quadrature.regions[points.start] as usize;
     let law = problem.regions[region].material.law;
-    let share = match problem.recipe.dilatation {
-        Dilatation::Projected => law.projected_share(),
-        Dilatation::Pointwise => 0.0,
+    let share = match problem.recipe.volumetric_projection {
+        VolumetricProjection::Patches => law.projected_share(),
+        VolumetricProjection::None => 0.0,
     };
     Block {
         law,

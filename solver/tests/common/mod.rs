@@ -66,7 +66,7 @@ fn body(dimension: Dimension, cells: usize) -> Problem {
             enforcement: Enforcement::Direct,
             gradients: Gradients::Plain,
             gradient_storage: GradientStorage::Double,
-            dilatation: Dilatation::Pointwise,
+            volumetric_projection: VolumetricProjection::None,
         },
         conditions: vec![],
         loads: Loads::default(),

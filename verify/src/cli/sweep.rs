@@ -98,7 +98,7 @@ pub struct Ranges {
     gradient_tolerance: Option<String>,
     /// projected, pointwise.
     #[arg(long, value_name = "LIST")]
-    dilatation: Option<String>,
+    volumetric_projection: Option<String>,
     /// Largest random move of nodes over their spacing [–].
     #[arg(long, value_name = "RANGE")]
     jitter: Option<String>,
@@ -130,7 +130,7 @@ impl Ranges {
             (Knob::Enforcement, &self.enforcement),
             (Knob::Gradients, &self.gradients),
             (Knob::GradientTolerance, &self.gradient_tolerance),
-            (Knob::Dilatation, &self.dilatation),
+            (Knob::VolumetricProjection, &self.volumetric_projection),
             (Knob::Jitter, &self.jitter),
             (Knob::SafetyFactor, &self.safety_factor),
             (Knob::Solver, &self.solver),

@@ -21,7 +21,7 @@ pub enum Knob {
     Gradients,
     /// Of consistent gradients, over the defect of plain ones \[–\].
     GradientTolerance,
-    Dilatation,
+    VolumetricProjection,
     /// Largest random move over the spacing \[–\]; a lattice becomes jittered.
     Jitter,
     /// Another cloud of the same spacing: added to the seed of a jittered or
@@ -51,7 +51,11 @@ pub const KNOBS: &[(Knob, &str, &[&str])] = &[
     (Knob::Enforcement, "enforcement", &["discretisation", "enforcement"]),
     (Knob::Gradients, "gradients", &["discretisation", "gradients"]),
     (Knob::GradientTolerance, "gradient_tolerance", &["discretisation", "gradient_tolerance"]),
-    (Knob::Dilatation, "dilatation", &["discretisation", "dilatation"]),
+    (
+        Knob::VolumetricProjection,
+        "volumetric_projection",
+        &["discretisation", "volumetric_projection"],
+    ),
     (Knob::Jitter, "jitter", &["discretisation", "jitter"]),
     (Knob::Cloud, "cloud", &["discretisation", "seed"]),
     (Knob::SafetyFactor, "safety_factor", &["time", "safety_factor"]),

@@ -9,8 +9,8 @@ use mtled::discretisation::quadrature::quadrature;
 use mtled::geometry::{Shape, Surface};
 use mtled::material::Material;
 use mtled::problem::{
-    Amplitude, BodyForce, Dilatation, Enforcement, Field, Gradients, InsideRule, MassRule,
-    Prescribed, Problem,
+    Amplitude, BodyForce, Enforcement, Field, Gradients, InsideRule, MassRule, Prescribed, Problem,
+    VolumetricProjection,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -172,7 +172,7 @@ fn make_plain(problem: &mut Problem, points: usize) -> Result<()> {
     recipe.grid.inside = InsideRule::Centre;
     recipe.gradients = Gradients::Plain;
     recipe.enforcement = Enforcement::Direct;
-    recipe.dilatation = Dilatation::Pointwise;
+    recipe.volumetric_projection = VolumetricProjection::None;
     recipe.mass = MassRule::EvenSplit;
     let grid = &mut recipe.grid;
     match problem.body {

@@ -6,9 +6,9 @@ use mtled::geometry::Shape;
 use mtled::geometry::selection::{Extent, Selector};
 use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use mtled::problem::{
-    Amplitude, BackgroundGrid, Basis, Cloud, Dilatation, Dimension, Enforcement,
-    EssentialCondition, GradientStorage, Gradients, InsideRule, Loads, MassRule, Motion,
-    Prescribed, Problem, Recipe, Region, Relaxation, RelaxationMass, StepControl, WeightFunction,
+    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, Enforcement, EssentialCondition,
+    GradientStorage, Gradients, InsideRule, Loads, MassRule, Motion, Prescribed, Problem, Recipe,
+    Region, Relaxation, RelaxationMass, StepControl, VolumetricProjection, WeightFunction,
 };
 
 /// Plane strain in a slab of 1 m.
@@ -50,7 +50,7 @@ pub fn recipe(spacing: f64, jitter: f64, seed: u64) -> Recipe {
         enforcement: Enforcement::Collocation,
         gradients: Gradients::Consistent { tolerance: 1e-12 },
         gradient_storage: GradientStorage::Double,
-        dilatation: Dilatation::Projected,
+        volumetric_projection: VolumetricProjection::Patches,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::scene::{Case, Knob, Setting};
 use crate::studies::workbench::spacing_of;
-use mtled::problem::{Basis, Dilatation, Gradients, Motion};
+use mtled::problem::{Basis, Gradients, Motion, VolumetricProjection};
 
 /// One part of the error.
 #[derive(Debug, Clone)]
@@ -69,11 +69,11 @@ pub fn parts(case: &Case) -> Vec<Part> {
     time(case, &mut add);
     let projected =
         case.problem.regions.iter().any(|region| region.material.law.projected_share() > 0.0);
-    if recipe.dilatation == Dilatation::Projected && projected {
+    if recipe.volumetric_projection == VolumetricProjection::Patches && projected {
         add(
             "incompressibility",
             "J taken point by point: the locking that the projection avoids".into(),
-            vec![Setting::word(Knob::Dilatation, "pointwise")],
+            vec![Setting::word(Knob::VolumetricProjection, "none")],
             1.0,
         );
     }

@@ -13,7 +13,7 @@ const CHANGES: &[(Knob, &str)] = &[
     (Knob::WeightFunction, "exponential"),
     (Knob::Mass, "even_split"),
     (Knob::Gradients, "plain"),
-    (Knob::Dilatation, "pointwise"),
+    (Knob::VolumetricProjection, "none"),
     (Knob::Enforcement, "direct"),
 ];
 

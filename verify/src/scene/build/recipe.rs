@@ -3,19 +3,21 @@
 use crate::files;
 use crate::scene::build::Builder;
 use crate::scene::format::recipe::{
-    BasisFormat, CloudFormat, DilatationFormat, DiscretisationFormat, EnforcementFormat,
-    GradientStorageFormat, GradientsFormat, GridFormat, InsideFormat, MassFormat,
+    BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientStorageFormat,
+    GradientsFormat, GridFormat, InsideFormat, MassFormat, VolumetricProjectionFormat,
     WeightFunctionFormat,
 };
 use mtled::geometry::Shape;
 use mtled::problem::{
-    BackgroundGrid, Basis, Cloud, Dilatation, Dimension, Enforcement, GradientStorage, Gradients,
-    InsideRule, MassRule, Recipe, Refinement, WeightFunction,
+    BackgroundGrid, Basis, Cloud, Dimension, Enforcement, GradientStorage, Gradients, InsideRule,
+    MassRule, Recipe, Refinement, VolumetricProjection, WeightFunction,
 };
 
 /// What a case file need not say.
 pub mod defaults {
-    use mtled::problem::{Basis, Dilatation, Enforcement, InsideRule, MassRule, WeightFunction};
+    use mtled::problem::{
+        Basis, Enforcement, InsideRule, MassRule, VolumetricProjection, WeightFunction,
+    };
 
     /// Influence radius over nodal spacing \[–\], by basis: a quadratic one needs
     /// more nodes in its supports.
@@ -40,7 +42,7 @@ pub mod defaults {
     pub const ENFORCEMENT: Enforcement = Enforcement::Collocation;
     /// Of consistent gradients, over the defect of plain ones \[–\].
     pub const GRADIENT_TOLERANCE: f64 = 1e-3;
-    pub const DILATATION: Dilatation = Dilatation::Projected;
+    pub const VOLUMETRIC_PROJECTION: VolumetricProjection = VolumetricProjection::Patches;
     pub const INSIDE: InsideRule = InsideRule::VolumeFraction;
     /// Two cells per node in three dimensions: 1.26³ = 2.
     pub const CELLS_PER_SPACING: f64 = 1.26;
@@ -94,7 +96,9 @@ impl Builder<'_> {
                 Some(GradientStorageFormat::Single) => GradientStorage::Single,
                 Some(GradientStorageFormat::Double) | None => GradientStorage::Double,
             },
-            dilatation: format.dilatation.map_or(defaults::DILATATION, Dilatation::from),
+            volumetric_projection: format
+                .volumetric_projection
+                .map_or(defaults::VOLUMETRIC_PROJECTION, VolumetricProjection::from),
         })
     }
 
@@ -324,11 +328,11 @@ impl From<EnforcementFormat> for Enforcement {
     }
 }
 
-impl From<DilatationFormat> for Dilatation {
-    fn from(format: DilatationFormat) -> Dilatation {
+impl From<VolumetricProjectionFormat> for VolumetricProjection {
+    fn from(format: VolumetricProjectionFormat) -> VolumetricProjection {
         match format {
-            DilatationFormat::Pointwise => Dilatation::Pointwise,
-            DilatationFormat::Projected => Dilatation::Projected,
+            VolumetricProjectionFormat::None => VolumetricProjection::None,
+            VolumetricProjectionFormat::Patches => VolumetricProjection::Patches,
         }
     }
 }

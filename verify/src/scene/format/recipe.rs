@@ -45,8 +45,8 @@ pub struct DiscretisationFormat {
     pub gradient_tolerance: Option<f64>,
     /// "double" by default.
     pub gradient_storage: Option<GradientStorageFormat>,
-    /// "projected" by default.
-    pub dilatation: Option<DilatationFormat>,
+    /// "patches" by default.
+    pub volumetric_projection: Option<VolumetricProjectionFormat>,
     #[serde(default)]
     pub grid: GridFormat,
 }
@@ -126,14 +126,14 @@ pub enum EnforcementFormat {
     Collocation,
 }
 
-/// How the change of volume enters the energy.
+/// Projection of the change of volume in the bulk energy.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum DilatationFormat {
-    /// Point by point, which locks where ν is close to 0.5.
-    Pointwise,
-    /// Projected on patches of points where ν is larger than 0.3.
-    Projected,
+pub enum VolumetricProjectionFormat {
+    /// None, which locks where ν is close to 0.5.
+    None,
+    /// On patches of points where ν is larger than 0.3.
+    Patches,
 }
 
 /// Which gradients of the shape functions are used.

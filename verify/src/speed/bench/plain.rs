@@ -6,7 +6,7 @@ use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::patches::orthonormal_basis;
 use mtled::discretisation::{Discretisation, Rows};
 use mtled::material::Law;
-use mtled::problem::{Dilatation, Problem};
+use mtled::problem::{Problem, VolumetricProjection};
 
 /// The same work as `internal_force`, point by point and patch by patch.
 pub struct PlainLoop<'a> {
@@ -27,7 +27,7 @@ impl<'a> PlainLoop<'a> {
     pub fn new(problem: &Problem, discretisation: &'a Discretisation) -> PlainLoop<'a> {
         let (quadrature, patches) = (&discretisation.quadrature, &discretisation.patches);
         let d = discretisation.dimension.components();
-        let projected = problem.recipe.dilatation == Dilatation::Projected;
+        let projected = problem.recipe.volumetric_projection == VolumetricProjection::Patches;
         let basis = |ends: &[usize]| {
             orthonormal_basis(&quadrature.positions, &quadrature.weights, ends[0]..ends[1], d)
         };

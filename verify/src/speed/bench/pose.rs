@@ -6,7 +6,7 @@ use mtled::discretisation::Discretisation;
 use mtled::material::{Law, Material, MooneyRivlin};
 use mtled::model::Model;
 use mtled::motion::internal_force::{Workspace, internal_force};
-use mtled::problem::{Dilatation, Dimension, Gradients, Motion, Problem, StepControl};
+use mtled::problem::{Dimension, Gradients, Motion, Problem, StepControl, VolumetricProjection};
 
 /// Cells per nodal spacing: two points per node.
 const CELLS_PER_SPACING: f64 = 1.26;
@@ -65,7 +65,7 @@ pub fn cube(cells: usize, neighbours: f64) -> Problem {
 
 /// As [`cube`] with J taken point by point: no projection.
 pub fn pointwise(mut problem: Problem) -> Problem {
-    problem.recipe.dilatation = Dilatation::Pointwise;
+    problem.recipe.volumetric_projection = VolumetricProjection::None;
     problem
 }
 

@@ -16,7 +16,7 @@ use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::Shape;
 use mtled::geometry::selection::Selector;
 use mtled::problem::{
-    Amplitude, Cloud, Dilatation, Dimension, Prescribed, Problem, Refinement, Region,
+    Amplitude, Cloud, Dimension, Prescribed, Problem, Refinement, Region, VolumetricProjection,
 };
 use mtled_checks::study::{Bound, Kind};
 
@@ -127,7 +127,7 @@ fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
         ..folded
     });
     problem.motion = pointwise_motion;
-    problem.recipe.dilatation = Dilatation::Pointwise;
+    problem.recipe.volumetric_projection = VolumetricProjection::None;
     problem.recipe.grid = grid(0.5 * spacing);
     let words = "the same, J point by point, 2 cells per spacing";
     let folded = case("rollers_compressed_50_pointwise", words, problem, truth);
