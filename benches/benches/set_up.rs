@@ -1,4 +1,4 @@
-//! What comes before the first step: neighbours, moving least squares,
+//! The set-up before the first step: neighbours, moving least squares,
 //! quadrature, consistent gradients, critical step.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -9,26 +9,26 @@ use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
 use mtled::problem::{Basis, Gradients, Problem};
-use mtled_benches::{Size, note, settings, smoke};
-use mtled_verify::speed::bench::pose::cube;
+use mtled_benches::{BodySize, settings, smoke, write_note};
+use mtled_verify::speed::bench::bodies::cube;
 use std::hint::black_box;
 
 const TMP: &str = env!("CARGO_TARGET_TMPDIR");
 
-/// About 30 000 points, or few where nobody measures.
+/// A body of about 30 000 points, or few in a smoke test.
 fn body(neighbours: f64) -> Problem {
     cube(if smoke() { 10 } else { 31 }, neighbours)
 }
 
 fn discretise(problem: &Problem) -> Discretisation {
-    Discretisation::new(problem).expect("the cube is sound")
+    Discretisation::new(problem).expect("the cube is valid")
 }
 
 fn points(discretisation: &Discretisation) -> Throughput {
     Throughput::Elements(discretisation.supports.len() as u64)
 }
 
-/// φ and Grad φ at every quadrature point, one after the other on one thread.
+/// φ and Grad φ at every quadrature point on one thread.
 fn mls(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("mls");
     // A quadratic basis needs wider supports.
@@ -38,7 +38,7 @@ fn mls(criterion: &mut Criterion) {
         let mut problem = body(neighbours);
         problem.recipe.basis = basis;
         let discretisation = discretise(&problem);
-        note(TMP, ["mls", name], "size.json", &Size::of(&discretisation));
+        write_note(TMP, ["mls", name], "size.json", &BodySize::of(&discretisation));
         group.throughput(points(&discretisation));
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
@@ -51,13 +51,13 @@ fn mls(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Nodes within a radius of every quadrature point, the cells made anew.
+/// Nodes within a radius of every quadrature point, with the sorting into cells.
 fn neighbours(criterion: &mut Criterion) {
     let problem = body(32.0);
     let discretisation = discretise(&problem);
     let nodes = &discretisation.cloud.positions;
     let radius = problem.recipe.dilation * discretisation.cloud.spacing[0];
-    note(TMP, ["neighbours", "search"], "size.json", &Size::of(&discretisation));
+    write_note(TMP, ["neighbours", "search"], "size.json", &BodySize::of(&discretisation));
     let mut group = criterion.benchmark_group("neighbours");
     group.throughput(points(&discretisation));
     group.bench_function("search", |bencher| {
@@ -73,16 +73,16 @@ fn neighbours(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Parts and the whole of the discretisation, on all threads.
+/// The quadrature and the whole discretisation on all threads.
 fn discretisation(criterion: &mut Criterion) {
     let plain = body(32.0);
     let mut consistent = plain.clone();
     consistent.recipe.gradients = Gradients::Consistent { tolerance: 1e-3 };
-    let size = Size::of(&discretise(&plain));
+    let size = BodySize::of(&discretise(&plain));
     let mut group = criterion.benchmark_group("discretisation");
     group.sample_size(10).throughput(Throughput::Elements(size.points as u64));
     for name in ["quadrature", "plain", "consistent"] {
-        note(TMP, ["discretisation", name], "size.json", &size);
+        write_note(TMP, ["discretisation", name], "size.json", &size);
     }
     group.bench_function("quadrature", |bencher| {
         let grid = &plain.recipe.grid;
@@ -93,18 +93,18 @@ fn discretisation(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Masses, conditions and blocks, and the critical step by Lanczos.
+/// The model with its masses, conditions and blocks, and the critical step by Lanczos.
 fn critical_step(criterion: &mut Criterion) {
     let problem = body(32.0);
     let discretisation = discretise(&problem);
-    let bind = || Model::new(&problem, &discretisation).expect("the cube is sound");
-    let model = bind();
+    let assemble = || Model::new(&problem, &discretisation).expect("the cube is valid");
+    let model = assemble();
     let mut group = criterion.benchmark_group("model");
     group.sample_size(10).throughput(points(&discretisation));
     for name in ["bind", "critical_step"] {
-        note(TMP, ["model", name], "size.json", &Size::of(&discretisation));
+        write_note(TMP, ["model", name], "size.json", &BodySize::of(&discretisation));
     }
-    group.bench_function("bind", |bencher| bencher.iter(bind));
+    group.bench_function("bind", |bencher| bencher.iter(assemble));
     let (rest, mut workspace) = (vec![0.0; model.size()], Workspace::new(&model));
     group.bench_function("critical_step", |bencher| {
         bencher.iter(|| critical_time_step(&model, &rest, 0.0, None, &mut workspace));

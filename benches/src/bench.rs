@@ -1,7 +1,7 @@
 //! The table of benchmarks from Criterion's files.
 
 use anyhow::{Context, Result, ensure};
-use mtled_benches::{Limit, Size, Unit};
+use mtled_benches::{BodySize, Limit, Unit};
 use mtled_verify::machine::provenance;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -48,7 +48,7 @@ pub fn table(criterion: &Path) -> Result<String> {
     let mut rows = 0;
     for size in sizes {
         let dir = size.with_file_name("new");
-        // A smoke run leaves a size without a measurement.
+        // A smoke test writes a size without a measurement.
         if dir.join("estimates.json").exists() {
             text.push_str(&row(
                 &read(&dir.join("benchmark.json"))?,
@@ -70,7 +70,7 @@ pub fn table(criterion: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// The limits of the machine in the same run.
+/// The limits of the machine, measured in the same run.
 fn limits(criterion: &Path) -> Result<String> {
     let mut found = Vec::new();
     find("limit.json", criterion, &mut found)?;
@@ -87,26 +87,31 @@ fn limits(criterion: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// What a limit comes to, in 10⁹ per second.
+/// Rate of a limit \[10⁹/s\].
 fn rate(limit: &Path) -> Result<f64> {
     let estimates: Estimates = read(&limit.with_file_name("new").join("estimates.json"))?;
     Ok(read::<Limit>(limit)?.amount / estimates.median.point_estimate)
 }
 
-/// `triad` in GB/s.
-fn row(benchmark: &Benchmark, size: &Size, estimates: &Estimates, triad: Option<f64>) -> String {
+/// A row of the table; `triad` is in GB/s.
+fn row(
+    benchmark: &Benchmark,
+    size: &BodySize,
+    estimates: &Estimates,
+    triad: Option<f64>,
+) -> String {
     let median = estimates.median.point_estimate;
     let interval = &estimates.median.confidence_interval;
     let half = 50.0 * (interval.upper_bound - interval.lower_bound) / median;
     let visits = size.points as f64 * size.neighbours;
-    // The triad is that of one thread, as the force alone is.
-    let alone = benchmark.full_id.starts_with("internal_force/");
-    let share = match (size.bytes, triad) {
-        (Some(bytes), Some(triad)) if alone => format!("{:.2}", bytes as f64 / median / triad),
+    // The triad was measured on one thread.
+    let one_thread = benchmark.full_id.starts_with("internal_force/");
+    let fraction = match (size.bytes, triad) {
+        (Some(bytes), Some(triad)) if one_thread => format!("{:.2}", bytes as f64 / median / triad),
         _ => "–".into(),
     };
     format!(
-        "| {} | {} | {} | {:.1} | {} ± {half:.1} % | {:.2} M | {:.2} | {share} |\n",
+        "| {} | {} | {} | {:.1} | {} ± {half:.1} % | {:.2} M | {:.2} | {fraction} |\n",
         benchmark.full_id,
         size.nodes,
         size.points,
@@ -117,7 +122,7 @@ fn row(benchmark: &Benchmark, size: &Size, estimates: &Estimates, triad: Option<
     )
 }
 
-/// A time given in ns, with its unit.
+/// A time in ns with a suitable unit.
 fn time(ns: f64) -> String {
     match ns {
         ns if ns < 1e3 => format!("{ns:.1} ns"),
@@ -155,16 +160,16 @@ mod tests {
     #[test]
     fn a_row_states_rates_per_point_and_per_neighbour() {
         let benchmark = Benchmark { full_id: "internal_force/cube".into() };
-        let size = Size { nodes: 700, points: 1000, neighbours: 20.0, bytes: Some(500_000) };
+        let size = BodySize { nodes: 700, points: 1000, neighbours: 20.0, bytes: Some(500_000) };
         let interval = Interval { lower_bound: 99e3, upper_bound: 101e3 };
         let median = Estimate { point_estimate: 100e3, confidence_interval: interval };
         let row = row(&benchmark, &size, &Estimates { median }, Some(10.0));
-        let wanted = "| internal_force/cube | 700 | 1000 | 20.0 | 100.0 µs ± 1.0 % | 10.00 M | 5.00 | 0.50 |\n";
-        assert_eq!(row, wanted);
+        let expected = "| internal_force/cube | 700 | 1000 | 20.0 | 100.0 µs ± 1.0 % | 10.00 M | 5.00 | 0.50 |\n";
+        assert_eq!(row, expected);
     }
 
     #[test]
-    fn times_take_the_unit_that_suits_them() {
+    fn times_have_a_suitable_unit() {
         assert_eq!(time(12.34), "12.3 ns");
         assert_eq!(time(2.5e6), "2.50 ms");
         assert_eq!(time(2.5e9), "2.50 s");

@@ -1,4 +1,4 @@
-//! What the benches leave beside Criterion's files for `bench-table`.
+//! Files that the benches write beside those of Criterion, for `bench-table`.
 
 use criterion::Criterion;
 use mtled::discretisation::Discretisation;
@@ -7,35 +7,42 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;
 
-/// The body that a benchmark works on.
+/// The body of a benchmark.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Size {
+pub struct BodySize {
+    /// Number of nodes.
     pub nodes: usize,
+    /// Number of quadrature points.
     pub points: usize,
     /// Mean number of nodes per support.
     pub neighbours: f64,
-    /// Bytes that one call streams, where that is known.
+    /// Bytes that one call reads, if known.
     pub bytes: Option<usize>,
 }
 
-/// What a limit is counted in.
+/// Unit of a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Unit {
+    /// Bytes read and written.
     Bytes,
+    /// Floating-point operations.
     Operations,
 }
 
-/// What one call of a benchmark of the machine's limits does.
+/// Work of one call of a benchmark of the limits of the machine.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Limit {
+    /// Amount of work.
     pub amount: f64,
+    /// Its unit.
     pub unit: Unit,
 }
 
-impl Size {
-    pub fn of(discretisation: &Discretisation) -> Size {
-        Size {
+impl BodySize {
+    /// The size of a discretised body.
+    pub fn of(discretisation: &Discretisation) -> BodySize {
+        BodySize {
             nodes: discretisation.cloud.positions.len(),
             points: discretisation.supports.len(),
             neighbours: discretisation.mean_support(),
@@ -43,27 +50,28 @@ impl Size {
         }
     }
 
-    /// With the bytes that one evaluation of the internal force streams.
-    pub fn streamed(self, model: &Model) -> Size {
-        Size { bytes: Some(model.bytes_per_step()), ..self }
+    /// Adds the bytes that one evaluation of the internal force reads.
+    pub fn streamed(self, model: &Model) -> BodySize {
+        BodySize { bytes: Some(model.bytes_per_step()), ..self }
     }
 }
 
-/// Writes `what` to `file` beside what Criterion writes about a benchmark;
-/// `tmp` is the folder that Cargo gives to benches.
-pub fn note(tmp: &str, benchmark: [&str; 2], file: &str, what: &impl Serialize) {
+/// Writes `note` to `file` beside Criterion's files of a benchmark; `tmp` is the temporary
+/// folder that Cargo provides.
+pub fn write_note(tmp: &str, benchmark: [&str; 2], file: &str, note: &impl Serialize) {
     let [group, name] = benchmark;
     let dir = Path::new(tmp).with_file_name("criterion").join(group).join(name);
-    let text = serde_json::to_string(what).expect("numbers can be written") + "\n";
+    let text = serde_json::to_string(note).expect("numbers can be written") + "\n";
     let written = std::fs::create_dir_all(&dir).and_then(|()| std::fs::write(dir.join(file), text));
     written.expect("the target folder is writable");
 }
 
-/// Whether benches are only to be run once each.
+/// Whether every benchmark is run once only, as a test.
 pub fn smoke() -> bool {
     std::env::args().any(|argument| argument == "--test")
 }
 
+/// Settings of all benchmarks.
 pub fn settings() -> Criterion {
     Criterion::default()
         .sample_size(20)

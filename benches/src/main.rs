@@ -1,5 +1,5 @@
-//! Writes the tables of the README from what the commands left behind, so that
-//! no figure in it is typed by hand.
+//! Fills the tables of the README from the output of the commands, so that no figure in it is
+//! typed by hand.
 
 mod bench;
 mod markers;
@@ -9,24 +9,24 @@ use anyhow::Context;
 use clap::Parser;
 use std::path::{Path, PathBuf};
 
-/// Fill the tables of the README from what `mtled verify`, `mtled bench` and
-/// `mtled study race` wrote, or print the table of `cargo bench`.
+/// Fill the tables of the README from the output of `mtled verify`, `mtled bench` and
+/// `mtled study race`, or print the table of `cargo bench`.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
-    /// Criterion's folder, of which the table is printed.
+    /// Criterion's folder, whose table is printed.
     #[arg(long, default_value = "target/criterion")]
     criterion: PathBuf,
-    /// A results.json of `mtled verify`; fills that table instead.
+    /// Fill the table of `mtled verify` from its results.json.
     #[arg(long, value_name = "RESULTS", conflicts_with_all = ["bench", "race"])]
     verify: Option<PathBuf>,
-    /// What `mtled bench` printed; fills these tables instead.
+    /// Fill the tables of `mtled bench` from its output.
     #[arg(long, value_name = "TABLES", conflicts_with = "race")]
     bench: Option<PathBuf>,
-    /// A race.md of `mtled study race`; fills its first table instead.
+    /// Fill the table of `mtled study race` from its race.md.
     #[arg(long, value_name = "RACE")]
     race: Option<PathBuf>,
-    /// The file with the markers.
+    /// The file with the markers between which the tables stand.
     #[arg(long, default_value = "README.md")]
     readme: PathBuf,
 }

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, anyhow};
 
-/// `text` with what stands between the markers of `name` replaced.
+/// `text` with new content between the markers of `name`.
 pub fn fill(text: &str, name: &str, content: &str) -> Result<String> {
     let (begin, end) = (format!("<!-- {name}:begin -->"), format!("<!-- {name}:end -->"));
     let missing = |marker: &str| anyhow!("the marker {marker} is missing");

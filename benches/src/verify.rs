@@ -6,8 +6,7 @@ use mtled_checks::study::{Check, Report};
 use std::fmt::Write;
 use std::path::Path;
 
-/// So many figures of a study are shown: the first it gives, failures before
-/// all others.
+/// Number of figures per study: the first ones, failures before all others.
 const KEY_FIGURES: usize = 2;
 
 /// A Markdown table, one row per study.
@@ -59,7 +58,7 @@ fn figure(check: &Check) -> String {
     cell(&format!("{verdict}{} {value}{unit} ({bound})", check.quantity))
 }
 
-/// Keeps a text inside its cell.
+/// Escapes a text for a cell of a table.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace(['\r', '\n'], " ")
 }
@@ -74,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn failures_come_first_and_lost_values_are_said() {
+    fn failures_come_first_and_nan_is_reported() {
         let checks =
             vec![check("patch/a", 0.01), check("patch/b", 0.02), check("patch/c", f64::NAN)];
         let (id, title) = ("patch".to_string(), "Patch | test".to_string());

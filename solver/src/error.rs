@@ -1,9 +1,10 @@
-//! Everything that can go wrong, with the numbers that say where.
+//! The errors of the solver, with the numbers that locate them.
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::GeometryError;
 
 /// An error of the solver. Positions are reference positions \[m\].
+#[allow(missing_docs, reason = "the messages name every field")]
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
@@ -30,19 +31,20 @@ pub enum Error {
     #[error("node {node} at ({}) has a lumped mass of {mass:.3e} kg: use smaller cells, or mass = \"even_split\"", show(.position))]
     MasslessNode { node: usize, position: Vector3, mass: f64 },
     #[error(
-        "{points} quadrature points with {strains} strains each cannot see all motions of {nodes} nodes, of which \
-             {held} components are held: at least {modes} motions without energy (hourglassing) are left; use smaller \
+        "{points} quadrature points with {strains} strains each cannot resolve all motions of {nodes} nodes with \
+             {constrained} constrained components: at least {modes} zero-energy modes (hourglassing) are left; use smaller \
              cells: 1.26 per nodal spacing give two points per node"
     )]
-    TooFewPoints { points: usize, strains: usize, nodes: usize, held: usize, modes: usize },
-    #[error("{points} quadrature points for {nodes} nodes leave at least {modes} motions of which hardly any strain \
-             energy is seen (hourglassing), {share:.1e} of it at the least, the worst about node {node} at ({}): \
+    TooFewPoints { points: usize, strains: usize, nodes: usize, constrained: usize, modes: usize },
+    #[error("{points} quadrature points for {nodes} nodes leave at least {modes} motions with hardly any strain \
+             energy at these points (hourglassing), {fraction:.1e} of the true one at the least, the worst about \
+             node {node} at ({}): \
              use smaller cells: 1.26 per nodal spacing give two points per node", show(.position))]
     ZeroEnergyModes {
         points: usize,
         nodes: usize,
         modes: usize,
-        share: f64,
+        fraction: f64,
         node: usize,
         position: Vector3,
     },
@@ -87,8 +89,8 @@ pub enum Error {
     )]
     ContactInNewton,
     #[error(
-        "newton's method has found no equilibrium beyond {reached:.4} of the load: after {iterations} iterations the residual \
-             is {residual:.2e} of the largest force{}: use dynamic relaxation, or lower the load",
+        "newton's method converges to no equilibrium beyond {reached:.4} of the load: after {iterations} iterations the residual \
+             is {residual:.2e} of the largest force{}: use dynamic relaxation, or reduce the load",
         if *.indefinite { " and the tangent is indefinite, as where a body buckles" } else { "" }
     )]
     NoEquilibrium { reached: f64, iterations: usize, residual: f64, indefinite: bool },
@@ -96,12 +98,21 @@ pub enum Error {
         "the model was built for a static problem, its masses are fictitious: build it from a problem whose motion is dynamic"
     )]
     FictitiousMass,
+    /// The motion asks for mass scaling, and the model has the masses of the body.
+    #[error(
+        "the motion scales masses by a factor of {factor} in the critical step, and the model was built without: \
+             set it up by Simulation::new, or pass it through raise_masses"
+    )]
+    UnscaledMass {
+        /// Requested ratio of critical time steps \[–\].
+        factor: f64,
+    },
     #[error(
         "a critical step {factor} times longer takes {:.1} % more mass, and more than {:.0} % would change the motion: \
              scale less, or make the smallest spacings larger",
-        100.0 * share, 100.0 * most
+        100.0 * fraction, 100.0 * most
     )]
-    TooMuchAddedMass { factor: f64, share: f64, most: f64 },
+    TooMuchAddedMass { factor: f64, fraction: f64, most: f64 },
 }
 
 /// Coordinates in metres for a message.

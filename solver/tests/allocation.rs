@@ -5,7 +5,6 @@ mod common;
 
 use common::*;
 use mtled::algebra::tensor::Vector3;
-use mtled::geometry::Shape;
 use mtled::motion::state::State;
 use mtled::motion::step::{Buffers, Scheme, step};
 use mtled::problem::*;
@@ -14,19 +13,19 @@ use std::cell::Cell;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The system's allocator; counts what the watched threads ask for.
+/// The system's allocator; counts the allocations of the observed threads.
 struct Counting;
 
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 /// One measurement at a time.
-static TURN: Mutex<()> = Mutex::new(());
+static MEASUREMENT: Mutex<()> = Mutex::new(());
 
 thread_local! {
-    static WATCHED: Cell<bool> = const { Cell::new(false) };
+    static OBSERVED: Cell<bool> = const { Cell::new(false) };
 }
 
 fn count() {
-    if WATCHED.get() {
+    if OBSERVED.get() {
         COUNT.fetch_add(1, Ordering::SeqCst);
     }
 }
@@ -51,37 +50,37 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Allocations of all threads of a rayon pool, rayon's own bookkeeping
-/// included, over 50 steps that follow 100 steps of warming up.
+/// Allocations of all threads of a rayon pool, by rayon itself too, over 50 steps
+/// after 100 warm-up steps.
 fn allocations(problem: &Problem, threads: usize) -> usize {
-    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let _guard = MEASUREMENT.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     let (_, model) = build(problem);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
-        .start_handler(|_| WATCHED.set(true))
+        .start_handler(|_| OBSERVED.set(true))
         .build()
         .unwrap();
     // A thread that is still starting would be counted.
     pool.broadcast(|_| ());
     pool.install(|| {
         let (mut state, mut buffers) = (State::new(&model), Buffers::new(&model, true));
-        let time_step = 0.5 * model.bound;
-        let mut march = |steps: usize| {
+        let time_step = 0.5 * model.per_point_bound;
+        let mut run = |steps: usize| {
             for _ in 0..steps {
                 let scheme = Scheme::central_difference(time_step, state.time_step, 1.0);
                 let then = state.time + time_step;
                 step(&model, &scheme, state.time, then, &mut state, &mut buffers);
             }
         };
-        march(100);
+        run(100);
         let before = COUNT.load(Ordering::SeqCst);
-        march(50);
+        run(50);
         COUNT.load(Ordering::SeqCst) - before
     })
 }
 
-/// A cube held at its base and pulled, by tables and in a straight line.
-fn held() -> Problem {
+/// A cube clamped at its base and pulled at its top by a table.
+fn clamped() -> Problem {
     let mut problem = cube(4);
     problem.conditions.push(condition("base", face(2, 0.0), [Some(0.0); 3]));
     let mut pulled = condition("top", face(2, EDGE), [None, None, Some(0.1 * EDGE)]);
@@ -101,24 +100,18 @@ fn finer(mut problem: Problem) -> Problem {
 fn falling(friction: Friction) -> Problem {
     let mut problem = cube(4);
     gravity(&mut problem, Vector3::new(1.0, 0.0, -9.81));
-    problem.obstacles.push(Obstacle {
-        name: "floor".into(),
-        shape: Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::z() },
-        offset: 0.0,
-        side: ObstacleSide::Outside,
-        friction,
-    });
+    problem.obstacles.push(floor(0.0, Vector3::z(), friction));
     problem
 }
 
 #[test]
 fn a_step_with_direct_conditions_allocates_nothing() {
-    assert_eq!(allocations(&held(), 1), 0);
+    assert_eq!(allocations(&clamped(), 1), 0);
 }
 
 #[test]
 fn a_step_with_collocation_allocates_nothing() {
-    assert_eq!(allocations(&collocated(held()), 1), 0);
+    assert_eq!(allocations(&collocated(clamped()), 1), 0);
 }
 
 #[test]
@@ -129,19 +122,19 @@ fn a_step_with_contact_allocates_nothing() {
 
 #[test]
 fn a_step_over_several_blocks_allocates_nothing() {
-    assert_eq!(allocations(&finer(held()), 1), 0);
-    assert_eq!(allocations(&finer(collocated(held())), 1), 0);
+    assert_eq!(allocations(&finer(clamped()), 1), 0);
+    assert_eq!(allocations(&finer(collocated(clamped())), 1), 0);
 }
 
 #[test]
 fn a_step_over_several_blocks_on_several_threads_allocates_nothing() {
-    assert_eq!(allocations(&finer(held()), 3), 0);
+    assert_eq!(allocations(&finer(clamped()), 3), 0);
 }
 
-/// So many nodes that a step takes them in stretches.
+/// More than 4096 nodes, which a step takes in chunks.
 #[test]
 fn a_step_of_many_nodes_on_several_threads_allocates_nothing() {
-    let mut problem = held();
+    let mut problem = clamped();
     problem.recipe.cloud = Cloud::Regular { spacing: EDGE / 17.0 };
     problem.recipe.grid.cell = EDGE / 20.0;
     assert!(build(&problem).1.positions.len() > 4096);
@@ -149,11 +142,11 @@ fn a_step_of_many_nodes_on_several_threads_allocates_nothing() {
 }
 
 #[test]
-fn the_counter_sees_an_allocation_of_a_watched_thread() {
-    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    WATCHED.set(true);
+fn an_allocation_of_an_observed_thread_is_counted() {
+    let _guard = MEASUREMENT.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    OBSERVED.set(true);
     let before = COUNT.load(Ordering::SeqCst);
     std::hint::black_box(vec![1.0; 10]);
     assert!(COUNT.load(Ordering::SeqCst) > before);
-    WATCHED.set(false);
+    OBSERVED.set(false);
 }

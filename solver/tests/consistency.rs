@@ -6,12 +6,10 @@ mod common;
 use common::*;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Discretisation;
-use mtled::geometry::field::Field;
-use mtled::geometry::selection::Selector;
-use mtled::geometry::{Panel, Shape};
+use mtled::geometry::{Field, Panel, Selector, Shape};
 use mtled::model::Model;
 use mtled::model::essential::ConstraintForces;
-use mtled::motion::internal_force::{Workspace, internal_force, strain_energy};
+use mtled::motion::internal_force::{Workspace, strain_energy};
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -41,9 +39,9 @@ fn largest_interior_sum(discretisation: &Discretisation) -> f64 {
 fn inside_the_body_the_sum_of_weighted_gradients_vanishes() {
     let problem = jittered(cube(8), 0.3, 1);
     let plain = largest_interior_sum(&Discretisation::new(&problem).unwrap());
-    let mended = largest_interior_sum(&consistent(problem, 1e-12));
+    let corrected = largest_interior_sum(&consistent(problem, 1e-12));
     assert!(plain > 1e-7, "{plain}");
-    assert!(mended < 1e-10 * plain, "{mended} after {plain}");
+    assert!(corrected < 1e-10 * plain, "{corrected} after {plain}");
 }
 
 #[test]
@@ -108,9 +106,8 @@ fn projected_forces_are_the_derivative_of_the_projected_energy() {
         let mut workspace = Workspace::new(&model);
         let wave = |i: usize| 1e-3 * (1.7 * i as f64).sin();
         let u: Vec<f64> = (0..model.size()).map(wave).collect();
-        let mut f = vec![0.0; model.size()];
-        internal_force(&model, &u, &mut workspace, &mut f);
-        let scale = f.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let f = forces(&model, &u);
+        let scale = largest(&f);
         for i in (0..model.size()).step_by(37) {
             let mut energy = |shift: f64| {
                 let mut moved = u.clone();
@@ -136,9 +133,9 @@ fn a_material_that_changes_its_volume_is_not_projected() {
     assert!(projected(&with_law(problem, neo_hookean(3000.0, 0.49))));
 }
 
-/// A nearly incompressible cube in equilibrium with an affine field on its whole
-/// boundary or with a bent one, and what its displacements are \[m\].
-fn held_all_around(storage: GradientStorage, field: Field) -> (Model, Vec<f64>) {
+/// A nearly incompressible cube in equilibrium with a field prescribed on its whole
+/// boundary, and its nodal parameters \[m\].
+fn prescribed_on_boundary(storage: GradientStorage, field: Field) -> (Model, Vec<f64>) {
     let mut problem = collocated(jittered(cube(6), 0.3, 4));
     problem = with_law(problem, neo_hookean(3000.0, 0.49));
     problem.recipe.volumetric_projection = VolumetricProjection::Patches;
@@ -158,12 +155,12 @@ fn held_all_around(storage: GradientStorage, field: Field) -> (Model, Vec<f64>) 
 fn gradients_in_single_precision_pass_the_patch_test_to_one_in_a_million() {
     let H = Matrix3::new(0.08, 0.03, 0.01, 0.02, -0.05, 0.03, -0.01, 0.02, -0.02);
     let mut errors = [GradientStorage::Double, GradientStorage::Single].map(|storage| {
-        let (model, u) = held_all_around(storage, Field::of(move |X| H * X));
-        let off = |(node, X): (usize, &Vector3)| (vector(&u, node, 3) - H * X).amax();
-        model.positions.iter().enumerate().map(off).fold(0.0, f64::max) / largest(&u)
+        let (model, u) = prescribed_on_boundary(storage, Field::of(move |X| H * X));
+        let error = |(node, X): (usize, &Vector3)| (vector_at(&u, node, 3) - H * X).amax();
+        model.positions.iter().enumerate().map(error).fold(0.0, f64::max) / largest(&u)
     });
     assert!(errors[0] < 1e-9, "{errors:?}");
-    // Neither more nor less than the digits that are left.
+    // As accurate as single precision, and no more.
     errors[1] /= 1e-6;
     assert!((1e-4..1.0).contains(&errors[1]), "{errors:?}");
 }
@@ -172,14 +169,14 @@ fn gradients_in_single_precision_pass_the_patch_test_to_one_in_a_million() {
 fn gradients_in_single_precision_change_displacements_by_one_in_a_million() {
     let bent = |X: &Vector3| Vector3::new(X.x * X.y, -0.5 * X.y * X.y, X.x * X.x) * (0.3 / EDGE);
     let [double, single] = [GradientStorage::Double, GradientStorage::Single]
-        .map(|storage| held_all_around(storage, Field::of(bent)).1);
-    let apart: Vec<f64> = double.iter().zip(&single).map(|(a, b)| a - b).collect();
-    let change = largest(&apart) / largest(&double);
+        .map(|storage| prescribed_on_boundary(storage, Field::of(bent)).1);
+    let differences: Vec<f64> = double.iter().zip(&single).map(|(a, b)| a - b).collect();
+    let change = largest(&differences) / largest(&double);
     assert!(change > 0.0 && change < 1e-6, "{change}");
 }
 
 #[test]
-fn gradients_in_single_precision_are_little_more_than_half_to_stream() {
+fn gradients_in_single_precision_take_16_bytes_per_entry_in_place_of_28() {
     let bytes = [GradientStorage::Double, GradientStorage::Single].map(|storage| {
         let mut problem = cube(5);
         problem.recipe.gradient_storage = storage;
@@ -189,7 +186,7 @@ fn gradients_in_single_precision_are_little_more_than_half_to_stream() {
 }
 
 #[test]
-fn a_field_prescribed_all_around_a_body_gives_it_the_mean_gradient_of_the_field() {
+fn a_field_prescribed_on_the_whole_boundary_gives_a_body_the_mean_gradient_of_the_field() {
     for problem in [collocated(jittered(cube(5), 0.3, 4)), collocated(jittered(square(6), 0.3, 4))]
     {
         let d = problem.dimension.components();
@@ -203,14 +200,15 @@ fn a_field_prescribed_all_around_a_body_gives_it_the_mean_gradient_of_the_field(
         let mut u = vec![0.0; model.size()];
         let (inertia, mut forces) = (&model.inertia, ConstraintForces::default());
         model.constraints.enforce(0.0, &model.positions, inertia, &mut u, &mut forces, |_, _| ());
-        let mut found = Matrix3::zeros();
+        let mut mean = Matrix3::zeros();
         for (q, weight) in discretisation.quadrature.weights.iter().enumerate() {
             let F = discretisation.supports.deformation_gradient(q, &u, d);
-            found += (F - Matrix3::identity()) * *weight;
+            mean += (F - Matrix3::identity()) * *weight;
         }
-        let around = |panel: &Panel| bent(&panel.centre) * (panel.area * panel.normal).transpose();
-        let wanted: Matrix3 = discretisation.surface.panels.iter().map(around).sum();
-        let error = (found - wanted).norm() / wanted.norm();
+        let integrand =
+            |panel: &Panel| bent(&panel.centre) * (panel.area * panel.normal).transpose();
+        let expected: Matrix3 = discretisation.surface.panels.iter().map(integrand).sum();
+        let error = (mean - expected).norm() / expected.norm();
         assert!(error < 1e-9, "{error} in {d} dimensions");
     }
 }

@@ -1,30 +1,19 @@
-//! Nodes against rigid obstacles.
+//! Contact of nodes with rigid obstacles.
 
 mod common;
 
 use common::*;
 use mtled::algebra::tensor::{Vector3, rotation};
-use mtled::geometry::Shape;
-use mtled::geometry::selection::Selector;
+use mtled::geometry::{Selector, Shape};
 use mtled::model::Model;
 use mtled::model::contact::gap;
-use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::motion::observe::View;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
 use mtled::problem::*;
 
-fn obstacle(shape: Shape, side: ObstacleSide, friction: Friction) -> Obstacle {
-    Obstacle { name: "obstacle".into(), shape, offset: 0.0, side, friction }
-}
-
-fn floor(height: f64, normal: Vector3, friction: Friction) -> Obstacle {
-    let shape = Shape::HalfSpace { point: normal * height, normal };
-    obstacle(shape, ObstacleSide::Outside, friction)
-}
-
-/// A block, a millimetre above a floor, with so much damping that it rests
-/// after half a second.
+/// A block one millimetre above a floor, damped so that it rests after half a
+/// second.
 fn falling(friction: Friction) -> Problem {
     let mut problem = with_law(jittered(cube(4), 0.2, 1), neo_hookean(30000.0, 0.3));
     gravity(&mut problem, Vector3::new(0.0, 0.0, -9.81));
@@ -47,11 +36,11 @@ fn smallest_gap(model: &Model, state: &State) -> f64 {
 fn run_without_penetration(problem: &Problem) -> (Model, State) {
     let (_, model) = build(problem);
     let mut state = State::new(&model);
-    let mut watch = Watch(|view: &mut View| {
+    let mut observer = EachStep(|view: &mut View| {
         let smallest = smallest_gap(view.model, view.state);
         assert!(smallest > -1e-12, "gap {smallest:e} m at t = {} s", view.state.time);
     });
-    simulate(&model, &problem.motion, &mut state, &mut watch).unwrap();
+    simulate(&model, &problem.motion, &mut state, &mut observer).unwrap();
     (model, state)
 }
 
@@ -66,10 +55,9 @@ fn a_falling_block_comes_to_rest_on_the_floor_and_no_node_goes_below() {
 #[test]
 fn the_nodes_that_touch_carry_the_weight_of_a_block_at_rest() {
     let (model, state) = run_without_penetration(&falling(Friction::Frictionless));
-    let mut f_int = vec![0.0; model.size()];
-    internal_force(&model, &state.displacement, &mut Workspace::new(&model), &mut f_int);
-    // Contact forces are what balances f_ext − f_int of a node at rest.
-    let carried: f64 = state
+    let f_int = forces(&model, &state.displacement);
+    // At rest the contact force on a node is f_int − f_ext.
+    let contact_force: f64 = state
         .contact
         .touching
         .iter()
@@ -77,7 +65,8 @@ fn the_nodes_that_touch_carry_the_weight_of_a_block_at_rest() {
         .map(|i| f_int[i] - model.loads[0].force[i])
         .sum();
     let weight = 9.81 * model.lumped_mass.iter().sum::<f64>();
-    assert!((carried / weight - 1.0).abs() < 1e-3, "{}", carried / weight);
+    let ratio = contact_force / weight;
+    assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
 }
 
 /// 30° \[rad\].
@@ -85,9 +74,9 @@ const SLOPE: f64 = std::f64::consts::FRAC_PI_6;
 
 /// A square in plane strain on a plane that falls by 30° towards −x.
 fn on_a_slope(friction: Friction) -> Problem {
-    let turn = rotation(&Vector3::z(), SLOPE);
+    let tilt = rotation(&Vector3::z(), SLOPE);
     let corner = |x: f64, y: f64| {
-        let at = turn * Vector3::new(x, y, 0.0);
+        let at = tilt * Vector3::new(x, y, 0.0);
         [at.x, at.y]
     };
     let mut problem = with_law(square(5), neo_hookean(30000.0, 0.3));
@@ -96,7 +85,7 @@ fn on_a_slope(friction: Friction) -> Problem {
         z: (0.0, EDGE),
     };
     gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
-    problem.obstacles.push(floor(0.0, turn * Vector3::y(), friction));
+    problem.obstacles.push(floor(0.0, tilt * Vector3::y(), friction));
     problem
 }
 
@@ -122,8 +111,8 @@ fn without_slip_a_block_stays_on_a_slope() {
     problem.motion = Motion::Dynamic { end: 1.0, step: StepControl::default(), damping: 60.0 };
     let (_, state) = run_without_penetration(&problem);
     assert!(largest(&state.velocity) < 1e-4, "{:e} m/s", largest(&state.velocity));
-    // What touches has not moved since it first settled, but for the hop of
-    // the first impact (measured: 2.6e-5 m of the 2.45 m of a free block).
+    // Touching nodes have not slid, except in the rebound of the first impact
+    // (measured: 2.6e-5 m, where a free block moves by 2.45 m).
     assert!(!state.contact.touching.is_empty());
     for &node in &state.contact.touching {
         assert!(state.displacement_of(node as usize, 2).norm() < 1e-3 * EDGE);
@@ -142,7 +131,7 @@ fn nodes_never_leave_a_cavity_grown_by_its_offset() {
         problem.loads.initial_velocities.push((Selector::All, Vector3::new(1.0, 0.3, 0.0)));
         problem.motion = Motion::Dynamic { end: 0.1, step: StepControl::default(), damping: 0.0 };
         let (_, state) = run_without_penetration(&problem);
-        // Freely it would have gone 0.1 m.
+        // Without the cavity it would have moved by 0.1 m.
         assert!(largest(&state.displacement) < 0.07);
     }
 }
@@ -156,7 +145,7 @@ fn an_obstacle_out_of_reach_changes_no_bit() {
         let (_, model) = build(problem);
         let mut state = State::new(&model);
         let motion = dynamic(0.1, 1e-3, 0.0);
-        simulate(&model, &motion, &mut state, &mut Watch(|_: &mut View| ())).unwrap();
+        simulate(&model, &motion, &mut state, &mut EachStep(|_: &mut View| ())).unwrap();
         assert!(state.contact.touching.is_empty());
         state.displacement
     };

@@ -1,4 +1,4 @@
-//! What internal forces must do whatever the cloud, the basis and the law.
+//! Properties of internal forces for every cloud, basis and law.
 #![allow(non_snake_case)]
 
 mod common;
@@ -10,12 +10,6 @@ use mtled::model::Model;
 use mtled::motion::internal_force::{Workspace, internal_force, stiffness_times, strain_energy};
 use mtled::problem::{Problem, VolumetricProjection};
 use proptest::prelude::*;
-
-fn forces(model: &Model, u: &[f64]) -> Vec<f64> {
-    let mut f = vec![0.0; model.size()];
-    internal_force(model, u, &mut Workspace::new(model), &mut f);
-    f
-}
 
 /// Cube and square, regular and jittered, linear and quadratic.
 fn bodies() -> Vec<Problem> {
@@ -29,7 +23,7 @@ fn bodies() -> Vec<Problem> {
     ]
 }
 
-/// Largest force of a ten per cent stretch along x.
+/// Largest force at a strain of ten per cent along x.
 fn typical_force(model: &Model) -> f64 {
     largest(&forces(model, &field(model, |X| Vector3::new(0.1 * X.x, 0.0, 0.0))))
 }
@@ -72,10 +66,10 @@ fn an_affine_displacement_gives_the_same_deformation_gradient_everywhere() {
             G.fill_row(2, 0.0);
         }
         let u = field(&model, |X| G * X);
-        let wanted = Matrix3::identity() + G;
+        let expected = Matrix3::identity() + G;
         for point in 0..discretisation.supports.len() {
             let F = discretisation.supports.deformation_gradient(point, &u, d);
-            assert!((F - wanted).amax() < 1e-12, "{:e}", (F - wanted).amax());
+            assert!((F - expected).amax() < 1e-12, "{:e}", (F - expected).amax());
         }
     }
 }
@@ -109,7 +103,7 @@ fn product(model: &Model, u: &[f64], v: &[f64]) -> Vec<f64> {
     product
 }
 
-/// With and without projected J: the last law asks for it.
+/// Laws with and without projected J: the last one is projected.
 fn laws_of_the_tangent() -> Vec<Law> {
     [objective_laws(), vec![neo_hookean(3000.0, 0.49)]].concat()
 }
@@ -189,12 +183,12 @@ proptest! {
         let about = Vector3::from(about);
         let (mut force, mut moment, mut size, mut arm) = (Vector3::zeros(), Vector3::zeros(), 0.0, 0.0);
         for (node, X) in model.positions.iter().enumerate() {
-            let lever = X + vector(&u, node, d) - about;
-            let share = vector(&f, node, d);
-            force += share;
-            moment += lever.cross(&share);
-            size += share.norm();
-            arm += lever.norm() * share.norm();
+            let lever = X + vector_at(&u, node, d) - about;
+            let nodal_force = vector_at(&f, node, d);
+            force += nodal_force;
+            moment += lever.cross(&nodal_force);
+            size += nodal_force.norm();
+            arm += lever.norm() * nodal_force.norm();
         }
         if d == 2 {
             // Only the moment about z is a sum of forces in the plane.

@@ -1,12 +1,11 @@
-//! Heavier nodes for a longer step.
+//! Mass scaling: heavier nodes for longer steps.
 
 mod common;
 
 use common::*;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::geometry::Shape;
-use mtled::geometry::selection::Selector;
+use mtled::geometry::{Selector, Shape};
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
@@ -62,7 +61,7 @@ fn a_few_heavier_nodes_lengthen_the_step_by_the_factor() {
 }
 
 #[test]
-fn a_slow_push_ends_the_same_in_fewer_steps() {
+fn a_slow_push_gives_the_same_displacements_in_fewer_steps() {
     let run = |mass_scaling| {
         let problem = pushed(mass_scaling);
         let model = scaled(&problem).unwrap();
@@ -70,15 +69,15 @@ fn a_slow_push_ends_the_same_in_fewer_steps() {
         let summary = simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();
         (summary.steps, state.displacement)
     };
-    let ((steps, truth), (fewer, found)) = (run(1.0), run(1.5));
+    let ((steps, exact), (fewer, scaled)) = (run(1.0), run(1.5));
     assert!(fewer as f64 <= steps as f64 / 1.45, "{fewer} {steps}");
-    let difference: Vec<f64> = truth.iter().zip(&found).map(|(a, b)| a - b).collect();
-    let change = largest(&difference) / largest(&truth);
+    let difference: Vec<f64> = exact.iter().zip(&scaled).map(|(a, b)| a - b).collect();
+    let change = largest(&difference) / largest(&exact);
     assert!(change < 1e-3, "{change:e}");
 }
 
 #[test]
-fn a_factor_that_takes_too_much_mass_is_refused() {
+fn a_factor_that_needs_too_much_mass_is_refused() {
     let error = scaled(&pushed(8.0)).unwrap_err();
     assert!(matches!(error, Error::TooMuchAddedMass { .. }), "{error}");
 }

@@ -1,4 +1,4 @@
-//! The march in time against what it must do exactly or to its order.
+//! Time integration against exact solutions and its theoretical order.
 
 mod common;
 
@@ -23,13 +23,13 @@ fn energies_of(model: &Model, motion: &Motion, mut state: State) -> Vec<Energies
     recorder.energies
 }
 
-/// Largest departure of the balance from its value after the first step, over
-/// the largest energy.
+/// Largest deviation of the balance from its value after the first step, over the
+/// largest energy.
 fn fluctuation(energies: &[Energies]) -> f64 {
     let start = energies[1].balance();
-    let departs = energies[1..].iter().map(|e| (e.balance() - start).abs());
+    let deviations = energies[1..].iter().map(|e| (e.balance() - start).abs());
     let sizes = energies.iter().flat_map(|e| [e.kinetic, e.strain, e.external_work.abs()]);
-    departs.fold(0.0, f64::max) / sizes.fold(0.0, f64::max)
+    deviations.fold(0.0, f64::max) / sizes.fold(0.0, f64::max)
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn a_body_under_a_body_force_alone_falls_by_half_g_t_squared() {
         let (_, model) = build(&problem);
         let state = run(&model, &dynamic(0.2, 2e-3, 0.0));
         for node in 0..model.positions.len() {
-            let exact = vector(&[g.x, g.y, g.z], 0, model.components) * (0.5 * 0.2 * 0.2);
+            let exact = vector_at(&[g.x, g.y, g.z], 0, model.components) * (0.5 * 0.2 * 0.2);
             let u = state.displacement_of(node, model.components);
             assert!((u - exact).norm() < 1e-10 * exact.norm());
         }
@@ -63,7 +63,7 @@ fn with_evenly_split_masses_the_centre_of_mass_falls_by_half_g_t_squared() {
 fn a_body_without_forces_keeps_its_velocity() {
     let velocity = Vector3::new(0.3, -0.2, 0.1);
     let mut problem = jittered(cube(3), 0.2, 2);
-    problem.loads.initial_velocities.push((mtled::geometry::selection::Selector::All, velocity));
+    problem.loads.initial_velocities.push((mtled::geometry::Selector::All, velocity));
     let (_, model) = build(&problem);
     let state = run(&model, &dynamic(0.1, 2e-3, 0.0));
     for node in 0..model.positions.len() {
@@ -72,18 +72,14 @@ fn a_body_without_forces_keeps_its_velocity() {
 }
 
 #[test]
-fn damping_takes_from_a_rigid_motion_what_the_exponential_says() {
+fn damping_reduces_the_energy_of_a_rigid_motion_exponentially() {
     let mut problem = square(4);
-    problem
-        .loads
-        .initial_velocities
-        .push((mtled::geometry::selection::Selector::All, Vector3::x()));
+    problem.loads.initial_velocities.push((mtled::geometry::Selector::All, Vector3::x()));
     let (_, model) = build(&problem);
     let (damping, end, time_step) = (4.0, 0.5, 2e-3);
     let energies = energies_of(&model, &dynamic(end, time_step, damping), State::new(&model));
     let (first, last) = (energies[0], energies[energies.len() - 1]);
-    // Velocities live half a step before the end; the scheme errs by
-    // (αΔt)²/12 of αt.
+    // Velocities are half a step behind; the scheme has an error of (αΔt)²/12 of αt.
     let exact = (-2.0 * damping * (end - 0.5 * time_step)).exp();
     assert!((last.kinetic / first.kinetic / exact - 1.0).abs() < 1e-4);
     assert!((last.kinetic + last.damping_loss - first.kinetic).abs() < 1e-12 * first.kinetic);
@@ -97,8 +93,8 @@ fn a_free_body_vibrates_with_a_balance_whose_fluctuation_falls_with_the_step_squ
         state.displacement = field(&model, |x| Vector3::new(0.05 * x.x, -0.02 * x.y, 0.03 * x.x));
         state
     };
-    let at = |share: f64| {
-        let motion = dynamic(0.5, share * model.bound, 0.0);
+    let at = |fraction: f64| {
+        let motion = dynamic(0.5, fraction * model.per_point_bound, 0.0);
         fluctuation(&energies_of(&model, &motion, deformed()))
     };
     let (coarse, fine) = (at(0.5), at(0.25));
@@ -108,12 +104,12 @@ fn a_free_body_vibrates_with_a_balance_whose_fluctuation_falls_with_the_step_squ
 }
 
 #[test]
-fn conditions_and_contact_that_are_not_there_do_no_work() {
+fn without_conditions_and_contact_no_work_is_done_by_them() {
     let mut problem = square(5);
     gravity(&mut problem, Vector3::new(1.0, 0.0, 0.0));
     problem.loads.initial_velocities.push((face(0, 0.0), Vector3::x() * 0.1));
     let (_, model) = build(&problem);
-    // Steps of changing size, too.
+    // With steps of changing size.
     let step = StepControl { reevaluate_every: 7, ..StepControl::default() };
     let motion = Motion::Dynamic { end: 0.1, step, damping: 1.0 };
     let energies = energies_of(&model, &motion, State::new(&model));
@@ -135,33 +131,33 @@ fn the_balance_holds_with_prescribed_motion_a_body_force_and_damping() {
         problem.conditions.push(top);
         gravity(&mut problem, Vector3::new(3.0, -2.0, 1.0));
         let (_, model) = build(&problem);
-        let motion = dynamic(0.4, 0.5 * model.bound, 3.0);
-        let share = fluctuation(&energies_of(&model, &motion, State::new(&model)));
+        let motion = dynamic(0.4, 0.5 * model.per_point_bound, 3.0);
+        let fluctuation = fluctuation(&energies_of(&model, &motion, State::new(&model)));
         // Measured: 1.6e-4.
-        assert!(share < 1e-3, "{share:e}");
+        assert!(fluctuation < 1e-3, "{fluctuation:e}");
     }
 }
 
 #[test]
-fn a_condition_lets_go_when_it_is_released() {
+fn a_released_condition_constrains_no_longer() {
     let mut problem = square(6);
     let mut grip = condition("grip", face(1, EDGE), [Some(0.0); 3]);
     grip.release = Some(0.0505);
     problem.conditions.push(grip);
     gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
     let (_, model) = build(&problem);
-    let held: Vec<usize> =
+    let gripped: Vec<usize> =
         (0..model.positions.len()).filter(|&n| model.positions[n].y == EDGE).collect();
     let (mut state, mut speeds) = (State::new(&model), Vec::new());
-    let mut watch = Watch(|view: &mut mtled::motion::observe::View| {
-        let moved = held.iter().any(|&n| view.state.displacement_of(n, 2) != Vector3::zeros());
+    let mut observer = EachStep(|view: &mut mtled::motion::observe::View| {
+        let moved = gripped.iter().any(|&n| view.state.displacement_of(n, 2) != Vector3::zeros());
         assert_eq!(moved, view.state.time > 0.0505, "t = {} s", view.state.time);
         if moved {
             speeds.push(mean_by_mass(&model, &view.state.velocity).y);
         }
     });
-    simulate(&model, &dynamic(0.1, 1e-3, 0.0), &mut state, &mut watch).unwrap();
-    // From then on the centre of mass falls freely.
+    simulate(&model, &dynamic(0.1, 1e-3, 0.0), &mut state, &mut observer).unwrap();
+    // After the release the centre of mass falls freely.
     assert!(speeds.len() > 40);
     for pair in speeds.windows(2) {
         assert!((pair[1] - pair[0] + 9.81e-3).abs() < 1e-10, "{pair:?}");
@@ -177,12 +173,12 @@ fn prescribed_displacements_follow_their_tables() {
     problem.conditions.push(top);
     let (_, model) = build(&problem);
     let node = model.positions.iter().position(|x| x.y == EDGE).unwrap();
-    let mut watch = Watch(|view: &mut mtled::motion::observe::View| {
+    let mut observer = EachStep(|view: &mut mtled::motion::observe::View| {
         let u = view.state.displacement_of(node, 2).x;
         assert_eq!(u, 0.004 * table.at(view.state.time));
     });
     let mut state = State::new(&model);
-    simulate(&model, &dynamic(0.1, 1e-3, 0.0), &mut state, &mut watch).unwrap();
+    simulate(&model, &dynamic(0.1, 1e-3, 0.0), &mut state, &mut observer).unwrap();
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What user input can break is refused with the place named.
+//! Unsound input and failed runs give errors that locate the cause.
 
 mod common;
 
@@ -6,15 +6,14 @@ use common::*;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::{Discretisation, Warning};
 use mtled::error::Error;
-use mtled::geometry::Shape;
-use mtled::geometry::selection::Selector;
+use mtled::geometry::{Selector, Shape};
 use mtled::material::{MaterialError, MooneyRivlin};
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
-use mtled::motion::observe::Unobserved;
-use mtled::motion::simulate::{Summary, simulate};
+use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
+use mtled::motion::summary::Summary;
 use mtled::problem::*;
 
 fn refusal(problem: &Problem) -> Error {
@@ -22,7 +21,7 @@ fn refusal(problem: &Problem) -> Error {
     made.expect_err("the problem was not refused")
 }
 
-/// The error of a run that must fail, what it had seen and the state it left.
+/// The error of a run that must fail, the observations until then and the last state.
 fn failure(problem: &Problem) -> (Error, Recorder, State, Model) {
     let (_, model) = build(problem);
     let (mut state, mut recorder) = (State::new(&model), Recorder::default());
@@ -86,7 +85,7 @@ fn a_support_that_stays_too_small_is_refused_with_its_place_and_size() {
 }
 
 #[test]
-fn a_support_that_is_merely_poor_is_enlarged_with_a_warning() {
+fn a_poor_support_is_enlarged_with_a_warning() {
     let mut problem = cube(4);
     problem.recipe.dilation = 1.05;
     let warnings = Discretisation::new(&problem).unwrap().warnings();
@@ -168,11 +167,11 @@ fn a_fixed_step_above_the_critical_one_is_refused_with_both() {
     let (error, recorder, state, _) = failure(&problem);
     let Error::UnstableStep { fixed, critical } = error else { panic!("{error}") };
     assert!(fixed == 0.5 && critical < 0.5);
-    assert_eq!((recorder.seen, state.step), (0, 0));
+    assert_eq!((recorder.observations, state.step), (0, 0));
 }
 
 #[test]
-fn a_body_that_is_thrown_away_is_reported_with_step_time_and_node() {
+fn a_diverging_body_is_reported_with_step_time_and_node() {
     let mut problem = square(4);
     gravity(&mut problem, Vector3::new(0.0, 1e9, 0.0));
     problem.loads.body_forces[0].amplitude =
@@ -187,12 +186,12 @@ fn a_body_that_is_thrown_away_is_reported_with_step_time_and_node() {
     assert!((time - 0.006).abs() < 1e-12 && (time_step - 1e-3).abs() < 1e-12);
     assert!(displacement > EDGE && position == model.positions[node]);
     assert!(message.contains("step 6"), "{message}");
-    // The observer has the start and every step but the last; the state all.
-    assert_eq!((recorder.seen, state.step), (6, 6));
+    // The observer is not notified of the last step; the state includes it.
+    assert_eq!((recorder.observations, state.step), (6, 6));
 }
 
 #[test]
-fn steps_beyond_the_stable_limit_end_in_an_error_and_never_in_a_result() {
+fn steps_beyond_the_stable_limit_end_in_an_error() {
     let mut problem = square(4);
     problem.loads.initial_velocities = vec![(face(0, 0.0), Vector3::x() * 0.01)];
     let step =
@@ -200,14 +199,14 @@ fn steps_beyond_the_stable_limit_end_in_an_error_and_never_in_a_result() {
     problem.motion = Motion::Dynamic { end: 1e3, step, damping: 0.0 };
     let (error, recorder, state, _) = failure(&problem);
     assert!(matches!(error, Error::Diverged { .. } | Error::Inverted { .. }), "{error}");
-    assert_eq!(recorder.seen, state.step);
+    assert_eq!(recorder.observations, state.step);
 }
 
-/// A square between its base and a press that goes down by `share` of its edge.
-fn pressed(share: f64, duration: f64) -> Problem {
+/// A square between its base and a press that moves down by `fraction` of its edge.
+fn pressed(fraction: f64, duration: f64) -> Problem {
     let mut problem = square(6);
     problem.conditions.push(condition("base", face(1, 0.0), [None, Some(0.0), None]));
-    let mut press = condition("press", face(1, EDGE), [None, Some(-share * EDGE), None]);
+    let mut press = condition("press", face(1, EDGE), [None, Some(-fraction * EDGE), None]);
     press.amplitude = Amplitude::Linear { duration };
     problem.conditions.push(press);
     problem
@@ -223,7 +222,7 @@ fn a_fixed_step_that_compression_makes_unstable_ends_in_an_error() {
     problem.motion = dynamic(10.0, 0.98 * critical, 0.0);
     let (error, recorder, state, _) = failure(&problem);
     assert!(matches!(error, Error::Diverged { .. } | Error::Inverted { .. }), "{error}");
-    assert!(recorder.seen == state.step && state.step > 1);
+    assert!(recorder.observations == state.step && state.step > 1);
 }
 
 #[test]
@@ -236,12 +235,12 @@ fn a_point_that_turns_inside_out_is_reported_with_its_index_place_and_jacobian()
         panic!("{message}")
     };
     assert!(jacobian <= 0.0 && position == model.point_positions[point]);
-    assert!(step == state.step && time == state.time && recorder.seen == step);
+    assert!(step == state.step && time == state.time && recorder.observations == step);
     assert!(message.contains(&format!("point {point} ")), "{message}");
 }
 
 #[test]
-fn a_point_that_the_very_last_step_turns_inside_out_is_reported() {
+fn a_point_that_the_last_step_turns_inside_out_is_reported() {
     let mut problem = pressed(1.5, 0.02);
     problem.motion = dynamic(0.02, 1e-3, 0.0);
     let (.., state, _) = failure(&problem);
@@ -249,52 +248,32 @@ fn a_point_that_the_very_last_step_turns_inside_out_is_reported() {
     assert!(matches!(failure(&problem).0, Error::Inverted { .. }));
 }
 
-#[test]
-fn a_relaxation_that_runs_out_of_steps_says_how_far_it_came() {
+/// Error, tolerance and residual of a relaxation that must not converge, after
+/// `max_steps` steps.
+fn unconverged(load_steps: usize, tolerance: f64, max_steps: usize) -> (f64, f64, f64) {
     let mut problem = square(6);
     problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
     gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
-    let (_, model) = build(&problem);
-    let settings = Relaxation {
-        load_end: 1.0,
-        load_steps: 20,
-        tolerance: 1e-9,
-        max_steps: 50,
-        step: StepControl::default(),
-        mass: RelaxationMass::default(),
+    let settings = Relaxation { load_steps, tolerance, max_steps, ..Relaxation::default() };
+    problem.motion = Motion::Static(settings);
+    let (result, _, state, _) = failure(&problem);
+    let Error::NotConverged { steps, error, tolerance, residual } = result else {
+        panic!("{result}")
     };
-    let mut state = State::new(&model);
-    let run = simulate(&model, &Motion::Static(settings), &mut state, &mut Unobserved);
-    let Err(Error::NotConverged { steps, error, tolerance, residual }) = run else {
-        panic!("{run:?}")
-    };
-    assert!(
-        steps == 50
-            && error.is_finite()
-            && error > tolerance
-            && residual > 0.0
-            && residual.is_finite()
-    );
-    assert_eq!(state.step, 50);
+    assert_eq!((steps, state.step), (max_steps, max_steps));
+    (error, tolerance, residual)
 }
 
 #[test]
-fn a_relaxation_that_ends_before_its_load_does_says_finite_numbers() {
-    let mut problem = square(6);
-    problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
-    gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
-    let (_, model) = build(&problem);
-    let settings = Relaxation {
-        load_end: 1.0,
-        load_steps: 100,
-        tolerance: 0.5,
-        max_steps: 40,
-        step: StepControl::default(),
-        mass: RelaxationMass::default(),
-    };
-    let motion = Motion::Static(settings);
-    let run = simulate(&model, &motion, &mut State::new(&model), &mut Unobserved);
-    let Err(Error::NotConverged { error, residual, .. }) = run else { panic!("{run:?}") };
+fn a_relaxation_that_runs_out_of_steps_reports_its_convergence() {
+    let (error, tolerance, residual) = unconverged(20, 1e-9, 50);
+    assert!(error.is_finite() && error > tolerance);
+    assert!(residual > 0.0 && residual.is_finite());
+}
+
+#[test]
+fn a_relaxation_that_ends_before_its_load_reports_finite_numbers() {
+    let (error, _, residual) = unconverged(100, 0.5, 40);
     assert!(error.is_finite() && error > 0.0 && residual.is_finite() && residual > 0.0);
 }
 
@@ -302,13 +281,6 @@ fn a_relaxation_that_ends_before_its_load_does_says_finite_numbers() {
 fn newton_refuses_obstacles() {
     let mut problem = pressed(0.1, 0.02);
     problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-10 });
-    let shape = Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::y() };
-    problem.obstacles.push(Obstacle {
-        name: "floor".into(),
-        shape,
-        offset: 0.0,
-        side: ObstacleSide::Outside,
-        friction: Friction::Frictionless,
-    });
+    problem.obstacles.push(floor(0.0, Vector3::y(), Friction::Frictionless));
     assert!(matches!(failure(&problem).0, Error::ContactInNewton));
 }

@@ -4,8 +4,6 @@ mod common;
 
 use common::*;
 use mtled::algebra::tensor::Vector3;
-use mtled::model::Model;
-use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -36,20 +34,14 @@ fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|x| x.to_bits()).collect()
 }
 
-fn forces(model: &Model) -> Vec<u64> {
-    let mut f = vec![0.0; model.size()];
-    internal_force(model, &noise(model, 1e-3, 1), &mut Workspace::new(model), &mut f);
-    bits(&f)
-}
-
 #[test]
 fn the_internal_force_has_the_same_bits_on_any_number_of_threads() {
     let (discretisation, model) = build(&large_problem());
     assert!(discretisation.supports.len() > 4096 && model.blocks.len() > 2);
-    on_each_pool(|| forces(&model));
+    on_each_pool(|| bits(&forces(&model, &noise(&model, 1e-3, 1))));
 }
 
-/// So many nodes that a step takes them in stretches, on all threads.
+/// More than 4096 nodes, which a step takes in chunks on all threads.
 #[test]
 fn steps_of_many_nodes_have_the_same_bits_on_any_number_of_threads() {
     let mut problem = large_problem();
@@ -66,7 +58,7 @@ fn steps_of_many_nodes_have_the_same_bits_on_any_number_of_threads() {
 }
 
 #[test]
-fn a_whole_run_from_the_cloud_on_has_the_same_bits_on_any_number_of_threads() {
+fn a_whole_run_with_its_set_up_has_the_same_bits_on_any_number_of_threads() {
     let problem = collocated(large_problem());
     on_each_pool(|| {
         let (_, model) = build(&problem);

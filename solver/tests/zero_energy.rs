@@ -1,4 +1,4 @@
-//! Zero-energy modes: counted, found and refused.
+//! Zero-energy modes: counted, located and refused.
 
 mod common;
 
@@ -9,9 +9,8 @@ use mtled::error::Error;
 use mtled::geometry::Shape;
 use mtled::model::Model;
 use mtled::model::zero_energy::{
-    SEEN, ZeroEnergyModes, refuse_zero_energy_modes, zero_energy_modes,
+    ZERO_ENERGY_FRACTION, ZeroEnergyModes, refuse_zero_energy_modes, zero_energy_modes,
 };
-use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::*;
 
 /// Cells per spacing, volume fractions, consistent gradients.
@@ -36,28 +35,11 @@ fn refusal(problem: &Problem) -> Error {
     made.expect_err("the recipe was not refused")
 }
 
-/// Eigenvalues of the tangent at rest by differences of the internal force,
-/// ascending.
+/// Eigenvalues of the tangent at rest, ascending.
 fn tangent_eigenvalues(problem: &Problem) -> Vec<f64> {
     let (_, model) = build(problem);
-    let n = model.size();
-    let mut workspace = Workspace::new(&model);
-    let mut column = |j: usize| {
-        let side = |sign: f64, workspace: &mut Workspace| {
-            let (mut u, mut f) = (vec![0.0; n], vec![0.0; n]);
-            u[j] = sign * 1e-6 * EDGE;
-            internal_force(&model, &u, workspace, &mut f);
-            nalgebra::DVector::from_vec(f)
-        };
-        (side(1.0, &mut workspace) - side(-1.0, &mut workspace)) / (2e-6 * EDGE)
-    };
-    let columns: Vec<_> = (0..n).map(&mut column).collect();
-    let stiffness = nalgebra::DMatrix::from_columns(&columns);
-    let mut eigenvalues: Vec<f64> = (0.5 * (&stiffness + stiffness.transpose()))
-        .symmetric_eigenvalues()
-        .iter()
-        .copied()
-        .collect();
+    let tangent = dense_tangent(&model, &vec![0.0; model.size()], 1e-6 * EDGE);
+    let mut eigenvalues = tangent.symmetric_eigenvalues().as_slice().to_vec();
     eigenvalues.sort_by(f64::total_cmp);
     eigenvalues
 }
@@ -66,30 +48,30 @@ fn tangent_eigenvalues(problem: &Problem) -> Vec<f64> {
 fn the_default_recipe_has_no_zero_energy_modes_in_space_and_in_a_plane() {
     for problem in [cube(4), jittered(cube(4), 0.3, 1), square(8), jittered(square(8), 0.3, 2)] {
         let cells = if problem.dimension == Dimension::Three { 4 } else { 8 };
-        let found = modes(&with_cells(problem, cells, 1.26));
-        assert_eq!((found.count, found.at_least()), (Some(0), 0));
-        assert!(found.softest[0].share > 0.2, "{:?}", found.softest);
+        let result = modes(&with_cells(problem, cells, 1.26));
+        assert_eq!((result.count, result.at_least()), (Some(0), 0));
+        assert!(result.least_captured[0].fraction > 0.2, "{:?}", result.least_captured);
     }
 }
 
 #[test]
 fn motions_that_the_tangent_does_not_resist_are_in_the_count() {
-    // A lattice with a point in the middle of each cell: enough strains, and
-    // yet motions that alternate from node to node are not seen.
+    // A lattice with one point in the middle of each cell has enough strains, but
+    // does not capture motions that alternate from node to node.
     for (problem, cells) in [(square(8), 8), (cube(4), 4)] {
         let mut problem = with_cells(problem, cells, 1.0);
         problem.recipe.gradients = Gradients::Plain;
         let eigenvalues = tangent_eigenvalues(&problem);
         let largest = eigenvalues[eigenvalues.len() - 1];
         let vanishing = eigenvalues.iter().filter(|&&value| value < 1e-8 * largest).count();
-        let found = modes(&problem);
-        assert!(vanishing > found.rigid, "{vanishing} vanish");
-        assert!(found.count.unwrap() + found.rigid >= vanishing, "{found:?}, {vanishing}");
+        let result = modes(&problem);
+        assert!(vanishing > result.rigid, "{vanishing} vanish");
+        assert!(result.count.unwrap() + result.rigid >= vanishing, "{result:?}, {vanishing}");
     }
 }
 
 #[test]
-fn rigid_motions_are_counted_as_the_conditions_leave_them() {
+fn free_rigid_motions_are_counted() {
     let mut problem = with_cells(cube(4), 4, 1.26);
     assert_eq!(modes(&problem).rigid, 6);
     problem.conditions.push(condition("rollers", face(2, 0.0), [None, None, Some(0.0)]));
@@ -102,50 +84,57 @@ fn rigid_motions_are_counted_as_the_conditions_leave_them() {
 }
 
 #[test]
-fn fewer_strains_than_motions_are_refused_with_the_number_that_is_missing() {
+fn fewer_strains_than_motions_are_refused_with_the_number_of_modes() {
     let problem = with_cells(cube(5), 5, 0.7);
-    let Error::TooFewPoints { points, strains, nodes, held, modes } = refusal(&problem) else {
+    let Error::TooFewPoints { points, strains, nodes, constrained, modes } = refusal(&problem)
+    else {
         panic!()
     };
-    assert_eq!((points, strains, nodes, held), (64, 6, 216, 0));
+    assert_eq!((points, strains, nodes, constrained), (64, 6, 216, 0));
     assert_eq!(modes, 3 * 216 - 6 - 6 * 64);
 }
 
 #[test]
-fn enough_strains_but_unseen_motions_are_refused_with_the_worst_place() {
+fn zero_energy_modes_with_enough_strains_are_refused_with_the_worst_node() {
     let problem = with_cells(cube(5), 5, 1.0);
-    let Error::ZeroEnergyModes { points, nodes, modes, share, node, position } = refusal(&problem)
+    let Error::ZeroEnergyModes { points, nodes, modes, fraction, node, position } =
+        refusal(&problem)
     else {
         panic!()
     };
     assert_eq!((points, nodes), (125, 216));
-    assert!(modes > 20 && share < SEEN, "{modes} modes, {share}");
+    assert!(modes > 20 && fraction < ZERO_ENERGY_FRACTION, "{modes} modes, {fraction}");
     assert_eq!(build(&problem).1.positions[node], position);
 }
 
 #[test]
-fn conditions_that_hold_the_unseen_motions_take_them_from_the_count() {
+fn conditions_that_constrain_zero_energy_modes_reduce_their_count() {
     let free = with_cells(cube(5), 5, 1.0);
-    let mut held = free.clone();
+    let mut constrained = free.clone();
     let mut all = condition("all", face(0, 0.0), [Some(0.0); 3]);
-    all.part = mtled::geometry::selection::Selector::All;
-    held.conditions.push(all);
-    let (free, held, field) = (modes(&free), modes(&held), modes(&collocated(held.clone())));
-    assert!(held.count < free.count && field.count < free.count);
-    assert_eq!(held.count, Some(0));
+    all.part = mtled::geometry::Selector::All;
+    constrained.conditions.push(all);
+    let (free, direct) = (modes(&free), modes(&constrained));
+    let field = modes(&collocated(constrained));
+    assert!(direct.count < free.count && field.count < free.count);
+    assert_eq!(direct.count, Some(0));
 }
 
 #[test]
-fn the_search_in_a_block_finds_what_the_count_counts() {
+fn the_least_captured_motions_agree_with_the_count() {
     for (ratio, jitter) in [(0.9, 0.3), (1.0, 0.0), (1.0, 0.3), (1.1, 0.3), (1.26, 0.3)] {
         let mut problem = cube(5);
         if jitter > 0.0 {
             problem = jittered(problem, jitter, 1);
         }
-        let found = modes(&with_cells(problem, 5, ratio));
-        let below = found.softest.iter().filter(|motion| motion.share < SEEN).count();
-        assert_eq!(below > 0, found.count.unwrap() > 0, "{found:?}");
-        assert!(below <= found.count.unwrap());
+        let result = modes(&with_cells(problem, 5, ratio));
+        let below = result
+            .least_captured
+            .iter()
+            .filter(|motion| motion.fraction < ZERO_ENERGY_FRACTION)
+            .count();
+        assert_eq!(below > 0, result.count.unwrap() > 0, "{result:?}");
+        assert!(below <= result.count.unwrap());
     }
 }
 

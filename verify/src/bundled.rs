@@ -1,60 +1,44 @@
-//! The case files and references that the binary carries, so that it needs no checkout.
+//! Case files and references inside the binary, which needs no checkout.
 
 use anyhow::Context;
 use mtled_checks::report::write_atomically;
 use std::path::{Path, PathBuf};
 
-macro_rules! carried {
-    ($folder:literal, $ending:literal: $($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../../reference/", $folder, $name, $ending)))),*]
+/// Includes the files of cases by name.
+macro_rules! bundled {
+    ($($name:literal)*) => {
+        /// (name, text) of every case in `reference/cases`.
+        pub const CASES: &[(&str, &str)] =
+            &[$(($name, include_str!(concat!("../../reference/cases/", $name, ".toml")))),*];
+
+        /// (case, text) of every reference in `reference/data`.
+        pub const REFERENCES: &[(&str, &str)] =
+            &[$(($name, include_str!(concat!("../../reference/data/", $name, ".json")))),*];
     };
 }
 
-/// (name, text) of every case in `reference/cases`.
-pub const CASES: &[(&str, &str)] = carried![
-    "cases/", ".toml":
-    "bonded_block",
-    "brain_cube_compression",
-    "brain_cube_shear",
-    "brain_slice",
-    "cook_membrane",
-    "cube_compression",
-    "cube_shear",
-    "falling_beam",
-    "indented_block",
-    "soft_inclusion",
-    "sphere_gravity",
-    "turek_hron_csm1",
-    "turek_hron_csm2",
-    "turek_hron_csm3",
-    "twisted_cylinder",
-    "uniaxial_bar",
-];
-
-/// (case, text) of every reference in `reference/data`.
-pub const REFERENCES: &[(&str, &str)] = carried![
-    "data/", ".json":
-    "bonded_block",
-    "brain_cube_compression",
-    "brain_cube_shear",
-    "brain_slice",
-    "cook_membrane",
-    "cube_compression",
-    "cube_shear",
-    "falling_beam",
-    "indented_block",
-    "soft_inclusion",
-    "sphere_gravity",
-    "turek_hron_csm1",
-    "turek_hron_csm2",
-    "turek_hron_csm3",
-    "twisted_cylinder",
-    "uniaxial_bar",
-];
+bundled! {
+    "bonded_block"
+    "brain_cube_compression"
+    "brain_cube_shear"
+    "brain_slice"
+    "cook_membrane"
+    "cube_compression"
+    "cube_shear"
+    "falling_beam"
+    "indented_block"
+    "soft_inclusion"
+    "sphere_gravity"
+    "turek_hron_csm1"
+    "turek_hron_csm2"
+    "turek_hron_csm3"
+    "twisted_cylinder"
+    "uniaxial_bar"
+}
 
 const SLICE: &[u8] = include_bytes!("../../reference/brain/slice.nrrd");
 
-/// Writes the carried cases to `dir/cases` and the label map to `dir/brain`,
+/// Writes the bundled cases to `dir/cases` and the label map to `dir/brain`,
 /// where the cases look for it; returns the folder of the cases.
 pub fn unpack(dir: &Path) -> anyhow::Result<PathBuf> {
     let cases = dir.join("cases");
@@ -66,7 +50,7 @@ pub fn unpack(dir: &Path) -> anyhow::Result<PathBuf> {
     Ok(cases)
 }
 
-/// The carried reference of a case.
-pub fn carried_reference(case: &str) -> Option<&'static str> {
+/// The bundled reference of a case.
+pub fn bundled_reference(case: &str) -> Option<&'static str> {
     REFERENCES.iter().find(|(name, _)| *name == case).map(|(_, text)| *text)
 }

@@ -3,7 +3,7 @@
 //! ([`studies`], [`explore`], [`speed`]) become the plain data of [`mtled_checks::study`],
 //! and [`mtled_checks::report`] turns those into pages and files.
 
-// The rooms of the house: each uses only what stands above it.
+// A module uses only modules above it.
 pub mod exact;
 pub mod files;
 pub mod machine;

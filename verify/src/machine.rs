@@ -1,4 +1,4 @@
-//! Which code runs where, and what it has used.
+//! Provenance, memory and processor of this process.
 
 use mtled_checks::study::Provenance;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -21,8 +21,7 @@ pub fn cpu_seconds() -> f64 {
     cpu_time::ProcessTime::now().as_duration().as_secs_f64()
 }
 
-/// Largest resident memory of this process so far \[bytes\], where the system
-/// tells.
+/// Largest resident memory of this process so far \[bytes\], where it is known.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
@@ -30,9 +29,8 @@ pub fn peak_memory() -> Option<u64> {
     Some(1024 * kibibytes)
 }
 
-/// Memory that a run may take \[bytes\]: what the system has to give, or what
-/// is left of the limit of this process's group if that is less. None where
-/// the system does not tell.
+/// Memory available to a run \[bytes\]: that of the system, or what is left of the limit
+/// of this process's control group if that is less. None where it is not known.
 pub fn available_memory() -> Option<u64> {
     let mut system = sysinfo::System::new();
     system.refresh_memory();
@@ -49,8 +47,8 @@ pub fn load_average() -> Option<f64> {
     (load.one + load.five + load.fifteen > 0.0).then_some(load.one)
 }
 
-/// Sizes of the second cache of a core and of the last cache \[bytes\]; of a
-/// common processor where the system does not tell.
+/// Sizes of the second cache of a core and of the last cache \[bytes\]; those
+/// of a common processor where they are not known.
 pub fn caches() -> (usize, usize) {
     let second = cache(2).unwrap_or(1 << 20);
     (second, cache(3).unwrap_or(32 << 20).max(second))

@@ -12,6 +12,7 @@ const BAD_CASES: &[Expected] = &[
     ("syntax_error", 7, "", "unclosed table"),
     ("duplicate_key", 10, "", "duplicate key"),
     ("unknown_key", 9, "material.tissue.densty", "did you mean `density`?"),
+    ("old_key", 16, "discretisation.dilatation", "is now `volumetric_projection = \"none\"`; `mtled case migrate "),
     ("unknown_table", 26, "solver", "is not a key that is known here; expected one of title"),
     ("unknown_law", 8, "material.tissue.law", "did you mean `neo_hookean_log_j`?"),
     ("unknown_shape", 5, "geometry.shape", "`cube` is not a choice that is known here"),
@@ -37,7 +38,7 @@ const BAD_CASES: &[Expected] = &[
     ("negative_radius", 5, "geometry.shape.sphere.radius", "is -0.1; it must be positive"),
     ("empty_box", 5, "geometry.shape.box.max[1]", "must be larger than min, which is 0"),
     ("crossed_polygon", 5, "geometry.shape", "cross or touch"),
-    ("unbounded_body", 5, "geometry.shape", "has no end"),
+    ("unbounded_body", 5, "geometry.shape", "is unbounded"),
     ("zero_normal", 20, "prescribe[0].where.plane.normal", "is zero; it must be a direction"),
     ("empty_union", 20, "prescribe[0].where.union", "is empty"),
     ("negative_spacing", 15, "discretisation.spacing", "is -0.02; it must be positive"),
@@ -181,7 +182,7 @@ fn a_truncated_label_map_is_refused_with_its_length() {
     let slice = folder().join("../../../reference/brain/slice.nrrd");
     let bytes = std::fs::read(slice).unwrap();
     let found = case_with_label_map(&bytes[..bytes.len() / 2]);
-    one_label_map_mistake(&found, "truncated: its header promises 149150 bytes of data, there are");
+    one_label_map_mistake(&found, "truncated: its header states 149150 bytes of data, there are");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! complete.
 
 use mtled::discretisation::nodes::node_cloud;
-use mtled::geometry::selection::Extent;
+use mtled::geometry::Extent;
 use mtled::problem::{Cloud, Dimension, Motion, Prescribed};
 use mtled_verify::scene::{Case, ProbeKind, parse_case, read_case, schema};
 use sha2::{Digest, Sha256};
@@ -98,7 +98,7 @@ fn the_schema_is_json_and_describes_every_table() {
 }
 
 #[test]
-fn the_brain_slice_is_what_the_seed_describes() {
+fn the_brain_slice_is_that_of_horton_2007() {
     let case = case("brain_slice");
     let problem = &case.problem;
     assert_eq!(problem.dimension, Dimension::PlaneStrain { thickness: 0.005, z: 0.018 });

@@ -1,5 +1,4 @@
-//! The program as its users meet it: exit codes, what goes to which stream,
-//! what lies in the folders afterwards.
+//! The program from the outside: exit codes, output streams and files.
 
 use assert_cmd::Command;
 use serde_json::Value;
@@ -9,7 +8,7 @@ use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_mtled");
 
-/// A block that is pulled, a few hundred points, a fraction of a second.
+/// A block that is pulled: a few hundred points, a fraction of a second.
 const CASE: &str = concat!(
     "\n",
     include_str!("common/pulled_block.toml"),
@@ -76,14 +75,15 @@ fn help_and_version_are_data() {
 }
 
 #[test]
-fn wrong_usage_cannot_run_and_says_so_on_standard_error() {
-    let wrong: [&[&str]; 10] = [
+fn wrong_usage_ends_with_code_2_and_a_message_on_standard_error() {
+    let wrong: [&[&str]; 11] = [
         &[],
         &["slove"],
         &["solve", "--nodes", "3"],
         &["solve", "no_such_case.toml"],
         &["case", "check", "no_such_case.toml"],
         &["case", "show", "no_such_case"],
+        &["case", "migrate", "no_such_case.toml"],
         &["inspect"],
         &["inspect", "no_such_case.toml"],
         &["inspect", "no_such_case.toml", "--modes", "sometimes"],
@@ -99,7 +99,7 @@ fn wrong_usage_cannot_run_and_says_so_on_standard_error() {
 }
 
 #[test]
-fn the_schema_is_json_and_carried_cases_can_be_shown_and_checked() {
+fn the_schema_is_json_and_bundled_cases_can_be_shown_and_checked() {
     let schema: Value = serde_json::from_str(&run(&["case", "schema"]).1).unwrap();
     assert_eq!(schema["type"], "object");
     let (code, list, _) = run(&["case", "list"]);
@@ -158,6 +158,37 @@ fn a_wrong_key_is_located() {
 }
 
 #[test]
+fn an_old_key_is_updated_in_place_and_a_check_writes_nothing() {
+    let old = "spacing = 0.02\ndilatation = \"projected\" # of J";
+    let (_dir, case) = case_with("spacing = 0.02", old);
+    let before = std::fs::read_to_string(&case).unwrap();
+    let path = case.to_str().unwrap();
+    let (code, out, err) = run(&["case", "migrate", "--check", path]);
+    assert_eq!((code, err.as_str()), (0, ""));
+    assert!(out.starts_with(path) && out.contains("volumetric_projection"), "{out}");
+    assert_eq!(std::fs::read_to_string(&case).unwrap(), before);
+    assert_eq!(run(&["case", "check", path]).0, 2);
+    assert_eq!(run(&["case", "migrate", path]), (0, out, String::new()));
+    let after = std::fs::read_to_string(&case).unwrap();
+    let new = "volumetric_projection = \"patches\" # of J";
+    assert_eq!(after, before.replace("dilatation = \"projected\" # of J", new));
+    assert_eq!(run(&["case", "check", path]).0, 0);
+    let (code, out, _) = run(&["case", "migrate", path]);
+    assert!(code == 0 && out.ends_with("nothing to change\n"), "{out}");
+    assert_eq!(std::fs::read_to_string(&case).unwrap(), after);
+}
+
+#[test]
+fn a_file_that_is_not_toml_is_not_migrated() {
+    let (_dir, case) = case_with("density = 1000.0", "density = = 1000.0");
+    let before = std::fs::read_to_string(&case).unwrap();
+    let (code, out, err) = run(&["case", "migrate", case.to_str().unwrap()]);
+    assert_eq!((code, out.as_str()), (2, ""));
+    assert!(err.contains("case.toml"), "{err}");
+    assert_eq!(std::fs::read_to_string(&case).unwrap(), before);
+}
+
+#[test]
 fn a_condition_that_selects_nothing_is_located() {
     let (dir, case) =
         case_with("plane = { point = [0.0, 0.0, 0.0]", "plane = { point = [0.0, 0.0, 0.5]");
@@ -184,7 +215,7 @@ fn poor_supports_are_warned_about_on_standard_error_and_in_the_result() {
 #[test]
 fn a_recipe_with_zero_energy_modes_is_refused_before_the_first_step() {
     // Too few strains at all, and enough strains that miss some motions.
-    for (cells, words) in [("0.8", "cannot see all motions"), ("1.0", "hardly any strain")] {
+    for (cells, words) in [("0.8", "cannot resolve all motions"), ("1.0", "hardly any strain")] {
         let grid = format!("spacing = 0.02\ngrid = {{ cells_per_spacing = {cells} }}");
         let (dir, case) = case_with("spacing = 0.02", &grid);
         let (code, out, err) = solve(&case, dir.path(), &[]);
@@ -204,13 +235,16 @@ fn inspected(from: &str, to: &str, more: &[&str]) -> Value {
 }
 
 #[test]
-fn an_inspection_tells_what_a_sound_case_is_made_of() {
+fn an_inspection_of_a_valid_case_reports_its_size_and_its_critical_step() {
     let seen = inspected("", "", &[]);
     assert_eq!(seen["zero_energy_modes"]["count"], 0);
     assert_eq!(seen["zero_energy_modes"]["free_rigid_motions"], 0);
     assert!(seen["points_per_node"].as_f64().unwrap() > 1.0, "{seen}");
     assert!(seen["critical_time_step_s"].as_f64() > seen["per_point_bound_s"].as_f64());
-    assert_eq!(seen["advice"], serde_json::json!(["Nothing stands against running this case."]));
+    assert_eq!(
+        seen["advice"],
+        serde_json::json!(["No reason against running this case was found."])
+    );
     let (_dir, case) = case_with("", "");
     let (code, out, err) = run(&["inspect", case.to_str().unwrap()]);
     assert_eq!((code, err.as_str()), (0, ""));
@@ -221,7 +255,7 @@ fn an_inspection_tells_what_a_sound_case_is_made_of() {
 }
 
 #[test]
-fn an_inspection_counts_and_places_the_motions_that_are_not_seen() {
+fn an_inspection_counts_and_locates_zero_energy_modes() {
     let grid = "spacing = 0.02\ngrid = { cells_per_spacing = 1.0 }";
     let seen = inspected("spacing = 0.02", grid, &[]);
     let modes = &seen["zero_energy_modes"];
@@ -235,7 +269,7 @@ fn an_inspection_counts_and_places_the_motions_that_are_not_seen() {
 }
 
 #[test]
-fn the_case_in_the_readme_is_sound_and_its_message_is_true() {
+fn the_case_in_the_readme_is_valid_and_its_message_is_that_of_the_program() {
     let readme = include_str!("../../README.md");
     let block = |opening: &str| {
         let (_, rest) = readme.split_once(opening).unwrap();
@@ -255,7 +289,7 @@ fn the_case_in_the_readme_is_sound_and_its_message_is_true() {
 }
 
 #[test]
-fn a_reader_that_leaves_early_is_no_failure() {
+fn a_reader_that_ends_early_is_no_error() {
     let mut schema = std::process::Command::new(PROGRAM)
         .args(["case", "schema"])
         .stdout(std::process::Stdio::piped())
@@ -279,7 +313,7 @@ fn an_interrupted_run_leaves_complete_files() {
         .stdout(std::process::Stdio::null())
         .spawn()
         .unwrap();
-    // The folder is made when the case has been read, before the march.
+    // The folder is created when the case has been read, before the first step.
     let start = Instant::now();
     while !out.exists() && start.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(20));

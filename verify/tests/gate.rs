@@ -101,8 +101,8 @@ fn beyond_the_scatter_over_clouds_is_worse_or_improved_and_within_it_is_the_same
     let baseline = scattered();
     let band = baseline.check("study/error").unwrap().band;
     assert_eq!(band.source, BandSource::Scatter);
-    assert_eq!(band.spread.unwrap().samples, 21);
-    assert_eq!(band.spread.unwrap().scale, Scale::Logarithmic);
+    assert_eq!(band.scatter.unwrap().samples, 21);
+    assert_eq!(band.scatter.unwrap().scale, Scale::Logarithmic);
     assert_eq!(judged(&baseline, "study/error", 0.99 * band.high), Verdict::Same);
     assert_eq!(judged(&baseline, "study/error", 1.01 * band.high), Verdict::Worse);
     assert_eq!(judged(&baseline, "study/error", 0.99 * band.low), Verdict::Improved);
@@ -139,7 +139,7 @@ fn a_difference_is_worse_only_beyond_the_error_bar_of_its_reference() {
 }
 
 #[test]
-fn what_is_lost_is_worse() {
+fn nan_is_worse() {
     assert_eq!(judged(&baseline(), "study/error", f64::NAN), Verdict::Worse);
 }
 
@@ -216,7 +216,7 @@ fn an_update_without_new_clouds_keeps_the_scatter_and_moves_the_band() {
     let second = update(&improved, Some(&first), &Clouds::default(), &reason(), true).unwrap();
     let (old, new) = (first.check("study/error").unwrap(), second.check("study/error").unwrap());
     assert_eq!(new.value, 0.001);
-    assert_eq!(new.band.spread, old.band.spread);
+    assert_eq!(new.band.scatter, old.band.scatter);
     assert!(new.band.low < 0.001 && new.band.high > 0.001 && new.band.high < 0.002);
     // Two runs are further apart than a run and a mean: √2 and not √(1 + 1/21).
     let width = |band: mtled_checks::study::Band| (band.high / band.low).ln();

@@ -1,17 +1,17 @@
-//! `mtled verify --baseline` and `mtled report` as their users meet them, on
-//! the one study that takes no time.
+//! `mtled verify --baseline` and `mtled report` from the outside, with the one study that
+//! takes no time.
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-struct Place {
+struct Folder {
     folder: TempDir,
 }
 
-impl Place {
-    fn new() -> Place {
-        Place { folder: TempDir::new().unwrap() }
+impl Folder {
+    fn new() -> Folder {
+        Folder { folder: TempDir::new().unwrap() }
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -68,10 +68,10 @@ fn moved(baseline: &mut serde_json::Value, id: &str, value: f64, low: f64, high:
 }
 
 #[test]
-fn a_run_after_an_update_is_the_same_everywhere() {
-    let place = Place::new();
-    place.baseline(|_| {});
-    let (code, out, err) = place.verify(&["--baseline", "base.json"]);
+fn a_run_after_an_update_of_the_baseline_has_no_changes() {
+    let folder = Folder::new();
+    folder.baseline(|_| {});
+    let (code, out, err) = folder.verify(&["--baseline", "base.json"]);
     assert_eq!(code, 0, "{err}");
     let line = out.lines().find(|line| line.starts_with("beside the baseline of")).unwrap();
     assert!(line.ends_with(" the same") && !line.contains(','), "{line}");
@@ -79,38 +79,38 @@ fn a_run_after_an_update_is_the_same_everywhere() {
 
 #[test]
 fn a_value_beyond_its_band_fails_the_run_and_is_named_in_every_report() {
-    let place = Place::new();
-    place.baseline(|baseline| moved(baseline, ORDER, 1.9, 1.8999, 1.9001));
-    let summary = place.path("step.md");
+    let folder = Folder::new();
+    folder.baseline(|baseline| moved(baseline, ORDER, 1.9, 1.8999, 1.9001));
+    let summary = folder.path("step.md");
     let github = [("GITHUB_ACTIONS", Path::new("true")), ("GITHUB_STEP_SUMMARY", &summary)];
     std::fs::write(&summary, "earlier step\n").unwrap();
     let arguments = ["verify", "--only", "references", "--out", "out", "--baseline", "base.json"];
-    let (code, out, err) = place.mtled_with(&arguments, &github);
+    let (code, out, err) = folder.mtled_with(&arguments, &github);
     assert_eq!(code, 1, "{err}");
     assert!(out.contains(&format!("worse    {ORDER}: 1.900 → 1.786")), "{out}");
     assert!(err.contains(&format!("::error title={ORDER} got worse::1.900 → 1.786")), "{err}");
     for file in ["out/index.html", "out/summary.md", "out/junit.xml", "out/results.json"] {
-        let text = place.read(file);
+        let text = folder.read(file);
         assert!(text.contains("worse") && text.contains("self_test"), "{file}");
     }
-    let step = place.read("step.md");
+    let step = folder.read("step.md");
     assert!(step.starts_with("earlier step\n## ❌") && step.contains(ORDER), "{step}");
 }
 
 #[test]
-fn improved_new_and_missing_checks_are_told_apart() {
-    let place = Place::new();
+fn improved_new_and_missing_checks_are_distinguished() {
+    let folder = Folder::new();
     let agree = "references/cook_membrane/codes_agree";
-    place.baseline(|baseline| {
+    folder.baseline(|baseline| {
         moved(baseline, agree, 0.9, 0.89, 0.91);
         let checks = baseline["checks"].as_array_mut().unwrap();
         checks.retain(|check| check["id"] != ORDER);
     });
-    let (code, out, _) = place.verify(&["--baseline", "base.json"]);
+    let (code, out, _) = folder.verify(&["--baseline", "base.json"]);
     assert_eq!(code, 0, "{out}");
     assert!(out.contains(&format!("improved {agree}: 0.9000 → 0.5927")), "{out}");
     assert!(out.contains(&format!("new      {ORDER}: nothing → 1.786")), "{out}");
-    place.baseline(|baseline| {
+    folder.baseline(|baseline| {
         let checks = baseline["checks"].as_array_mut().unwrap();
         let mut gone = checks[0].clone();
         gone["id"] = "references/a_case/codes_agree".into();
@@ -120,7 +120,7 @@ fn improved_new_and_missing_checks_are_told_apart() {
         other["id"] = "patch/a_case/force".into();
         checks.insert(0, other);
     });
-    let (code, out, _) = place.verify(&["--baseline", "base.json"]);
+    let (code, out, _) = folder.verify(&["--baseline", "base.json"]);
     assert_eq!(code, 1, "{out}");
     assert!(out.contains("missing  references/a_case/codes_agree"), "{out}");
     assert!(!out.contains("patch/a_case"), "{out}");
@@ -128,54 +128,54 @@ fn improved_new_and_missing_checks_are_told_apart() {
 
 #[test]
 fn a_baseline_is_not_written_without_a_reason() {
-    let place = Place::new();
+    let folder = Folder::new();
     for arguments in [&["--update-baseline"][..], &["--update-baseline", "--reason", "  "]] {
-        let (code, out, err) = place.verify(arguments);
+        let (code, out, err) = folder.verify(arguments);
         assert_eq!((code, out.as_str()), (2, ""), "{err}");
         assert!(err.contains("reason"), "{err}");
     }
-    assert!(!place.path("reports/baseline.json").exists());
+    assert!(!folder.path("reports/baseline.json").exists());
 }
 
 #[test]
-fn what_is_no_baseline_is_refused_before_the_run() {
-    let place = Place::new();
-    std::fs::write(place.path("bad.json"), "{\"schema_version\": 9}").unwrap();
-    std::fs::write(place.path("text.json"), "hello").unwrap();
+fn a_file_that_is_not_a_baseline_is_refused_before_the_run() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("bad.json"), "{\"schema_version\": 9}").unwrap();
+    std::fs::write(folder.path("text.json"), "hello").unwrap();
     for (file, words) in [
         ("nowhere.json", "there is no baseline nowhere.json"),
         ("bad.json", "has schema version 9"),
         ("text.json", "text.json is no baseline"),
     ] {
-        let (code, out, err) = place.verify(&["--baseline", file]);
+        let (code, out, err) = folder.verify(&["--baseline", file]);
         assert_eq!((code, out.as_str()), (2, ""), "{err}");
         assert!(err.contains(words), "{err}");
     }
-    assert!(!place.path("out").exists());
+    assert!(!folder.path("out").exists());
 }
 
 #[test]
-fn a_report_written_anew_has_the_bytes_of_the_run() {
-    let place = Place::new();
-    place.baseline(|baseline| moved(baseline, ORDER, 1.9, 1.8999, 1.9001));
-    place.verify(&["--baseline", "base.json"]);
-    let (code, _, err) = place.mtled(&["report", "out", "--out", "again"]);
+fn a_report_that_is_written_again_has_the_same_bytes() {
+    let folder = Folder::new();
+    folder.baseline(|baseline| moved(baseline, ORDER, 1.9, 1.8999, 1.9001));
+    folder.verify(&["--baseline", "base.json"]);
+    let (code, _, err) = folder.mtled(&["report", "out", "--out", "again"]);
     assert_eq!(code, 0, "{err}");
     for file in ["index.html", "summary.md", "junit.xml", "results.json"] {
-        let of = |folder: &str| place.read(&format!("{folder}/{file}"));
+        let of = |report: &str| folder.read(&format!("{report}/{file}"));
         assert!(of("out") == of("again"), "{file}");
     }
 }
 
 #[test]
 fn two_runs_are_compared_in_a_page_and_in_markdown() {
-    let place = Place::new();
-    place.verify(&[]);
-    let text = place.read("out/results.json");
+    let folder = Folder::new();
+    folder.verify(&[]);
+    let text = folder.read("out/results.json");
     let earlier = text.replace("\"value\":0.592", "\"value\":0.492");
     let agree = "references/cook_membrane/codes_agree";
-    std::fs::write(place.path("earlier.json"), earlier).unwrap();
-    let (code, out, err) = place.mtled(&["report", "earlier.json", "out"]);
+    std::fs::write(folder.path("earlier.json"), earlier).unwrap();
+    let (code, out, err) = folder.mtled(&["report", "earlier.json", "out"]);
     assert_eq!(code, 0, "{err}");
     assert!(
         out.contains(&format!("worse    {agree}"))
@@ -183,41 +183,41 @@ fn two_runs_are_compared_in_a_page_and_in_markdown() {
         "{out}"
     );
     for file in ["reports/compare/index.html", "reports/compare/summary.md"] {
-        let text = place.read(file);
+        let text = folder.read(file);
         assert!(text.contains("cook_membrane") && text.contains("[s]"), "{text}");
     }
-    let json = place.mtled(&["report", "earlier.json", "out", "--format", "json"]).1;
+    let json = folder.mtled(&["report", "earlier.json", "out", "--format", "json"]).1;
     let value: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(value["changes"][0]["id"], agree);
 }
 
 #[test]
-fn what_is_no_report_is_refused() {
-    let place = Place::new();
-    std::fs::write(place.path("other.json"), "{\"schema_version\": 1}").unwrap();
+fn a_file_that_is_not_a_report_is_refused() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("other.json"), "{\"schema_version\": 1}").unwrap();
     for (path, words) in
         [("nowhere", "there is no nowhere"), ("other.json", "is not the results.json")]
     {
-        let (code, out, err) = place.mtled(&["report", path]);
+        let (code, out, err) = folder.mtled(&["report", path]);
         assert_eq!((code, out.as_str()), (2, ""), "{err}");
         assert!(err.contains(words), "{err}");
     }
 }
 
 #[test]
-fn a_stored_run_is_judged_by_a_baseline_without_being_run_again() {
-    let place = Place::new();
-    place.baseline(|_| {});
+fn a_stored_run_is_compared_with_a_baseline_without_being_repeated() {
+    let folder = Folder::new();
+    folder.baseline(|_| {});
     let judge = ["report", "out", "--baseline", "base.json"];
-    let (code, out, err) = place.mtled(&judge);
+    let (code, out, err) = folder.mtled(&judge);
     assert_eq!(code, 0, "{err}");
     assert!(out.contains("beside the baseline of"), "{out}");
-    let text = place.read("base.json");
+    let text = folder.read("base.json");
     let mut baseline = serde_json::from_str(&text).unwrap();
     moved(&mut baseline, ORDER, 1.9, 1.8999, 1.9001);
-    std::fs::write(place.path("base.json"), baseline.to_string()).unwrap();
-    let (code, out, _) = place.mtled(&judge);
+    std::fs::write(folder.path("base.json"), baseline.to_string()).unwrap();
+    let (code, out, _) = folder.mtled(&judge);
     assert_eq!(code, 1);
     assert!(out.contains(&format!("worse    {ORDER}: 1.900 → 1.786")), "{out}");
-    assert!(place.read("out/summary.md").contains("worse"), "{}", place.read("out/summary.md"));
+    assert!(folder.read("out/summary.md").contains("worse"), "{}", folder.read("out/summary.md"));
 }

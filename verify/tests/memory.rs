@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// A block between a held face and a free one, with its spacing to be put in.
+/// A block with a fixed and a free face; its spacing is a placeholder.
 const CASE: &str = concat!(
     "\n",
     include_str!("common/pulled_block.toml"),
@@ -28,13 +28,13 @@ fn solve(discretisation: &str) -> (i32, String, String) {
 
 #[test]
 fn a_body_larger_than_the_memory_is_refused_at_its_discretisation() {
-    let (code, _, said) = solve("spacing = 1e-5");
-    assert_eq!(code, 2, "{said}");
-    assert!(said.contains("discretisation: about ") && said.contains("are available"), "{said}");
-    assert!(said.contains("use a larger spacing"), "{said}");
+    let (code, _, err) = solve("spacing = 1e-5");
+    assert_eq!(code, 2, "{err}");
+    assert!(err.contains("discretisation: about ") && err.contains("are available"), "{err}");
+    assert!(err.contains("use a larger spacing"), "{err}");
 }
 
-/// A refusal must not come where there is room, nor a run die where there is none.
+/// Neither a refusal where there is enough memory nor a crash where there is not.
 #[test]
 fn the_memory_of_a_run_is_estimated_at_0_9_to_1_25_of_what_it_takes() {
     for discretisation in [
@@ -45,24 +45,24 @@ fn the_memory_of_a_run_is_estimated_at_0_9_to_1_25_of_what_it_takes() {
         "spacing = 0.007\ndilation = 2.6",
         "spacing = 0.0035\ngradient_storage = \"single\"",
     ] {
-        let (code, result, said) = solve(discretisation);
-        assert_eq!(code, 0, "{said}");
+        let (code, result, err) = solve(discretisation);
+        assert_eq!(code, 0, "{err}");
         let result: Value = serde_json::from_str(&result).unwrap();
-        // Systems that do not tell the peak have nothing to compare with.
+        // The peak is not known on every system.
         let Some(peak) = result["timings"]["peak_memory_bytes"].as_f64() else { return };
         let estimate = result["timings"]["estimated_memory_bytes"].as_f64().unwrap();
         let ratio = estimate / peak;
-        let said = format!("{discretisation}: {estimate} bytes estimated, {peak} taken");
-        assert!((0.9..1.25).contains(&ratio), "{said}");
+        let err = format!("{discretisation}: {estimate} bytes estimated, {peak} used");
+        assert!((0.9..1.25).contains(&ratio), "{err}");
     }
 }
 
 #[test]
 fn gradients_asked_for_in_single_precision_are_read_as_such() {
     let streamed = |storage: &str| {
-        let (code, result, said) =
+        let (code, result, err) =
             solve(&format!("spacing = 0.02\ngradient_storage = \"{storage}\""));
-        assert_eq!(code, 0, "{said}");
+        assert_eq!(code, 0, "{err}");
         let work = &serde_json::from_str::<Value>(&result).unwrap()["work_counters"];
         let each = |name: &str| work[name].as_f64().unwrap();
         each("bytes_streamed") / each("force_evaluations")

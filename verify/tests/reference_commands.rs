@@ -1,4 +1,4 @@
-//! What `mtled reference` makes of references, and of a Python that solves them.
+//! `mtled reference` from the outside, with a made-up reference and a made-up Python.
 
 mod common;
 
@@ -127,7 +127,7 @@ fn a_coarse_mesh_is_solved_again_and_compared() {
 
 #[cfg(unix)]
 #[test]
-fn what_python_says_when_it_fails_is_passed_on() {
+fn the_message_of_a_python_that_fails_is_passed_on() {
     let dir = with_python("echo 'Newton did not converge' >&2; exit 2");
     let arguments = ["reference", "solve", "block", "--code", "scikit-fem"];
     let (code, _, err) = mtled(dir.path(), &arguments);
@@ -138,7 +138,7 @@ fn what_python_says_when_it_fails_is_passed_on() {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_python_and_its_children() {
-    // A child of the script writes a beat as long as it lives.
+    // A child of the script writes to a file as long as it runs.
     let dir = with_python(
         "beat=\"$(dirname \"$0\")/beat\"\n(while :; do echo x >> \"$beat\"; sleep 0.02; done) &\nwait",
     );
@@ -161,5 +161,5 @@ fn ctrl_c_ends_python_and_its_children() {
     std::thread::sleep(Duration::from_millis(200));
     let before = beats();
     std::thread::sleep(Duration::from_millis(500));
-    assert_eq!(beats(), before, "a child of Python lives on");
+    assert_eq!(beats(), before, "a child of Python still runs");
 }

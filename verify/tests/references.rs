@@ -1,11 +1,11 @@
-//! References: what is accepted and what is refused, in which words.
+//! References: which are accepted, and the messages of those that are refused.
 
 mod common;
 
 use common::{BLOCK, block, json, synthetic};
 use mtled_verify::bundled::{CASES, REFERENCES};
 use mtled_verify::reference::compare::compare;
-use mtled_verify::reference::{Basis, Family, Values, agree, read_reference};
+use mtled_verify::reference::{Basis, Family, Values, agreements, read_reference};
 use mtled_verify::scene::{parse_case, problem_hash, read_case};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -68,7 +68,7 @@ fn the_problem_hash_sees_the_bytes_of_files() {
 fn a_sound_reference_is_read_and_both_codes_find_the_limit() {
     let case = block();
     let file = read_reference(&case, &json(&synthetic(&case)).to_string()).unwrap();
-    for agreement in agree(&case, &file) {
+    for agreement in agreements(&case, &file) {
         assert!(agreement.agrees(), "{}", agreement.quantity.name);
         for estimate in &agreement.estimates {
             let Basis::Order(order) = estimate.basis else { panic!("{estimate:?}") };
@@ -92,15 +92,15 @@ fn codes_that_find_different_limits_do_not_agree() {
         let Some(Values::History(lists)) = mesh.values.get_mut("force/bottom") else { panic!() };
         lists[0].iter_mut().for_each(|number| *number *= 1.05);
     }
-    let apart: Vec<_> = agree(&case, &file).into_iter().filter(|a| !a.agrees()).collect();
-    assert_eq!(apart.len(), 1);
-    assert_eq!(apart[0].quantity.family, Family::Force);
+    let different: Vec<_> = agreements(&case, &file).into_iter().filter(|a| !a.agrees()).collect();
+    assert_eq!(different.len(), 1);
+    assert_eq!(different[0].quantity.family, Family::Force);
     // The bar of what is kept covers the other code.
-    let reference = apart[0].reference();
-    assert!(reference.error >= apart[0].difference && apart[0].ratio() > 1.0);
+    let reference = different[0].reference();
+    assert!(reference.error >= different[0].difference && different[0].ratio() > 1.0);
 }
 
-/// Where in the JSON, what to put there (nothing: remove it), what is said.
+/// Where in the JSON, the new value (none: removed), part of the message.
 type Fault = (&'static str, Option<&'static str>, &'static str);
 
 #[test]
@@ -179,9 +179,9 @@ fn every_stored_reference_is_carried_and_belongs_to_a_case() {
         },
     );
     stored.sort();
-    let mut carried: Vec<&str> = REFERENCES.iter().map(|(name, _)| *name).collect();
-    carried.sort_unstable();
-    assert_eq!(stored, carried);
+    let mut bundled: Vec<&str> = REFERENCES.iter().map(|(name, _)| *name).collect();
+    bundled.sort_unstable();
+    assert_eq!(stored, bundled);
     for (name, text) in REFERENCES {
         assert!(CASES.iter().any(|(case, _)| case == name), "{name}");
         assert!(text.len() < 1_000_000, "{name} has {} bytes", text.len());

@@ -1,4 +1,4 @@
-//! Studies whose runs are on record: killed, split, merged.
+//! Studies with stored runs: killed, split, merged.
 
 use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
@@ -30,8 +30,8 @@ fn study(folder: &Path, store: &str, out: &str, more: &[&str]) -> Command {
     command
 }
 
-/// A report without what may differ from one time to the next.
-fn lasting(folder: &Path, out: &str) -> Value {
+/// A report without timings and other parts that may differ from one time to the next.
+fn reproducible(folder: &Path, out: &str) -> Value {
     let text = std::fs::read_to_string(folder.join(out).join("results.json")).unwrap();
     let mut report: Value = serde_json::from_str(&text).unwrap();
     report["provenance"] = Value::Null;
@@ -52,7 +52,7 @@ fn listed(folder: &Path, store: &str) -> Vec<Value> {
     serde_json::from_slice(&command.output().unwrap().stdout).unwrap()
 }
 
-/// Records without what may differ from one time to the next.
+/// Records without their timings.
 fn records(folder: &Path, store: &str) -> Vec<Value> {
     let mut all = listed(folder, store);
     all.iter_mut().for_each(|record| record["timings"] = Value::Null);
@@ -60,7 +60,7 @@ fn records(folder: &Path, store: &str) -> Vec<Value> {
 }
 
 #[test]
-fn a_study_that_was_killed_ten_times_ends_with_the_results_of_an_undisturbed_one() {
+fn a_study_that_was_killed_ten_times_gives_the_results_of_an_undisturbed_one() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     assert!(study(folder, "calm", "calm_report", &[]).status().unwrap().success());
@@ -75,11 +75,11 @@ fn a_study_that_was_killed_ten_times_ends_with_the_results_of_an_undisturbed_one
     }
     assert!(study(folder, "killed", "killed_report", &[]).status().unwrap().success());
     assert_eq!(records(folder, "killed"), records(folder, "calm"));
-    assert_eq!(lasting(folder, "killed_report"), lasting(folder, "calm_report"));
+    assert_eq!(reproducible(folder, "killed_report"), reproducible(folder, "calm_report"));
 }
 
 #[test]
-fn four_parts_merged_are_the_whole_study_and_nothing_is_run_again() {
+fn four_merged_parts_are_the_whole_study_and_no_run_is_repeated() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     assert!(study(folder, "whole", "whole_report", &[]).status().unwrap().success());
@@ -97,11 +97,11 @@ fn four_parts_merged_are_the_whole_study_and_nothing_is_run_again() {
     let before = listed(folder, "merged");
     assert!(study(folder, "merged", "merged_report", &[]).status().unwrap().success());
     assert_eq!(listed(folder, "merged"), before);
-    assert_eq!(lasting(folder, "merged_report"), lasting(folder, "whole_report"));
+    assert_eq!(reproducible(folder, "merged_report"), reproducible(folder, "whole_report"));
 }
 
 #[test]
-fn records_of_other_sources_and_leftovers_are_pruned() {
+fn records_of_other_versions_and_temporary_files_are_pruned() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let mut consistency = program();
@@ -116,8 +116,8 @@ fn records_of_other_sources_and_leftovers_are_pruned() {
     std::fs::write(&file, text.replace(solver, "0.0.0+other")).unwrap();
     std::fs::write(file.with_file_name(format!(".{key}.json.7.tmp")), "half").unwrap();
     let prune = program().current_dir(folder).args(["runs", "prune", "--store", "runs"]).output();
-    let said = String::from_utf8(prune.unwrap().stdout).unwrap();
-    assert!(said.contains("1 records removed, 1 files"), "{said}");
+    let output = String::from_utf8(prune.unwrap().stdout).unwrap();
+    assert!(output.contains("1 records removed, 1 temporary files"), "{output}");
     assert!(records(folder, "runs").is_empty());
 }
 
@@ -127,13 +127,13 @@ fn a_range_that_cannot_be_read_and_a_case_that_is_not_there_end_with_code_2() {
         (vec!["study", "patch", "cube_compression", "--dilation", "1.4..2"], "1.4..2.6:0.2"),
         (vec!["study", "patch", "no_such_case"], "no case file no_such_case"),
         (vec!["tune", "no_such_case"], "no case file no_such_case"),
-        (vec!["tune", "cube_compression", "--target-error", "2"], "no share"),
-        (vec!["budget", "cube_compression", "--truth", "no_file.json"], "no_file.json"),
+        (vec!["tune", "cube_compression", "--target-error", "2"], "not a fraction"),
+        (vec!["budget", "cube_compression", "--reference", "no_file.json"], "no_file.json"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let output = program().current_dir(folder.path()).args(&arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(said.contains(words), "{arguments:?}: {said}");
+        let output = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.contains(words), "{arguments:?}: {output}");
     }
 }

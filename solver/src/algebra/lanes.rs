@@ -1,38 +1,42 @@
-//! Numbers side by side in memory, and their way into the processor: four for a
-//! node, eight for as many points.
+//! Numbers side by side for vector instructions: four for a node, eight for as
+//! many quadrature points.
 
 use crate::algebra::real::{Dual, Real};
 use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
+use std::marker::PhantomData;
 
-/// Four numbers on their own boundary of 32 bytes: the displacement of a node, the
-/// force on it or a column of a tensor; the fourth is padding.
+/// The components of a vector and one of padding, aligned to 32 bytes: the
+/// displacement of a node, the force on it or a column of a tensor.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C, align(32))]
-pub struct Four(pub [f64; 4]);
+pub struct PaddedVector(pub [f64; 4]);
 
-/// One number at eight points.
+/// One number at eight quadrature points.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C, align(64))]
-pub struct Eight(pub [f64; 8]);
+pub struct SimdBlock(pub [f64; 8]);
+
+/// Quadrature points in a [`SimdBlock`].
+pub const LANES: usize = 8;
 
 #[inline(always)]
-pub fn four<S: Simd>(simd: S, numbers: &Four) -> f64x4<S> {
-    numbers.0.simd_into(simd)
+pub fn load_vector<S: Simd>(simd: S, vector: &PaddedVector) -> f64x4<S> {
+    vector.0.simd_into(simd)
 }
 
 #[inline(always)]
-pub fn eight<S: Simd>(simd: S, numbers: &Eight) -> f64x8<S> {
-    numbers.0.simd_into(simd)
+pub fn load_block<S: Simd>(simd: S, block: &SimdBlock) -> f64x8<S> {
+    block.0.simd_into(simd)
 }
 
-/// Has the processor fetch an entry that will be read soon; nothing if there is
-/// none or the processor cannot be told.
+/// Prefetches an entry that will be read soon; does nothing where there is no such
+/// entry or no such instruction.
 #[inline(always)]
 pub fn prefetch<T>(entries: &[T], index: usize) {
     #[cfg(target_arch = "x86_64")]
     if let Some(entry) = entries.get(index) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // A hint: the address is that of an entry, and nothing is read or written.
+        // SAFETY: a hint at the address of an entry, which reads and writes nothing.
         #[allow(unsafe_code)]
         unsafe {
             _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(entry).cast());
@@ -42,28 +46,45 @@ pub fn prefetch<T>(entries: &[T], index: usize) {
     let _ = (entries, index);
 }
 
-/// Runs `$body` with `$simd` bound to the vector instructions of `$level`. On
-/// x86-64 these are AVX2 with fused products, on processors with AVX-512 too
-/// (four numbers are four numbers), or what every such processor has.
+/// Runs `$body` with `$simd` bound to the vector instructions of `$level`, and
+/// `$numbers` to the numbers that constitutive laws are evaluated in. On x86-64 these
+/// are AVX2 with fused products and eight points at a time, also on processors with
+/// AVX-512; older processors, for which a second copy of every law would be compiled
+/// into four times the code, take one point at a time.
 macro_rules! with_vectors {
-    ($level:expr, $simd:ident => $body:expr) => {{
+    ($level:expr, ($simd:ident, $numbers:ident) => $body:expr) => {{
         #[cfg(target_arch = "x86_64")]
         match ($level.as_avx2(), $level.as_sse2()) {
             (Some($simd), _) => fearless_simd::Simd::vectorize(
                 $simd,
                 #[inline(always)]
-                || $body,
+                || {
+                    let $numbers = $crate::algebra::lanes::eight_points($simd);
+                    $body
+                },
             ),
-            (None, Some($simd)) => $body,
+            (None, Some($simd)) => {
+                let $numbers = std::marker::PhantomData::<f64>;
+                $body
+            }
             (None, None) => unreachable!("x86-64 has SSE2"),
         }
         #[cfg(not(target_arch = "x86_64"))]
-        fearless_simd::dispatch!($level, $simd => $body)
+        fearless_simd::dispatch!($level, $simd => {
+            let $numbers = $crate::algebra::lanes::eight_points($simd);
+            $body
+        })
     }};
 }
 pub(crate) use with_vectors;
 
-/// Values, and their derivatives in one direction where these are wanted.
+/// The type of a number at eight points, without a value.
+#[inline(always)]
+pub fn eight_points<S: Simd>(_: S) -> PhantomData<f64x8<S>> {
+    PhantomData
+}
+
+/// Values and, where these are computed, their derivatives in one direction.
 #[derive(Debug, Clone, Default)]
 pub struct Parts<T> {
     pub values: Vec<T>,
@@ -76,95 +97,89 @@ impl<T: Clone + Default> Parts<T> {
     }
 }
 
-/// A [`Real`] at eight points. Eight rather than four, so that one half need not
-/// wait for the other.
+/// A number at all points of a [`SimdBlock`], or at one of them.
+pub trait Number<S: Simd>: Real {
+    /// Numbers of this type in a block; `piece` counts them.
+    const PER_BLOCK: usize;
+    fn read(simd: S, block: &SimdBlock, piece: usize) -> Self;
+    fn write(self, block: &mut SimdBlock, piece: usize);
+}
+
+impl<S: Simd> Number<S> for f64x8<S> {
+    const PER_BLOCK: usize = 1;
+
+    #[inline(always)]
+    fn read(simd: S, block: &SimdBlock, _piece: usize) -> Self {
+        load_block(simd, block)
+    }
+
+    #[inline(always)]
+    fn write(self, block: &mut SimdBlock, _piece: usize) {
+        block.0 = self.into();
+    }
+}
+
+impl<S: Simd> Number<S> for f64 {
+    const PER_BLOCK: usize = LANES;
+
+    #[inline(always)]
+    fn read(_simd: S, block: &SimdBlock, piece: usize) -> Self {
+        block.0[piece]
+    }
+
+    #[inline(always)]
+    fn write(self, block: &mut SimdBlock, piece: usize) {
+        block.0[piece] = self;
+    }
+}
+
+/// A [`Number`], with or without its derivative.
 pub trait Lanes<S: Simd>: Real {
+    /// Whether it has a derivative.
     const SLOPES: bool;
-    fn constant(simd: S, value: f64) -> Self;
-    fn load(simd: S, parts: &Parts<Eight>, entry: usize) -> Self;
-    fn store(self, parts: &mut Parts<Eight>, entry: usize);
-    /// Component `place(lane).1` of column `place(lane).0` \[lane\].
-    fn gather(simd: S, parts: &Parts<Four>, place: impl Fn(usize) -> (usize, usize)) -> Self;
-    /// The opposite of [`Lanes::gather`].
-    fn spread(self, parts: &mut Parts<Four>, place: impl Fn(usize) -> (usize, usize));
+    /// As [`Number::PER_BLOCK`].
+    const PER_BLOCK: usize;
+    fn load(simd: S, parts: &Parts<SimdBlock>, entry: usize, piece: usize) -> Self;
+    fn store(self, parts: &mut Parts<SimdBlock>, entry: usize, piece: usize);
 }
 
-impl<S: Simd> Lanes<S> for f64x8<S> {
-    const SLOPES: bool = false;
+/// Implements [`Lanes`] for a [`Number`].
+macro_rules! lanes_of_values {
+    ($number:ty) => {
+        impl<S: Simd> Lanes<S> for $number {
+            const SLOPES: bool = false;
+            const PER_BLOCK: usize = <Self as Number<S>>::PER_BLOCK;
 
-    #[inline(always)]
-    fn constant(simd: S, value: f64) -> Self {
-        f64x8::splat(simd, value)
-    }
+            #[inline(always)]
+            fn load(simd: S, parts: &Parts<SimdBlock>, entry: usize, piece: usize) -> Self {
+                Number::read(simd, &parts.values[entry], piece)
+            }
 
-    #[inline(always)]
-    fn load(simd: S, parts: &Parts<Eight>, entry: usize) -> Self {
-        eight(simd, &parts.values[entry])
-    }
-
-    #[inline(always)]
-    fn store(self, parts: &mut Parts<Eight>, entry: usize) {
-        parts.values[entry].0 = self.into();
-    }
-
-    #[inline(always)]
-    fn gather(simd: S, parts: &Parts<Four>, place: impl Fn(usize) -> (usize, usize)) -> Self {
-        gather(simd, &parts.values, place)
-    }
-
-    #[inline(always)]
-    fn spread(self, parts: &mut Parts<Four>, place: impl Fn(usize) -> (usize, usize)) {
-        spread(self, &mut parts.values, place);
-    }
+            #[inline(always)]
+            fn store(self, parts: &mut Parts<SimdBlock>, entry: usize, piece: usize) {
+                Number::<S>::write(self, &mut parts.values[entry], piece);
+            }
+        }
+    };
 }
+lanes_of_values!(f64);
+lanes_of_values!(f64x8<S>);
 
-impl<S: Simd> Lanes<S> for Dual<f64x8<S>> {
+impl<S: Simd, N: Number<S>> Lanes<S> for Dual<N> {
     const SLOPES: bool = true;
+    const PER_BLOCK: usize = N::PER_BLOCK;
 
     #[inline(always)]
-    fn constant(simd: S, value: f64) -> Self {
-        Dual { value: f64x8::splat(simd, value), slope: f64x8::splat(simd, 0.0) }
-    }
-
-    #[inline(always)]
-    fn load(simd: S, parts: &Parts<Eight>, entry: usize) -> Self {
-        Dual { value: eight(simd, &parts.values[entry]), slope: eight(simd, &parts.slopes[entry]) }
-    }
-
-    #[inline(always)]
-    fn store(self, parts: &mut Parts<Eight>, entry: usize) {
-        parts.values[entry].0 = self.value.into();
-        parts.slopes[entry].0 = self.slope.into();
-    }
-
-    #[inline(always)]
-    fn gather(simd: S, parts: &Parts<Four>, place: impl Fn(usize) -> (usize, usize)) -> Self {
+    fn load(simd: S, parts: &Parts<SimdBlock>, entry: usize, piece: usize) -> Self {
         Dual {
-            value: gather(simd, &parts.values, &place),
-            slope: gather(simd, &parts.slopes, &place),
+            value: N::read(simd, &parts.values[entry], piece),
+            slope: N::read(simd, &parts.slopes[entry], piece),
         }
     }
 
     #[inline(always)]
-    fn spread(self, parts: &mut Parts<Four>, place: impl Fn(usize) -> (usize, usize)) {
-        spread(self.value, &mut parts.values, &place);
-        spread(self.slope, &mut parts.slopes, &place);
-    }
-}
-
-#[inline(always)]
-fn gather<S: Simd>(simd: S, fours: &[Four], place: impl Fn(usize) -> (usize, usize)) -> f64x8<S> {
-    f64x8::from_fn(
-        simd,
-        #[inline(always)]
-        |lane| fours[place(lane).0].0[place(lane).1],
-    )
-}
-
-#[inline(always)]
-fn spread<S: Simd>(numbers: f64x8<S>, fours: &mut [Four], place: impl Fn(usize) -> (usize, usize)) {
-    for lane in 0..8 {
-        let (entry, k) = place(lane);
-        fours[entry].0[k] = numbers[lane];
+    fn store(self, parts: &mut Parts<SimdBlock>, entry: usize, piece: usize) {
+        self.value.write(&mut parts.values[entry], piece);
+        self.slope.write(&mut parts.slopes[entry], piece);
     }
 }

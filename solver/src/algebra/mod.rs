@@ -1,6 +1,7 @@
-//! Numbers, vectors and matrices that everything else is written in.
+//! Numbers, vectors, tensors and packed fields.
 
 pub(crate) mod lanes;
 pub(crate) mod packed;
+pub mod random;
 pub mod real;
 pub mod tensor;

@@ -1,10 +1,10 @@
-//! The numbers that formulas of the hot loop are written in: one `f64`, eight of
-//! them side by side, or a value with its derivative in one direction.
+//! The number types of the hot loop: one `f64`, eight of them side by side, or
+//! either with its derivative in one direction.
 
 use fearless_simd::{Simd, f64x8, prelude::*};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What the constitutive laws and the projection ask of a number.
+/// The operations that constitutive laws and the volumetric projection need.
 pub trait Real:
     Copy
     + Neg<Output = Self>
@@ -18,6 +18,7 @@ pub trait Real:
 {
     /// self · a + b, rounded once where the processor can.
     fn times_plus(self, a: Self, b: Self) -> Self;
+    /// Natural logarithm.
     fn ln(self) -> Self;
     /// |x|^(−2/3).
     fn power_minus_two_thirds(self) -> Self;
@@ -57,8 +58,8 @@ impl<S: Simd> Real for f64x8<S> {
         )
     }
 
-    /// y = x^(−1/3) from a third of the exponent, which is right to 3.5 %, then
-    /// twice y (1 − e)^(−1/3) with e = 1 − x y³ to fourth order.
+    /// y = x^(−1/3) from a third of the exponent, which is right to 3.5 %, then two
+    /// corrections of fourth order (method book, eq. 11.3).
     #[inline(always)]
     fn power_minus_two_thirds(self) -> Self {
         const START: u64 = 0x553E_F000_0000_0000;
@@ -77,10 +78,12 @@ impl<S: Simd> Real for f64x8<S> {
     }
 }
 
-/// A value and its derivative in one direction, carried along exactly.
+/// A value and its exact derivative in one direction (Griewank, Walther 2008).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual<R> {
+    /// The value.
     pub value: R,
+    /// The derivative.
     pub slope: R,
 }
 

@@ -1,4 +1,4 @@
-//! Small vectors and matrices, and the few names the formulas need.
+//! Vectors and tensors in space.
 #![allow(non_snake_case)]
 
 use crate::algebra::real::Real;
@@ -8,9 +8,8 @@ pub type Vector3 = nalgebra::Vector3<f64>;
 /// A second-order tensor as a 3×3 matrix.
 pub type Matrix3 = nalgebra::Matrix3<f64>;
 
-/// Cofactor matrix cof A = J A⁻ᵀ, defined for singular A too.
-///
-/// It is the derivative of the determinant: ∂J/∂F = cof F.
+/// cof A = det A · A⁻ᵀ, defined for singular A too; ∂J/∂F = cof F (method book,
+/// eq. 2.3).
 #[inline]
 pub fn cofactor(a: &Matrix3) -> Matrix3 {
     let (r0, r1, r2) = (a.row(0), a.row(1), a.row(2));
@@ -54,14 +53,14 @@ pub fn dot<R: Real>(a: &[R; 3], b: &[R; 3]) -> R {
     a[0].times_plus(b[0], a[1].times_plus(b[1], a[2] * b[2]))
 }
 
-/// C = FᵀF.
+/// C = FᵀF (method book, eq. 2.4).
 #[inline(always)]
 pub fn right_cauchy_green<R: Real>(F: &Tensor<R>) -> Tensor<R> {
-    let turned = map(
+    let transpose = map(
         #[inline(always)]
         |i, j| F[j][i],
     );
-    times_symmetric(&turned, &turned)
+    times_symmetric(&transpose, &transpose)
 }
 
 /// A Bᵀ, which is A B for a symmetric B.
@@ -73,7 +72,7 @@ pub fn times_symmetric<R: Real>(a: &Tensor<R>, b: &Tensor<R>) -> Tensor<R> {
     )
 }
 
-/// The tensor of the entries `entry(i, j)`.
+/// The tensor with the entries `entry(i, j)`.
 #[inline(always)]
 pub fn map<R: Real>(entry: impl Fn(usize, usize) -> R) -> Tensor<R> {
     [
@@ -83,22 +82,20 @@ pub fn map<R: Real>(entry: impl Fn(usize, usize) -> R) -> Tensor<R> {
     ]
 }
 
-/// Rotation by `angle` \[rad\] about the unit vector `axis`
-/// (Rodrigues' formula).
+/// Rotation by `angle` \[rad\] about `axis` (Rodrigues' formula).
 pub fn rotation(axis: &Vector3, angle: f64) -> Matrix3 {
     let unit = nalgebra::Unit::new_normalize(*axis);
     nalgebra::Rotation3::from_axis_angle(&unit, angle).into_inner()
 }
 
-/// Lower and upper corner of the box around `positions`, of which there is at
-/// least one.
-pub fn box_around(positions: &[Vector3]) -> (Vector3, Vector3) {
+/// Lower and upper corner of the box around `positions`, which must not be empty.
+pub fn bounding_box(positions: &[Vector3]) -> (Vector3, Vector3) {
     let first = (positions[0], positions[0]);
     positions.iter().fold(first, |(lower, upper), x| (lower.inf(x), upper.sup(x)))
 }
 
-/// Entry `node` of a packed nodal field with `components` per node; what is
-/// missing in a plane is 0.
+/// Entry `node` of a packed nodal field with `components` per node; missing
+/// components are 0.
 pub fn vector_at(field: &[f64], node: usize, components: usize) -> Vector3 {
     let mut value = Vector3::zeros();
     for k in 0..components {

@@ -9,13 +9,13 @@ pub fn homogeneous(x: &Vector3) -> Vector4<f64> {
     Vector4::new(1.0, x.x, x.y, x.z)
 }
 
-/// Directions with less than this share of the largest moment are empty \[–\].
+/// Directions with less than this fraction of the largest moment are empty \[–\].
 const EMPTY: f64 = 1e-12;
 
 /// Changes the `values` at the points of `own` as little as possible, in proportion
-/// to `sizes`, so that their moments Σ p ⊗ value, p = (1, (X − centre)/length), fall
-/// by `excess(moments, length)`.
-pub fn take_moments(
+/// to `sizes`, so that their moments Σ p ⊗ value, p = (1, (X − centre)/length), are
+/// reduced by `excess(moments, length)`.
+pub fn reduce_moments(
     values: &mut [Vector3],
     sizes: &[f64],
     positions: &[Vector3],

@@ -1,6 +1,6 @@
-//! Who covers a point: nodes in uniform cells.
+//! Search of the nodes near a point.
 
-use crate::algebra::tensor::{Vector3, box_around};
+use crate::algebra::tensor::{Vector3, bounding_box};
 
 /// Nodes sorted into cubes whose edge is the largest influence radius or a
 /// fraction of it, so that a query visits few of them.
@@ -12,7 +12,7 @@ pub struct Neighbours {
     /// Nodes of cell c are `nodes[starts[c]..starts[c + 1]]`.
     starts: Vec<u32>,
     nodes: Vec<u32>,
-    /// Positions in the order of `nodes`, so that a query reads on \[m\].
+    /// Positions in the order of `nodes`, so that a query reads in sequence \[m\].
     positions: Vec<Vector3>,
 }
 
@@ -20,7 +20,7 @@ impl Neighbours {
     /// Sorts `positions` \[m\] into cells of edge `cell` \[m\], enlarged where
     /// there would be many more cells than nodes.
     pub fn new(positions: &[Vector3], cell: f64) -> Neighbours {
-        let (min, max) = box_around(positions);
+        let (min, max) = bounding_box(positions);
         let mut cell = cell;
         let counts = loop {
             let counts = [0, 1, 2].map(|k| ((max[k] - min[k]) / cell) as usize + 1);
@@ -41,7 +41,7 @@ impl Neighbours {
         neighbours
     }
 
-    /// Counting sort, stable: nodes of a cell stand in ascending order.
+    /// Counting sort, stable: nodes of a cell are in ascending order.
     fn fill(&mut self, positions: &[Vector3]) {
         let cells: Vec<usize> = positions.iter().map(|x| self.cell_of(x)).collect();
         let mut starts = vec![0u32; self.counts.iter().product::<usize>() + 1];
@@ -116,7 +116,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_cells_hold_every_node_that_a_plain_search_finds(
+        fn the_cells_contain_every_node_that_an_exhaustive_search_finds(
             points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 1..200),
             x in prop::array::uniform3(-1.5..1.5f64),
             radius in 0.01..1.0f64,
@@ -131,8 +131,8 @@ mod tests {
             });
             found.sort_unstable();
             let near = |a: &usize| (positions[*a] - x).norm_squared() < radius * radius;
-            let plain: Vec<usize> = (0..positions.len()).filter(near).collect();
-            prop_assert_eq!(found, plain);
+            let expected: Vec<usize> = (0..positions.len()).filter(near).collect();
+            prop_assert_eq!(found, expected);
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Patches of quadrature points, over which J is projected where a material
-//! hardly changes its volume (method §3).
+//! Patches of quadrature points, over which J is projected where a material is
+//! nearly incompressible (method book, section 10).
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
@@ -10,17 +10,17 @@ use std::ops::Range;
 /// spacings is 1.1 % too stiff instead of 0.7 %, and pressures are 10 % worse, for
 /// displacements that are 2 % better.
 const EDGE: f64 = 3.0;
-/// Lengths and volumes that differ by less than this share are the same: on a
+/// Lengths and volumes that differ by less than this fraction are equal: on a
 /// grid they tie, and round-off must not choose the patches \[–\].
 const SAME: f64 = 1e-9;
-/// A direction in which a patch is thinner than this share of its widest
-/// carries no slope \[–\].
+/// A direction in which a patch is thinner than this fraction of its widest
+/// gets no linear function \[–\].
 const FLATTEST: f64 = 0.15;
 
 /// Sorts the points of each region into patches by recursive bisection and
 /// returns where patches start, the end included. `spacing` is that of the
 /// nodes around each point \[m\]; a patch is no larger than
-/// (3 spacings)^`components`.
+/// (3 spacings)^`components` (method book, eq. 10.1).
 pub fn sort_into_patches(
     quadrature: &mut Quadrature,
     spacing: &[f64],
@@ -45,7 +45,7 @@ pub fn sort_into_patches(
     starts
 }
 
-/// Fewer points than this are not worth another thread.
+/// Fewer points than this run on one thread.
 const FEWEST_PARALLEL: usize = 4096;
 
 struct Bisection<'a> {
@@ -171,8 +171,8 @@ fn halve(order: &[u32], ascending: [Vec<u32>; 3], middle: usize) -> ([Vec<u32>; 
 }
 
 /// 1, X, Y, Z made orthonormal over the points of a patch with their weights:
-/// Σ_q w_q B_b B_c = δ_bc \[m^−3/2\]. Functions that the patch is too small or
-/// too flat for are 0.
+/// Σ_q w_q B_b B_c = δ_bc \[m^−3/2\] (method book, eq. 10.2). Functions for which
+/// the patch is too small or too flat are 0.
 pub fn orthonormal_basis(
     positions: &[Vector3],
     weights: &[f64],
@@ -187,11 +187,11 @@ pub fn orthonormal_basis(
     if positions.len() < 2 * (components + 1) {
         return basis;
     }
-    let spread = |k: usize| -> f64 {
+    let variance = |k: usize| -> f64 {
         let squares = positions.iter().zip(weights).map(|(X, w)| w * (X[k] - centre[k]).powi(2));
         squares.sum()
     };
-    let widest = (0..components).map(spread).fold(0.0, f64::max);
+    let widest = (0..components).map(variance).fold(0.0, f64::max);
     for k in 0..components {
         let mut column: Vec<f64> = positions.iter().map(|X| X[k] - centre[k]).collect();
         for _ in 0..2 {
@@ -213,10 +213,9 @@ pub fn orthonormal_basis(
 mod tests {
     use super::*;
     use crate::discretisation::quadrature::quadrature;
-    use crate::geometry::Shape;
-    use crate::geometry::selection::Selector;
+    use crate::geometry::{Selector, Shape};
     use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
-    use crate::problem::{BackgroundGrid, Dimension, InsideRule, Region};
+    use crate::problem::{BackgroundGrid, Dimension, Region};
 
     /// Starts of patches and sorted points \[edge\] of a cube of edge `size`
     /// \[m\] at `at` \[m\], on a grid that fits it.
@@ -226,13 +225,7 @@ mod tests {
         let law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
         let material = Material { density: 1000.0, law };
         let regions = [Region { name: "all".into(), part: Selector::All, material }];
-        let grid = BackgroundGrid {
-            cell: size / 7.0,
-            boundary_cell: None,
-            refinements: Vec::new(),
-            gauss_points: 1,
-            inside: InsideRule::VolumeFraction,
-        };
+        let grid = BackgroundGrid::with_cell(size / 7.0);
         let mut points = quadrature(&body, &regions, &grid, &Dimension::Three).unwrap();
         let spacing = vec![size / 6.0; points.positions.len()];
         let starts = sort_into_patches(&mut points, &spacing, 1.0, 3);

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 pub struct Rows {
     /// Row i is `starts[i]..starts[i + 1]` \[row + 1\].
     pub starts: Vec<usize>,
+    /// Node of each entry, ascending in a row.
     pub nodes: Vec<u32>,
     /// \[–\]
     pub phi: Vec<f64>,
@@ -23,14 +24,14 @@ impl Default for Rows {
     }
 }
 
-/// What rows are evaluated for.
+/// What rows hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Wanted {
+pub(crate) enum Requested {
     Values,
     ValuesAndGradients,
 }
 
-/// Rows and what evaluating them has shown.
+/// Rows with the statistics of their evaluation.
 #[derive(Debug, Default)]
 pub(crate) struct Evaluated {
     pub rows: Rows,
@@ -42,15 +43,15 @@ pub(crate) struct Evaluated {
 
 /// Points that are evaluated one after the other.
 const PIECE: usize = 128;
-/// Points that are evaluated before their rows are packed: the rows of so many
-/// stand in memory twice.
+/// Points that are evaluated before their rows are packed: that many rows are
+/// stored twice.
 const BATCH: usize = 128 * PIECE;
 
 impl Evaluated {
     fn of(
         approximation: &Approximation,
         positions: &[Vector3],
-        wanted: Wanted,
+        requested: Requested,
     ) -> Result<Evaluated, (usize, PoorSupport)> {
         let mut all = Evaluated::default();
         let (mut scratch, mut support) = (Scratch::default(), Support::default());
@@ -58,7 +59,7 @@ impl Evaluated {
             approximation
                 .evaluate_into(X, &mut scratch, &mut support)
                 .map_err(|poor| (point, poor))?;
-            all.rows.push(&support, wanted);
+            all.rows.push(&support, requested);
             all.enlarged += (support.enlargement > 1.0) as usize;
             all.worst_condition = all.worst_condition.max(support.condition);
         }
@@ -78,10 +79,12 @@ impl Evaluated {
 }
 
 impl Rows {
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }
 
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -95,12 +98,12 @@ impl Rows {
     pub(crate) fn at(
         approximation: &Approximation,
         positions: &[Vector3],
-        wanted: Wanted,
+        requested: Requested,
     ) -> Result<Evaluated, (usize, PoorSupport)> {
         let mut all = Evaluated::default();
         for batch in positions.chunks(BATCH) {
             let first = all.rows.len();
-            let evaluate = |piece: &[Vector3]| Evaluated::of(approximation, piece, wanted);
+            let evaluate = |piece: &[Vector3]| Evaluated::of(approximation, piece, requested);
             let pieces: Vec<_> = batch.par_chunks(PIECE).map(evaluate).collect();
             for (index, piece) in pieces.into_iter().enumerate() {
                 all.append(piece.map_err(|(point, poor)| (first + index * PIECE + point, poor))?);
@@ -110,16 +113,16 @@ impl Rows {
         Ok(all)
     }
 
-    fn push(&mut self, support: &Support, wanted: Wanted) {
+    fn push(&mut self, support: &Support, requested: Requested) {
         self.nodes.extend(&support.nodes);
         self.phi.extend(&support.phi);
-        if wanted == Wanted::ValuesAndGradients {
+        if requested == Requested::ValuesAndGradients {
             self.grad_phi.extend(&support.grad_phi);
         }
         self.starts.push(self.nodes.len());
     }
 
-    /// Gives back what growing has reserved in advance.
+    /// Frees the memory that growing reserved in advance.
     fn shrink(&mut self) {
         self.starts.shrink_to_fit();
         self.nodes.shrink_to_fit();
@@ -127,7 +130,8 @@ impl Rows {
         self.grad_phi.shrink_to_fit();
     }
 
-    /// The value at row `i` of a nodal field with `components` per node.
+    /// The value at row `i` of a nodal field with `components` per node (method
+    /// book, eq. 2.1).
     pub fn interpolate(&self, i: usize, field: &[f64], components: usize) -> Vector3 {
         let mut value = Vector3::zeros();
         for entry in self.row(i) {
@@ -139,7 +143,7 @@ impl Rows {
         value
     }
 
-    /// F = I + Σ_a u_a ⊗ Grad φ_a at row `i`.
+    /// F = I + Σ_a u_a ⊗ Grad φ_a at row `i` (method book, eq. 2.2).
     pub fn deformation_gradient(&self, i: usize, field: &[f64], components: usize) -> Matrix3 {
         let mut F = Matrix3::identity();
         for entry in self.row(i) {

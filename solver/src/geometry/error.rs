@@ -1,6 +1,7 @@
-//! Why a shape or a node cloud is refused.
+//! Reasons to refuse a shape or a node cloud.
 
 /// Why a shape or a node cloud is refused; lengths in \[m\].
+#[allow(missing_docs, reason = "the messages name every field")]
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GeometryError {
     #[error("{name} is {value}; it must be positive and finite")]
@@ -19,7 +20,7 @@ pub enum GeometryError {
     PolygonCrosses { first: usize, second: usize },
     #[error("the union has no members")]
     EmptyUnion,
-    #[error("the {shape} has no end, so it has no boundary to put nodes or panels on")]
+    #[error("the {shape} is unbounded, so nodes or panels cannot cover its boundary")]
     Unbounded { shape: &'static str },
     #[error("the {shape} cannot be cut at z = {z} m into a plane cross-section")]
     SectionUnsupported { shape: &'static str, z: f64 },
@@ -71,4 +72,9 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), GeometryErr
     } else {
         Err(GeometryError::NotPositive { name, value })
     }
+}
+
+/// No more than `limit` of `what` may be needed.
+pub(crate) fn at_most(what: &'static str, count: f64, limit: f64) -> Result<(), GeometryError> {
+    if count <= limit { Ok(()) } else { Err(GeometryError::TooMany { what, count, limit }) }
 }

@@ -1,217 +1,35 @@
-//! Solids as signed distance: negative inside, positive outside \[m\].
-#![allow(non_snake_case)]
+//! Solids, their boundaries, and selections of their points (method book,
+//! section 4).
 
-mod boundary_points;
-pub mod dimension;
+mod boundary;
+mod dimension;
+mod distance_function;
 mod error;
-mod features;
-pub mod field;
-mod grid;
-mod label_field;
-mod label_map;
-mod marching;
-mod panels;
+mod field;
 mod point_hash;
+mod polygon;
 mod primitives;
 mod section;
-pub mod selection;
+mod selection;
+mod shape;
 mod surface;
 mod triangles;
 mod validate;
+mod voxels;
 
-pub(crate) use boundary_points::{BoundaryPoints, Sizes, boundary_points_sized, project};
+pub use boundary::Panel;
+pub(crate) use boundary::{BoundaryPoints, TargetSpacing, boundary_points, lattice_cells, project};
+pub use dimension::Dimension;
+pub use distance_function::DistanceFunction;
 pub use error::GeometryError;
-pub(crate) use error::positive;
-pub(crate) use features::lattice_cells;
-pub(crate) use grid::{ScalarGrid, Seed};
-pub use label_field::LabelField;
-pub use label_map::LabelMap;
-pub use panels::Panel;
+pub(crate) use error::{at_most, positive};
+pub use field::Field;
 pub(crate) use point_hash::PointHash;
+pub use selection::{Extent, Selector};
+pub use shape::Shape;
 pub use surface::Surface;
-
-use crate::algebra::tensor::Vector3;
-use std::sync::Arc;
-
-/// A solid in space.
-#[derive(Debug, Clone)]
-pub enum Shape {
-    Box {
-        min: Vector3,
-        max: Vector3,
-    },
-    /// From `base` along the unit `axis` over `height`.
-    Cylinder {
-        base: Vector3,
-        axis: Vector3,
-        radius: f64,
-        height: f64,
-    },
-    Sphere {
-        centre: Vector3,
-        radius: f64,
-    },
-    /// Axis-parallel, semi-axes `radii`. With an infinite third radius it is
-    /// an elliptic cylinder without ends, the form of plane cross-sections.
-    Ellipsoid {
-        centre: Vector3,
-        radii: Vector3,
-    },
-    /// A simple polygon in the x–y plane extruded from `z.0` to `z.1`, which
-    /// may be infinite.
-    Polygon {
-        points: Vec<[f64; 2]>,
-        z: (f64, f64),
-    },
-    /// Everything behind the plane: (X − point)·normal ≤ 0, unit `normal`.
-    HalfSpace {
-        point: Vector3,
-        normal: Vector3,
-    },
-    Union(Vec<Shape>),
-    /// The first without the second.
-    Difference(Box<Shape>, Box<Shape>),
-    /// The voxels of some labels of a label map, with a smooth surface.
-    Labels(Arc<LabelField>),
-    /// What a closed triangulated surface encloses.
-    Surface(Arc<Surface>),
-}
-
-impl Shape {
-    /// Signed distance \[m\]: negative inside. Exact for single shapes; for a
-    /// union exact outside, for a difference a bound of the right sign.
-    pub fn signed_distance(&self, X: &Vector3) -> f64 {
-        match self {
-            Shape::Box { min, max } => primitives::box_distance(X, min, max),
-            Shape::Cylinder { base, axis, radius, height } => {
-                primitives::cylinder_distance(X, base, axis, *radius, *height)
-            }
-            Shape::Sphere { centre, radius } => (X - centre).norm() - radius,
-            Shape::Ellipsoid { centre, radii } => {
-                primitives::ellipsoid_distance(&(X - centre), radii)
-            }
-            Shape::Polygon { points, z } => primitives::product_distance(
-                primitives::polygon_distance(points, X.x, X.y),
-                (z.0 - X.z).max(X.z - z.1),
-            ),
-            Shape::HalfSpace { point, normal } => (X - point).dot(normal),
-            Shape::Union(members) => {
-                members.iter().map(|m| m.signed_distance(X)).fold(f64::INFINITY, f64::min)
-            }
-            Shape::Difference(body, hole) => body.signed_distance(X).max(-hole.signed_distance(X)),
-            Shape::Labels(field) => field.signed_distance(X),
-            Shape::Surface(surface) => surface.signed_distance(X),
-        }
-    }
-
-    /// Unit gradient of the signed distance, the outward normal on the
-    /// boundary. Where several directions are as good, it is one of them or
-    /// their mean; it is never NaN.
-    pub fn gradient(&self, X: &Vector3) -> Vector3 {
-        match self {
-            Shape::Sphere { centre, .. } => {
-                (X - centre).try_normalize(0.0).unwrap_or_else(Vector3::x)
-            }
-            Shape::Ellipsoid { centre, radii } => {
-                primitives::ellipsoid_normal(&(X - centre), radii)
-            }
-            Shape::HalfSpace { normal, .. } => *normal,
-            Shape::Union(members) => {
-                let nearest = members
-                    .iter()
-                    .min_by(|a, b| a.signed_distance(X).total_cmp(&b.signed_distance(X)));
-                nearest.map_or_else(Vector3::x, |member| member.gradient(X))
-            }
-            Shape::Difference(body, hole) => {
-                if body.signed_distance(X) >= -hole.signed_distance(X) {
-                    body.gradient(X)
-                } else {
-                    -hole.gradient(X)
-                }
-            }
-            Shape::Labels(field) => self.gradient_by_differences(X, 0.25 * field.voxel()),
-            _ => self.gradient_by_differences(X, 1e-6 * self.size()),
-        }
-    }
-
-    fn gradient_by_differences(&self, X: &Vector3, step: f64) -> Vector3 {
-        // On a medial axis the differences cancel; a short way off they do not.
-        for offset in [Vector3::zeros(), Vector3::new(1.3, 2.1, 3.7) * step] {
-            let difference = Vector3::from_fn(|k, _| {
-                let mut shift = Vector3::zeros();
-                shift[k] = step;
-                let there = X + offset;
-                self.signed_distance(&(there + shift)) - self.signed_distance(&(there - shift))
-            });
-            if difference.norm() > 0.2 * step {
-                return difference.normalize();
-            }
-        }
-        Vector3::x()
-    }
-
-    /// Largest finite edge of the bounding box \[m\]; 1 if there is none.
-    pub(crate) fn size(&self) -> f64 {
-        let edges = self.bounding_box().map(|(lower, upper)| upper - lower);
-        edges
-            .map(|e| e.iter().copied().filter(|l| l.is_finite()).fold(0.0, f64::max))
-            .filter(|&l| l > 0.0)
-            .unwrap_or(1.0)
-    }
-
-    /// Lower and upper corner of an axis-parallel box around the solid \[m\],
-    /// `None` if it is unbounded in the x–y plane. A plane cross-section has
-    /// infinite z.
-    pub fn bounding_box(&self) -> Option<(Vector3, Vector3)> {
-        match self {
-            Shape::Box { min, max } => Some((*min, *max)),
-            Shape::Cylinder { base, axis, radius, height } => {
-                let top = base + *height * axis;
-                let reach = axis.map(|a| radius * (1.0 - a * a).max(0.0).sqrt());
-                Some((base.inf(&top) - reach, base.sup(&top) + reach))
-            }
-            Shape::Sphere { centre, radius } => {
-                let reach = Vector3::repeat(*radius);
-                Some((centre - reach, centre + reach))
-            }
-            Shape::Ellipsoid { centre, radii } => Some((centre - radii, centre + radii)),
-            Shape::Polygon { points, z } => {
-                let start = Vector3::new(f64::INFINITY, f64::INFINITY, z.0);
-                let lower = points.iter().fold(start, |l, p| l.inf(&Vector3::new(p[0], p[1], z.0)));
-                let start = Vector3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, z.1);
-                let upper = points.iter().fold(start, |u, p| u.sup(&Vector3::new(p[0], p[1], z.1)));
-                Some((lower, upper))
-            }
-            Shape::HalfSpace { .. } => None,
-            Shape::Union(members) => {
-                let mut boxes = members.iter().map(Shape::bounding_box);
-                let first = boxes.next()??;
-                boxes.try_fold(first, |(l, u), next| next.map(|(nl, nu)| (l.inf(&nl), u.sup(&nu))))
-            }
-            Shape::Difference(body, _) => body.bounding_box(),
-            Shape::Labels(field) => Some(field.bounding_box()),
-            Shape::Surface(surface) => Some(surface.bounding_box()),
-        }
-    }
-
-    /// What the shape is called in messages.
-    pub(crate) fn name(&self) -> &'static str {
-        match self {
-            Shape::Box { .. } => "box",
-            Shape::Cylinder { .. } => "cylinder",
-            Shape::Sphere { .. } => "sphere",
-            Shape::Ellipsoid { .. } => "ellipsoid",
-            Shape::Polygon { .. } => "polygon",
-            Shape::HalfSpace { .. } => "half-space",
-            Shape::Union(_) => "union",
-            Shape::Difference(..) => "difference",
-            Shape::Labels(_) => "label map",
-            Shape::Surface(_) => "surface",
-        }
-    }
-}
+pub(crate) use voxels::{KnownDistance, ScalarGrid, indices};
+pub use voxels::{LabelField, LabelMap};
 
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod voxel_tests;

@@ -1,11 +1,11 @@
-//! Finding points near a point when distances vary over the cloud.
+//! Search of near points where distances vary over the cloud.
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
 use std::collections::HashMap;
 
 /// Points sorted into cubes of several sizes, each twice the last, so that a
-/// search looks at few cubes whatever its radius.
+/// search of any radius visits few cubes.
 pub(crate) struct PointHash {
     smallest: f64,
     levels: Vec<HashMap<[i64; 3], Vec<u32>>>,
@@ -66,7 +66,7 @@ impl PointHash {
     /// Distances to the `count` nearest points other than `own`, nearest
     /// first, and their indices; fewer if there are fewer.
     pub fn nearest(&self, X: &Vector3, own: usize, count: usize) -> Vec<(f64, usize)> {
-        let wanted = count.min(self.points.len().saturating_sub(1));
+        let available = count.min(self.points.len().saturating_sub(1));
         let mut radius = self.smallest;
         loop {
             let mut found = Vec::new();
@@ -76,7 +76,7 @@ impl PointHash {
                 }
                 true
             });
-            if found.len() >= wanted || !radius.is_finite() {
+            if found.len() >= available || !radius.is_finite() {
                 found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
                 found.truncate(count);
                 return found;

@@ -27,44 +27,6 @@ pub fn cylinder_distance(
     product_distance((d - s * axis).norm() - radius, (-s).max(s - height))
 }
 
-/// Of a simple polygon in the plane, whichever way it runs.
-pub fn polygon_distance(points: &[[f64; 2]], x: f64, y: f64) -> f64 {
-    let mut squared = f64::INFINITY;
-    let mut inside = false;
-    let mut a = points[points.len() - 1];
-    for &b in points {
-        let (ex, ey) = (b[0] - a[0], b[1] - a[1]);
-        let (wx, wy) = (x - a[0], y - a[1]);
-        let t = ((wx * ex + wy * ey) / (ex * ex + ey * ey)).clamp(0.0, 1.0);
-        squared = squared.min((wx - t * ex).powi(2) + (wy - t * ey).powi(2));
-        if (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / ey * ex {
-            inside = !inside;
-        }
-        a = b;
-    }
-    if inside { -squared.sqrt() } else { squared.sqrt() }
-}
-
-/// Signed area of a polygon \[m²\], positive if it runs anticlockwise.
-pub fn polygon_area(points: &[[f64; 2]]) -> f64 {
-    let n = points.len();
-    (0..n)
-        .map(|i| {
-            let (a, b) = (points[i], points[(i + 1) % n]);
-            0.5 * (a[0] * b[1] - a[1] * b[0])
-        })
-        .sum()
-}
-
-/// The points in anticlockwise order.
-pub fn anticlockwise(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let mut points = points.to_vec();
-    if polygon_area(&points) < 0.0 {
-        points.reverse();
-    }
-    points
-}
-
 /// Point of an axis-parallel ellipsoid closest to `d`, both from its centre.
 /// An infinite third radius makes it an elliptic cylinder.
 ///
@@ -118,4 +80,11 @@ pub fn ellipsoid_normal(d: &Vector3, radii: &Vector3) -> Vector3 {
         normal.z = 0.0;
     }
     normal.try_normalize(0.0).unwrap_or_else(Vector3::x)
+}
+
+/// Two unit vectors perpendicular to a unit vector and to each other.
+pub fn perpendicular(axis: &Vector3) -> (Vector3, Vector3) {
+    let e = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
+    let u = (e - e.dot(axis) * axis).normalize();
+    (u, axis.cross(&u))
 }

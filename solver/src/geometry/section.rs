@@ -1,8 +1,11 @@
 //! Cross-sections for plane problems: solids without ends in z.
 
-use super::{GeometryError, Shape};
 use crate::algebra::tensor::Vector3;
 use crate::geometry::dimension::Dimension;
+use crate::geometry::error::GeometryError;
+use crate::geometry::polygon::polygon_area;
+use crate::geometry::shape::Shape;
+use crate::geometry::surface::Surface;
 use std::sync::Arc;
 
 const WITHOUT_END: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -28,15 +31,11 @@ impl Shape {
                 points: vec![[min.x, min.y], [max.x, min.y], [max.x, max.y], [min.x, max.y]],
                 z: WITHOUT_END,
             }),
+            Shape::Cylinder { axis, .. } if axis.z.abs() < 1.0 - 1e-12 => Err(unsupported),
             Shape::Cylinder { base, axis, radius, height } => {
                 let top = base.z + height * axis.z;
-                if axis.z.abs() < 1.0 - 1e-12 {
-                    Err(unsupported)
-                } else if between(base.z.min(top), base.z.max(top)) {
-                    Ok(ellipse(base, *radius, *radius))
-                } else {
-                    Err(empty)
-                }
+                let crossed = between(base.z.min(top), base.z.max(top));
+                if crossed { Ok(ellipse(base, *radius, *radius)) } else { Err(empty) }
             }
             Shape::Sphere { centre, radius } if (z - centre.z).abs() < *radius => {
                 let reach = (radius * radius - (z - centre.z).powi(2)).sqrt();
@@ -52,16 +51,7 @@ impl Shape {
             Shape::Polygon { points, z: (from, to) } if between(*from, *to) => {
                 Ok(Shape::Polygon { points: points.clone(), z: WITHOUT_END })
             }
-            Shape::HalfSpace { point, normal } => {
-                let level = Vector3::new(normal.x, normal.y, 0.0);
-                let length = level.norm();
-                if length < 1e-12 {
-                    return Err(unsupported);
-                }
-                let to_plane = (point.z - z) * normal.z / length;
-                let unit = level / length;
-                Ok(Shape::HalfSpace { point: point + to_plane * unit, normal: unit })
-            }
+            Shape::HalfSpace { point, normal } => half_plane(point, normal, z).ok_or(unsupported),
             Shape::Union(members) => union_section(members, z, empty),
             Shape::Difference(body, hole) => {
                 let body = body.section_at(z)?;
@@ -72,7 +62,10 @@ impl Shape {
                 }
             }
             Shape::Labels(field) => Ok(Shape::Labels(Arc::new(field.slice(z)?))),
-            Shape::Surface(surface) => surface.section(z),
+            Shape::Surface(surface) => surface_section(surface, z, empty),
+            Shape::Function(function) if between(function.bounds().0.z, function.bounds().1.z) => {
+                Ok(Shape::Function(function.without_ends()))
+            }
             _ => Err(empty),
         }
     }
@@ -99,6 +92,15 @@ fn ellipse(centre: &Vector3, a: f64, b: f64) -> Shape {
     }
 }
 
+/// The section of a half-space, unless its plane is level.
+fn half_plane(point: &Vector3, normal: &Vector3, z: f64) -> Option<Shape> {
+    let level = Vector3::new(normal.x, normal.y, 0.0);
+    let length = level.norm();
+    let to_plane = (point.z - z) * normal.z / length;
+    let unit = level / length;
+    (length >= 1e-12).then(|| Shape::HalfSpace { point: point + to_plane * unit, normal: unit })
+}
+
 fn union_section(members: &[Shape], z: f64, empty: GeometryError) -> Result<Shape, GeometryError> {
     let mut sections = Vec::new();
     for member in members {
@@ -108,9 +110,31 @@ fn union_section(members: &[Shape], z: f64, empty: GeometryError) -> Result<Shap
             Err(error) => return Err(error),
         }
     }
-    match sections.len() {
-        0 => Err(empty),
-        1 => Ok(sections.remove(0)),
-        _ => Ok(Shape::Union(sections)),
+    union(sections).ok_or(empty)
+}
+
+/// The loops in which the plane cuts the surface: the outer ones together, less
+/// the holes.
+fn surface_section(
+    surface: &Surface,
+    z: f64,
+    empty: GeometryError,
+) -> Result<Shape, GeometryError> {
+    let (outer, holes): (Vec<_>, Vec<_>) =
+        surface.loops(z).into_iter().partition(|points| polygon_area(points) > 0.0);
+    let polygon = |points| Shape::Polygon { points, z: WITHOUT_END };
+    let join = |loops: Vec<Vec<[f64; 2]>>| union(loops.into_iter().map(polygon).collect());
+    let body = join(outer).ok_or(empty)?;
+    Ok(match join(holes) {
+        None => body,
+        Some(holes) => Shape::Difference(Box::new(body), Box::new(holes)),
+    })
+}
+
+/// All members as one shape, if there are any.
+fn union(mut members: Vec<Shape>) -> Option<Shape> {
+    match members.len() {
+        0 | 1 => members.pop(),
+        _ => Some(Shape::Union(members)),
     }
 }

@@ -2,12 +2,12 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
-use crate::geometry::{LabelMap, Shape};
+use crate::geometry::shape::Shape;
+use crate::geometry::voxels::LabelMap;
 use std::sync::Arc;
 
-/// Whether a selection takes its candidates from the boundary of the body or
-/// from all of its nodes. Scenes must say which: "fixed where z < c" means
-/// different things for the two.
+/// Whether a selection applies to the boundary of the body or to all of its
+/// nodes; "fixed where z < c" means different things for the two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
     /// Nodes on the boundary of the body only.
@@ -21,18 +21,29 @@ pub enum Extent {
 pub enum Selector {
     /// Every candidate.
     All,
-    /// Within `tolerance` of the plane through `point` with unit `normal`.
+    /// Within `tolerance` of a plane.
     Plane {
+        /// A point on the plane \[m\].
         point: Vector3,
+        /// Unit vector perpendicular to it.
         normal: Vector3,
         /// \[m\]
         tolerance: f64,
     },
-    /// Inside or on a solid, within a tolerance \[m\]: half-space, box, sphere,
-    /// or any other shape.
-    Inside { shape: Shape, tolerance: f64 },
-    /// In a voxel of this label.
-    Label { map: Arc<LabelMap>, label: u32 },
+    /// Inside or on a solid, within a tolerance.
+    Inside {
+        /// The solid.
+        shape: Shape,
+        /// \[m\]
+        tolerance: f64,
+    },
+    /// In a voxel of one label.
+    Label {
+        /// The image.
+        map: Arc<LabelMap>,
+        /// The label in it.
+        label: u32,
+    },
     /// In at least one of these.
     Union(Vec<Selector>),
     /// In all of these.

@@ -1,10 +1,10 @@
 //! Solids enclosed by triangles.
 #![allow(non_snake_case)]
 
-use super::primitives::polygon_area;
-use super::triangles::Triangle;
-use super::{GeometryError, Shape};
 use crate::algebra::tensor::Vector3;
+use crate::geometry::error::GeometryError;
+use crate::geometry::polygon::{closed_chains, polygon_area};
+use crate::geometry::triangles::{Triangle, area_vector};
 use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
@@ -57,7 +57,7 @@ impl Surface {
     }
 
     /// Signed distance \[m\], the sign from angle-weighted normals
-    /// (Baerentzen & Aanaes 2005).
+    /// (Bærentzen, Aanæs 2005).
     pub fn signed_distance(&self, X: &Vector3) -> f64 {
         let (projection, _) = self.mesh.project_local_point_and_get_location(parry(X), false);
         let distance = (projection.point - parry(X)).length();
@@ -72,7 +72,7 @@ impl Surface {
     pub(super) fn sharp_edges(&self) -> Vec<(u32, u32)> {
         let mut normals = BTreeMap::new();
         for (t, corners) in self.triangles.iter().zip(self.corners()) {
-            let normal = super::triangles::area_vector(&corners).try_normalize(0.0);
+            let normal = area_vector(&corners).try_normalize(0.0);
             (0..3).for_each(|k| {
                 normals.insert((t[k], t[(k + 1) % 3]), normal);
             });
@@ -88,29 +88,9 @@ impl Surface {
         self.vertices[index as usize]
     }
 
-    /// The loops in which the plane at height z cuts the surface: the outer
-    /// ones together, less the holes.
-    pub(super) fn section(&self, z: f64) -> Result<Shape, GeometryError> {
-        let (mut outer, mut holes) = (Vec::new(), Vec::new());
-        for points in self.loops(z) {
-            let area = polygon_area(&points);
-            let polygon = Shape::Polygon { points, z: (f64::NEG_INFINITY, f64::INFINITY) };
-            if area > 0.0 { outer.push(polygon) } else { holes.push(polygon) }
-        }
-        let body = match outer.len() {
-            0 => return Err(GeometryError::SectionEmpty { shape: "surface", z }),
-            1 => outer.remove(0),
-            _ => Shape::Union(outer),
-        };
-        Ok(match holes.len() {
-            0 => body,
-            1 => Shape::Difference(Box::new(body), Box::new(holes.remove(0))),
-            _ => Shape::Difference(Box::new(body), Box::new(Shape::Union(holes))),
-        })
-    }
-
-    /// Polygons with the solid to their left.
-    fn loops(&self, z: f64) -> Vec<Vec<[f64; 2]>> {
+    /// Polygons \[m\] in which the plane at height z cuts the surface, the
+    /// solid to their left.
+    pub(super) fn loops(&self, z: f64) -> Vec<Vec<[f64; 2]>> {
         let cut = |a: u32, b: u32| {
             let (p, q) = (self.vertex(a.min(b)), self.vertex(a.max(b)));
             let point = p + (z - p.z) / (q.z - p.z) * (q - p);
@@ -128,15 +108,13 @@ impl Surface {
             }
         }
         let mut loops = Vec::new();
-        while let Some((&start, _)) = next.first_key_value() {
+        for chain in closed_chains(next) {
             let mut points: Vec<[f64; 2]> = Vec::new();
-            let mut at = start;
-            while let Some(after) = next.remove(&at) {
-                let point = cut(at.0, at.1);
+            for (a, b) in chain {
+                let point = cut(a, b);
                 if points.last() != Some(&point) && points.first() != Some(&point) {
                     points.push(point);
                 }
-                at = after;
             }
             if points.len() >= 3 && polygon_area(&points) != 0.0 {
                 loops.push(points);

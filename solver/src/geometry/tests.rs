@@ -1,7 +1,10 @@
+#![allow(non_snake_case)]
+
 use super::*;
-use crate::geometry::dimension::Dimension;
+use crate::algebra::tensor::Vector3;
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 const PLANE: Dimension = Dimension::PlaneStrain { thickness: 0.5, z: 0.05 };
 
@@ -216,8 +219,8 @@ fn panels_of_composites_have_the_area_of_what_is_left() {
     let ball = Shape::Sphere { centre: Vector3::zeros(), radius: 0.5 };
     let bitten = Shape::Difference(Box::new(cube(0.0)), Box::new(ball));
     // Three faces lose a quarter disc, an eighth of the sphere is new.
-    let wanted = 6.0 - 0.75 * PI * 0.25 + 0.5 * PI * 0.25;
-    assert!((area(&bitten) / wanted - 1.0).abs() < 2e-3, "{}", area(&bitten));
+    let expected = 6.0 - 0.75 * PI * 0.25 + 0.5 * PI * 0.25;
+    assert!((area(&bitten) / expected - 1.0).abs() < 2e-3, "{}", area(&bitten));
 }
 
 /// Least and greatest distance to the nearest neighbour.
@@ -230,7 +233,7 @@ fn neighbour_range(points: &[Vector3]) -> (f64, f64) {
 }
 
 #[test]
-fn boundary_points_are_evenly_spread_on_the_boundary() {
+fn boundary_points_are_evenly_distributed_on_the_boundary() {
     let spacing = 0.05;
     let solids = solids().into_iter().map(|s| (s.0, s.1, Dimension::Three));
     for (name, shape, dimension) in solids.chain(sections().into_iter().map(|s| (s.0, s.1, PLANE)))
@@ -278,7 +281,7 @@ fn the_outline_of_a_sphere_is_a_circle() {
     for p in &curves[0] {
         assert!(((p[0] - 0.1).hypot(p[1] - 0.2) - 0.4).abs() < 1e-4);
     }
-    let area = primitives::polygon_area(&curves[0]);
+    let area = polygon::polygon_area(&curves[0]);
     assert!((area / (PI * 0.16) - 1.0).abs() < 1e-3);
     assert!(shape.outline(0.6, 0.01).is_empty());
 }
@@ -310,7 +313,7 @@ fn a_soup_of_triangles_is_merged() {
 }
 
 #[test]
-fn shapes_that_are_none_are_refused() {
+fn invalid_shapes_are_refused() {
     let origin = Vector3::zeros();
     let refused = |shape: Shape| shape.validate_body().unwrap_err();
     assert!(matches!(

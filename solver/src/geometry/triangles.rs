@@ -1,6 +1,5 @@
-//! Triangles: cutting polygons into them and them into smaller ones.
+//! Triangles in space.
 
-use super::primitives::anticlockwise;
 use crate::algebra::tensor::Vector3;
 
 /// Corners of a triangle \[m\], anticlockwise seen from outside the solid.
@@ -26,37 +25,4 @@ pub(super) fn subdivide(triangle: Triangle, size: f64, keep: &mut impl FnMut(Tri
         stack.push([a, middle, c]);
         stack.push([middle, b, c]);
     }
-}
-
-/// Cuts a simple polygon into anticlockwise triangles by clipping ears.
-pub(super) fn triangulate(points: &[[f64; 2]]) -> Vec<[[f64; 2]; 3]> {
-    let mut left = anticlockwise(points);
-    let mut triangles = Vec::new();
-    while left.len() > 3 {
-        let n = left.len();
-        // A simple polygon always has an ear; rounding may hide it, and then
-        // the flattest corner goes.
-        let ear = (0..n).find(|&i| is_ear(&left, i)).unwrap_or(0);
-        triangles.push([left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]]);
-        left.remove(ear);
-    }
-    triangles.push([left[0], left[1], left[2]]);
-    triangles
-}
-
-fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-fn is_ear(points: &[[f64; 2]], i: usize) -> bool {
-    let n = points.len();
-    let (a, b, c) = (points[(i + n - 1) % n], points[i], points[(i + 1) % n]);
-    if turn(a, b, c) < 0.0 {
-        return false;
-    }
-    let corner = |p: &[f64; 2]| *p == a || *p == b || *p == c;
-    !points
-        .iter()
-        .filter(|p| !corner(p))
-        .any(|&p| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0)
 }

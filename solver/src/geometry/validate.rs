@@ -1,22 +1,19 @@
 //! What makes a shape admissible.
 
-use super::{GeometryError, Shape, positive};
 use crate::algebra::tensor::Vector3;
+use crate::geometry::error::{GeometryError, positive};
+use crate::geometry::shape::Shape;
 
 impl Shape {
     /// Refuses shapes whose numbers describe no solid. A half-space passes;
     /// as a body it is refused where a bounded one is needed.
     pub fn validate(&self) -> Result<(), GeometryError> {
         match self {
-            Shape::Box { min, max } => {
-                for axis in 0..3 {
-                    let (min, max) = (min[axis], max[axis]);
-                    if !(min < max && (max - min).is_finite()) {
-                        return Err(GeometryError::EmptyBox { axis, min, max });
-                    }
-                }
-                Ok(())
-            }
+            Shape::Box { min, max } => (0..3).try_for_each(|axis| {
+                let (min, max) = (min[axis], max[axis]);
+                let valid = min < max && (max - min).is_finite();
+                if valid { Ok(()) } else { Err(GeometryError::EmptyBox { axis, min, max }) }
+            }),
             Shape::Cylinder { base, axis, radius, height } => {
                 finite("the cylinder base", base)?;
                 unit("the cylinder axis", axis)?;
@@ -31,10 +28,8 @@ impl Shape {
                 finite("the ellipsoid centre", centre)?;
                 positive("the ellipsoid radius in x", radii.x)?;
                 positive("the ellipsoid radius in y", radii.y)?;
-                if radii.z == f64::INFINITY {
-                    return Ok(());
-                }
-                positive("the ellipsoid radius in z", radii.z)
+                let cylinder = radii.z == f64::INFINITY;
+                if cylinder { Ok(()) } else { positive("the ellipsoid radius in z", radii.z) }
             }
             Shape::Polygon { points, z: (from, to) } => {
                 if from >= to || from.is_nan() || to.is_nan() {
@@ -51,6 +46,17 @@ impl Shape {
             Shape::Difference(body, hole) => {
                 body.validate()?;
                 hole.validate()
+            }
+            Shape::Function(function) => {
+                let (lower, upper) = function.bounds();
+                finite("the lower corner of the distance function", &lower)?;
+                finite("the upper corner of the distance function", &upper)?;
+                match (0..3).find(|&k| lower[k] >= upper[k]) {
+                    Some(axis) => {
+                        Err(GeometryError::EmptyBox { axis, min: lower[axis], max: upper[axis] })
+                    }
+                    None => Ok(()),
+                }
             }
             // Checked when they were made.
             Shape::Labels(_) | Shape::Surface(_) => Ok(()),

@@ -1,14 +1,17 @@
-//! Pairs of elastic constants at rest and what makes them admissible.
+//! Pairs of elastic constants at rest and the conditions that they must meet.
 
 /// Shear modulus μ and bulk modulus K at rest \[Pa\], both positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElasticConstants {
+    /// μ \[Pa\]
     pub shear_modulus: f64,
+    /// K \[Pa\]
     pub bulk_modulus: f64,
 }
 
 /// Why a set of material parameters is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages name every field")]
 pub enum MaterialError {
     #[error("{name} is {value}; it must be positive and finite")]
     NotPositive { name: &'static str, value: f64 },
@@ -27,8 +30,8 @@ pub enum MaterialError {
 }
 
 impl ElasticConstants {
-    /// From Young's modulus E \[Pa\] and Poisson's ratio ν:
-    /// μ = E/2(1+ν), K = E/3(1−2ν).
+    /// From Young's modulus E \[Pa\] and Poisson's ratio ν \[–\]:
+    /// μ = E/2(1 + ν), K = E/3(1 − 2ν) (method book, eq. 3.1).
     pub fn from_young_poisson(
         young_modulus: f64,
         poisson_ratio: f64,

@@ -1,12 +1,13 @@
 //! Hooke's law for small displacements.
 #![allow(non_snake_case)]
 
-use super::{ConstitutiveLaw, Deformation, ElasticConstants};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::{Matrix3, Tensor, map};
+use crate::material::constants::ElasticConstants;
+use crate::material::constitutive_law::{ConstitutiveLaw, Deformation};
 
-/// ψ = λ/2 (tr ε)² + μ ε:ε, ε = sym(F) − I \[Pa\]. Not objective: for small
-/// rotations only.
+/// ψ = λ/2 (tr ε)² + μ ε:ε, ε = sym F − I \[Pa\] (method book, eq. 3.11). Not
+/// objective: for small rotations only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearElastic {
     mu: f64,
@@ -14,6 +15,7 @@ pub struct LinearElastic {
 }
 
 impl LinearElastic {
+    /// From the constants at rest.
     pub fn new(constants: ElasticConstants) -> Self {
         LinearElastic { mu: constants.shear_modulus, lambda: constants.lame_modulus() }
     }

@@ -1,15 +1,15 @@
-//! The seed's Mooney–Rivlin rubber, as in LS-DYNA, with the corrected C.
+//! Compressible Mooney–Rivlin rubber, as in LS-DYNA.
 #![allow(non_snake_case)]
 
-use super::constants::positive;
-use super::{ConstitutiveLaw, Deformation, ElasticConstants, MaterialError};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::{Matrix3, Tensor, map, right_cauchy_green, times_symmetric};
+use crate::material::constants::{ElasticConstants, MaterialError, positive};
+use crate::material::constitutive_law::{ConstitutiveLaw, Deformation};
 
 /// ψ = A(I − 3) + B(II − 3) + C(III⁻² − 1) + D(III − 1)² \[Pa\] with the
-/// invariants of C = FᵀF (seed, section 3.3).
+/// invariants of FᵀF (Horton 2007, section 3.3; method book, eq. 3.6).
 ///
-/// C = A/2 + B, not A/B as the seed prints: the stress must vanish at rest.
+/// C = A/2 + B, not A/B as printed there: the stress must vanish at rest.
 /// D = [A(5ν − 2) + B(11ν − 5)]/[2(1 − 2ν)]; shear modulus 2(A + B).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MooneyRivlin {
@@ -73,8 +73,8 @@ impl ConstitutiveLaw for MooneyRivlin {
         )
     }
 
-    /// U = C(J⁻⁴ − 1) + D(J² − 1)² + 4C ln J: the last term takes out the slope
-    /// at rest, which balances that of the invariants.
+    /// U = C(J⁻⁴ − 1) + D(J² − 1)² + 4C ln J: the last term removes the slope
+    /// at rest, which balances that of the invariants (method book, eq. 3.9).
     fn bulk_energy(&self, J: f64) -> f64 {
         let J2 = J * J;
         self.c * (1.0 / (J2 * J2) - 1.0 + 4.0 * J.ln()) + self.d * (J2 - 1.0).powi(2)

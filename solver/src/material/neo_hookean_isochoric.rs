@@ -1,20 +1,21 @@
-//! Neo-Hookean law with the isochoric split, two volumetric terms.
+//! Neo-Hookean law with the isochoric split and one of two volumetric terms.
 #![allow(non_snake_case)]
 
-use super::{ConstitutiveLaw, Deformation, ElasticConstants};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::{Matrix3, Tensor, contract, map};
+use crate::material::constants::ElasticConstants;
+use crate::material::constitutive_law::{ConstitutiveLaw, Deformation};
 
 /// The volumetric energy U(J) of [`NeoHookeanIsochoric`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VolumetricTerm {
     /// U = K/2 (J − 1)².
     Quadratic,
-    /// U = K/4 (J² − 1 − 2 ln J) (Simo and Taylor; used by Cook's membrane).
+    /// U = K/4 (J² − 1 − 2 ln J) (Simo, Taylor 1991).
     SimoTaylor,
 }
 
-/// ψ = μ/2 (J^(−2/3) I₁ − 3) + U(J) \[Pa\].
+/// ψ = μ/2 (J^(−2/3) I₁ − 3) + U(J) \[Pa\] (method book, eq. 3.4).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NeoHookeanIsochoric {
     constants: ElasticConstants,
@@ -22,6 +23,7 @@ pub struct NeoHookeanIsochoric {
 }
 
 impl NeoHookeanIsochoric {
+    /// From the constants at rest and the volumetric energy.
     pub fn new(constants: ElasticConstants, volumetric: VolumetricTerm) -> Self {
         NeoHookeanIsochoric { constants, volumetric }
     }
@@ -39,10 +41,10 @@ impl ConstitutiveLaw for NeoHookeanIsochoric {
     fn first_piola_kirchhoff<R: Real>(&self, state: &Deformation<R>) -> Tensor<R> {
         let Deformation { F, cof, J } = state;
         let factor = J.power_minus_two_thirds() * self.constants.shear_modulus;
-        let share = self.bulk_slope(*J) - factor * contract(F, F) / (*J * 3.0);
+        let volumetric = self.bulk_slope(*J) - factor * contract(F, F) / (*J * 3.0);
         map(
             #[inline(always)]
-            |i, j| cof[i][j].times_plus(share, F[i][j] * factor),
+            |i, j| cof[i][j].times_plus(volumetric, F[i][j] * factor),
         )
     }
 

@@ -1,12 +1,13 @@
 //! Compressible neo-Hookean law in the log-J form.
 #![allow(non_snake_case)]
 
-use super::{ConstitutiveLaw, Deformation, ElasticConstants};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::{Matrix3, Tensor, map};
+use crate::material::constants::ElasticConstants;
+use crate::material::constitutive_law::{ConstitutiveLaw, Deformation};
 
-/// ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 (ln J)² \[Pa\] (Bonet and Wood 2008,
-/// eq. 6.27): volumetric term in ln J.
+/// ψ = μ/2 (I₁ − 3) − μ ln J + λ/2 (ln J)² \[Pa\] (Bonet, Wood 2008, eq. 6.27;
+/// method book, eq. 3.3).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NeoHookeanLogJ {
     mu: f64,
@@ -14,6 +15,7 @@ pub struct NeoHookeanLogJ {
 }
 
 impl NeoHookeanLogJ {
+    /// From the constants at rest.
     pub fn new(constants: ElasticConstants) -> Self {
         NeoHookeanLogJ { mu: constants.shear_modulus, lambda: constants.lame_modulus() }
     }

@@ -1,11 +1,13 @@
 //! St Venant–Kirchhoff law.
 #![allow(non_snake_case)]
 
-use super::{ConstitutiveLaw, Deformation, ElasticConstants};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::{Matrix3, Tensor, map, right_cauchy_green, times_symmetric};
+use crate::material::constants::ElasticConstants;
+use crate::material::constitutive_law::{ConstitutiveLaw, Deformation};
 
-/// ψ = λ/2 (tr E)² + μ E:E, E = (FᵀF − I)/2 \[Pa\]. Fails in strong compression.
+/// ψ = λ/2 (tr E)² + μ E:E, E = (FᵀF − I)/2 \[Pa\] (method book, eq. 3.10).
+/// Not sound in strong compression.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StVenantKirchhoff {
     mu: f64,
@@ -13,6 +15,7 @@ pub struct StVenantKirchhoff {
 }
 
 impl StVenantKirchhoff {
+    /// From the constants at rest.
     pub fn new(constants: ElasticConstants) -> Self {
         StVenantKirchhoff { mu: constants.shear_modulus, lambda: constants.lame_modulus() }
     }

@@ -1,5 +1,7 @@
+#![allow(non_snake_case)]
+
 use super::*;
-use crate::algebra::tensor::{Vector3, rotation};
+use crate::algebra::tensor::{Matrix3, Vector3, rotation};
 use proptest::prelude::*;
 
 /// Every law, each with ordinary constants; a new law is covered by its line.
@@ -8,7 +10,7 @@ fn laws() -> Vec<(&'static str, Law)> {
     let stiff = ElasticConstants::from_young_poisson(3000.0, 0.49).unwrap();
     let soft = ElasticConstants::from_young_poisson(10.0, 0.1).unwrap();
     vec![
-        ("seed rubber", Law::MooneyRivlin(MooneyRivlin::new(1052.0, 0.0, 0.49).unwrap())),
+        ("rubber", Law::MooneyRivlin(MooneyRivlin::new(1052.0, 0.0, 0.49).unwrap())),
         ("rubber with B", Law::MooneyRivlin(MooneyRivlin::new(800.0, 252.0, 0.47).unwrap())),
         ("log-J", Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants))),
         ("soft log-J", Law::NeoHookeanLogJ(NeoHookeanLogJ::new(soft))),
@@ -105,14 +107,14 @@ fn the_tangent_at_rest_has_the_stated_moduli() {
 }
 
 #[test]
-fn the_seed_rubber_has_the_corrected_constant_and_the_printed_modulus() {
+fn the_rubber_has_the_corrected_constant_and_the_printed_modulus() {
     let law = MooneyRivlin::new(1052.0, 0.0, 0.49).unwrap();
     approx::assert_relative_eq!(law.constants().shear_modulus, 2104.0);
     approx::assert_relative_eq!(law.constants().poisson_ratio(), 0.49, max_relative = 1e-12);
 }
 
 #[test]
-fn the_seed_rubber_is_refused_where_it_is_unstable() {
+fn the_rubber_is_refused_where_it_is_unstable() {
     let message = MooneyRivlin::new(1052.0, 0.0, 0.1).unwrap_err().to_string();
     assert!(message.contains("ν ≥ 0.4000"), "{message}");
     assert!(MooneyRivlin::new(1052.0, 0.0, 0.4).is_ok());

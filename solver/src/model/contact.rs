@@ -7,32 +7,35 @@ use crate::error::Error;
 use crate::model::essential::Constraints;
 use crate::problem::{Friction, Obstacle, ObstacleSide, Problem};
 
-/// The obstacles of a problem and the nodes that may touch them.
+/// The obstacles of a problem and the nodes that may touch them: boundary nodes of
+/// which no component is prescribed for ever. A node with a single component that
+/// is never released may therefore enter an obstacle.
 #[derive(Debug, Clone, Default)]
 pub struct ContactPlan {
+    /// As stated in the problem; in a plane their sections.
     pub obstacles: Vec<Obstacle>,
-    /// Boundary nodes without a prescribed component.
+    /// Boundary nodes without a permanently prescribed component.
     pub nodes: Vec<u32>,
-    /// Nodes farther than this from an obstacle \[m\] are left alone until the
-    /// body has moved so far.
+    /// Candidates are searched again when the body may have moved so far \[m\].
     pub skin: f64,
 }
 
-/// What contact remembers from step to step.
+/// The state of contact, which evolves from step to step.
 #[derive(Debug, Clone, Default)]
 pub struct ContactState {
-    /// (obstacle, node) pairs that could touch before the next search.
+    /// (obstacle, node) pairs that may touch before the next search.
     candidates: Vec<(u32, u32)>,
-    /// Largest displacement that the candidates allow for \[m\].
+    /// Bound of the movement of any node since the last search \[m\].
     travelled: f64,
     searched: bool,
-    /// Where a sticking node touched: (obstacle, node, current position).
+    /// Where a sticking node first touched: (obstacle, node, current position).
     anchors: Vec<(u32, u32, Vector3)>,
     /// Nodes in contact after the last step.
     pub touching: Vec<u32>,
 }
 
 impl ContactPlan {
+    /// Selects the nodes; without obstacles the plan is empty.
     pub fn new(
         problem: &Problem,
         discretisation: &Discretisation,
@@ -42,22 +45,24 @@ impl ContactPlan {
         if problem.obstacles.is_empty() {
             return Ok(ContactPlan::default());
         }
-        let free =
-            |node: &u32| cloud.on_boundary[*node as usize] && !constraints.always_holds(*node);
-        let mean = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
+        let may_touch = |node: &u32| {
+            cloud.on_boundary[*node as usize] && !constraints.always_constrained(*node)
+        };
+        let skin = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
         let section = |obstacle: &Obstacle| -> Result<Obstacle, Error> {
             let shape = obstacle.shape.section(&problem.dimension)?;
             Ok(Obstacle { shape, ..obstacle.clone() })
         };
         Ok(ContactPlan {
             obstacles: problem.obstacles.iter().map(section).collect::<Result<_, _>>()?,
-            nodes: (0..cloud.positions.len() as u32).filter(free).collect(),
-            skin: mean,
+            nodes: (0..cloud.positions.len() as u32).filter(may_touch).collect(),
+            skin,
         })
     }
 }
 
-/// Signed gap \[m\], open if positive.
+/// Signed gap \[m\] at current position `x` \[m\], open if positive (method book,
+/// eq. 16.1).
 pub fn gap(obstacle: &Obstacle, x: &Vector3) -> f64 {
     let distance = obstacle.shape.signed_distance(x) - obstacle.offset;
     match obstacle.side {
@@ -79,16 +84,17 @@ fn normal(obstacle: &Obstacle, x: &Vector3, components: usize) -> Vector3 {
 }
 
 impl ContactState {
-    /// Moves nodes that entered an obstacle back to its surface, on u(t+Δt)
-    /// as in the seed (section 2.7), and tells each change of an entry of `u`
-    /// to `also(index, Δu)`.
+    /// Moves nodes that entered an obstacle back to its surface (method book, eq.
+    /// 16.2), on u(t+Δt) as in Horton 2007, section 2.7, and calls
+    /// `on_change(index, Δu)` for each changed entry of `u` \[component of node\]
+    /// \[m\], of which none changed by more than `largest_increment` \[m\] before.
     pub fn enforce(
         &mut self,
         plan: &ContactPlan,
         positions: &[Vector3],
         largest_increment: f64,
         u: &mut [f64],
-        mut also: impl FnMut(usize, f64),
+        mut on_change: impl FnMut(usize, f64),
     ) {
         let components = u.len() / positions.len();
         self.travelled += largest_increment * (components as f64).sqrt();
@@ -107,13 +113,13 @@ impl ContactState {
             for k in 0..components {
                 let entry = components * node as usize + k;
                 u[entry] += target[k] - x[k];
-                also(entry, target[k] - x[k]);
+                on_change(entry, target[k] - x[k]);
             }
         }
     }
 
-    /// Where a node at `x` has to go, if it has entered the obstacle: to the
-    /// nearest point of the surface, or to where it sticks.
+    /// Where a node at `x` that has entered the obstacle is moved to: the nearest
+    /// point of the surface, or the place where it sticks.
     fn target(
         &mut self,
         obstacle: &Obstacle,
@@ -125,13 +131,13 @@ impl ContactState {
         let opening = gap(obstacle, x);
         let stuck = self.anchors.iter().position(|anchor| (anchor.0, anchor.1) == (index, node));
         if opening >= 0.0 {
-            stuck.map(|place| self.anchors.swap_remove(place));
+            stuck.map(|index| self.anchors.swap_remove(index));
             return None;
         }
         let nearest = x - normal(obstacle, x, components) * opening;
         match (obstacle.friction, stuck) {
             (Friction::Frictionless, _) => Some(nearest),
-            (Friction::NoSlip, Some(place)) => Some(self.anchors[place].2),
+            (Friction::NoSlip, Some(index)) => Some(self.anchors[index].2),
             (Friction::NoSlip, None) => {
                 self.anchors.push((index, node, nearest));
                 Some(nearest)
@@ -139,8 +145,7 @@ impl ContactState {
         }
     }
 
-    /// Lists the nodes that can reach an obstacle while the body moves by
-    /// less than twice the skin.
+    /// Lists the nodes with a gap below twice the skin.
     fn search(&mut self, plan: &ContactPlan, positions: &[Vector3], u: &[f64]) {
         let components = u.len() / positions.len();
         self.candidates.clear();

@@ -1,23 +1,24 @@
-//! External forces: body forces and dead tractions.
+//! External forces and initial velocities.
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::geometry::Panel;
-use crate::problem::{Amplitude, Problem};
+use crate::problem::{Amplitude, Problem, Traction};
 
-/// A nodal force pattern \[N\] with the amplitude that scales it.
+/// A nodal force pattern with the amplitude that scales it.
 #[derive(Debug, Clone)]
 pub struct LoadPattern {
-    /// \[component of node\] \[N\]
+    /// Force at amplitude 1 \[component of node\] \[N\].
     pub force: Vec<f64>,
+    /// The factor over time.
     pub amplitude: Amplitude,
 }
 
 /// All load patterns of a problem: body forces Σ_q ρ w_q φ_a b and tractions
-/// ∮ φ_a t dA over the selected boundary panels, by the quadrature that consistent
-/// gradients balance exactly.
+/// ∮ φ_a t dA over the selected boundary panels, by the surface rule of the
+/// consistent gradients (method book, eqs. 14.1 and 14.2).
 pub fn load_patterns(
     problem: &Problem,
     discretisation: &Discretisation,
@@ -35,8 +36,8 @@ pub fn load_patterns(
                 body_force.acceleration.at(&discretisation.quadrature.positions[point]);
             let mass = density * weight;
             for entry in supports.row(point) {
-                let share = mass * supports.phi[entry];
-                add(&mut force, d, supports.nodes[entry], &(acceleration * share));
+                let nodal_mass = mass * supports.phi[entry];
+                add(&mut force, d, supports.nodes[entry], &(acceleration * nodal_mass));
             }
         }
         patterns.push(LoadPattern { force, amplitude: body_force.amplitude.clone() });
@@ -51,26 +52,41 @@ pub fn load_patterns(
 fn traction_force(
     problem: &Problem,
     discretisation: &Discretisation,
-    traction: &crate::problem::Traction,
+    traction: &Traction,
 ) -> Result<Vec<f64>, Error> {
     let d = problem.dimension.components();
-    let mut force = vec![0.0; d * discretisation.cloud.positions.len()];
+    let nodes = discretisation.cloud.positions.len();
+    let surface = &discretisation.surface;
     let chosen = |panel: &Panel| traction.part.contains(&panel.centre);
-    if !discretisation.surface.panels.iter().any(chosen) {
+    if !surface.panels.iter().any(chosen) {
         return Err(Error::EmptyTraction { name: traction.name.clone() });
     }
-    let nodes = discretisation.cloud.positions.len();
     let density = |panel: &Panel| if chosen(panel) { traction.traction } else { Vector3::zeros() };
-    let surface = &discretisation.surface;
-    let shares = surface.spread(nodes, &surface.strengths(nodes, density));
-    for (node, share) in shares.iter().enumerate() {
-        add(&mut force, d, node as u32, share);
+    let mut force = vec![0.0; d * nodes];
+    let forces = surface.scatter(nodes, &surface.strengths(nodes, density));
+    for (node, nodal_force) in forces.iter().enumerate() {
+        add(&mut force, d, node as u32, nodal_force);
     }
     Ok(force)
 }
 
-fn add(force: &mut [f64], components: usize, node: u32, share: &Vector3) {
+fn add(force: &mut [f64], components: usize, node: u32, nodal_force: &Vector3) {
     for k in 0..components {
-        force[components * node as usize + k] += share[k];
+        force[components * node as usize + k] += nodal_force[k];
     }
+}
+
+/// Velocity at t = 0 \[component of node\] \[m/s\].
+pub fn initial_velocity(problem: &Problem, discretisation: &Discretisation) -> Vec<f64> {
+    let components = problem.dimension.components();
+    let mut velocity = vec![0.0; components * discretisation.cloud.positions.len()];
+    for (node, position) in discretisation.cloud.positions.iter().enumerate() {
+        let parts = &problem.loads.initial_velocities;
+        if let Some((_, v)) = parts.iter().find(|(part, _)| part.contains(position)) {
+            for k in 0..components {
+                velocity[components * node + k] = v[k];
+            }
+        }
+    }
+    velocity
 }

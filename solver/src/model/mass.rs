@@ -1,12 +1,13 @@
-//! Lumped masses.
+//! Lumped and fictitious masses.
 
 use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::problem::MassRule;
 
 /// Lumped mass per node \[kg\] from the density of each quadrature point
-/// \[kg/m³\]: the seed's even split m_a = Σ_q ρ w_q/n_q (section 2.5), or the
-/// row sum m_a = Σ_q ρ w_q φ_a. The total is the body's mass either way.
+/// \[kg/m³\]: the even split m_a = Σ_q ρ w_q/n_q (Horton 2007, section 2.5) or the
+/// row sum m_a = Σ_q ρ w_q φ_a (method book, eqs. 13.1 and 13.2). The total is the
+/// body's mass either way.
 pub fn lumped_mass(
     discretisation: &Discretisation,
     density: &[f64],
@@ -19,10 +20,10 @@ pub fn lumped_mass(
     {
         let point_mass = density * weight;
         let row = supports.row(point);
-        let share = point_mass / row.len() as f64;
+        let even_part = point_mass / row.len() as f64;
         for entry in row {
             mass[supports.nodes[entry] as usize] += match rule {
-                MassRule::EvenSplit => share,
+                MassRule::EvenSplit => even_part,
                 MassRule::RowSum => point_mass * supports.phi[entry],
             };
         }
@@ -38,8 +39,9 @@ pub fn lumped_mass(
     }
 }
 
-/// Masses in proportion to `shares` with the total of `mass` \[kg\].
-pub fn mass_like(shares: &[f64], mass: &[f64]) -> Vec<f64> {
-    let factor = mass.iter().sum::<f64>() / shares.iter().sum::<f64>();
-    shares.iter().map(|share| factor * share).collect()
+/// Masses \[node\] \[kg\] in proportion to `stiffness` \[node\] \[N/m\], with the
+/// total of `lumped_mass` \[kg\] (method book, eq. 13.4).
+pub fn fictitious_mass(stiffness: &[f64], lumped_mass: &[f64]) -> Vec<f64> {
+    let factor = lumped_mass.iter().sum::<f64>() / stiffness.iter().sum::<f64>();
+    stiffness.iter().map(|stiffness| factor * stiffness).collect()
 }

@@ -1,12 +1,13 @@
-//! J projected on patches: relief from volumetric locking (method §3).
+//! J projected on patches, against volumetric locking (method book, eqs. 10.3 to
+//! 10.5).
 //!
 //! On a patch with a basis B, orthonormal in the quadrature weights,
 //! θ_q = Σ_b B_b(X_q) Σ_r w_r B_b(X_r) J_r. The energy per point is
-//! ψ(F) − s U(J) + s U(θ), so the force gains s (p_q − U'(J_q)) cof F with the
+//! ψ(F) − s U(J) + s U(θ), so the stress gains s (p_q − U'(J_q)) cof F with the
 //! pressure p_q = Σ_b B_b(X_q) Σ_r w_r B_b(X_r) U'(θ_r).
 #![allow(non_snake_case)]
 
-use crate::algebra::lanes::{Eight, Lanes, Parts, eight};
+use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock, load_block};
 use crate::material::{ConstitutiveLaw, Law};
 use fearless_simd::{Simd, f64x8, prelude::*};
 use std::ops::Range;
@@ -14,71 +15,71 @@ use std::ops::Range;
 /// How J is projected in a block of points.
 #[derive(Debug, Clone)]
 pub struct Projection {
-    /// Share s of the bulk energy that sees θ \[–\].
-    pub share: f64,
-    /// Of each eight points of a patch, the last filled with zeros.
-    pub eights: Vec<Weighted>,
+    /// Fraction s of the volumetric energy that depends on θ in place of J \[–\].
+    pub fraction: f64,
+    /// Weights and basis of all patches, each padded with zeros to whole blocks.
+    pub blocks: Vec<BasisBlock>,
 }
 
 /// Weights w \[m³\] and basis B \[m^−3/2\] at eight points.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Weighted {
-    pub weights: Eight,
-    pub basis: [Eight; 4],
+pub struct BasisBlock {
+    pub weights: SimdBlock,
+    pub basis: [SimdBlock; 4],
 }
 
-impl Weighted {
-    /// Of the points of a patch.
-    pub fn eights(weights: &[f64], basis: &[[f64; 4]]) -> Vec<Weighted> {
-        let mut eights = vec![Weighted::default(); weights.len().div_ceil(8)];
+impl BasisBlock {
+    /// The points of a patch, from their weights \[m³\] and basis \[m^−3/2\].
+    pub fn of_patch(weights: &[f64], basis: &[[f64; 4]]) -> Vec<BasisBlock> {
+        let mut blocks = vec![BasisBlock::default(); weights.len().div_ceil(LANES)];
         for (point, (weight, row)) in weights.iter().zip(basis).enumerate() {
-            let Weighted { weights, basis } = &mut eights[point / 8];
-            weights.0[point % 8] = *weight;
+            let BasisBlock { weights, basis } = &mut blocks[point / LANES];
+            weights.0[point % LANES] = *weight;
             for b in 0..4 {
-                basis[b].0[point % 8] = row[b];
+                basis[b].0[point % LANES] = row[b];
             }
         }
-        eights
+        blocks
     }
 }
 
-/// Replaces values at the points of a patch by their projection. What stands
-/// where no point is must be finite.
+/// Replaces values at the points of a patch by their projection; the values at the
+/// padding must be finite.
 #[inline(always)]
-pub fn project<S: Simd>(simd: S, patch: &[Weighted], values: &mut [Eight]) {
+pub fn project<S: Simd>(simd: S, patch: &[BasisBlock], values: &mut [SimdBlock]) {
     let mut moments = [f64x8::splat(simd, 0.0); 4];
-    for (Weighted { weights, basis }, value) in patch.iter().zip(&*values) {
-        let weighted = eight(simd, weights) * eight(simd, value);
+    for (BasisBlock { weights, basis }, value) in patch.iter().zip(&*values) {
+        let weighted = load_block(simd, weights) * load_block(simd, value);
         for b in 0..4 {
-            moments[b] = weighted.mul_add(eight(simd, &basis[b]), moments[b]);
+            moments[b] = weighted.mul_add(load_block(simd, &basis[b]), moments[b]);
         }
     }
     let mut sums = moments;
     for b in 0..4 {
         sums[b] = f64x8::splat(simd, moments[b].reduce_sum());
     }
-    for (Weighted { basis, .. }, value) in patch.iter().zip(values) {
-        let mut sum = eight(simd, &basis[0]) * sums[0];
+    for (BasisBlock { basis, .. }, value) in patch.iter().zip(values) {
+        let mut sum = load_block(simd, &basis[0]) * sums[0];
         for b in 1..4 {
-            sum = eight(simd, &basis[b]).mul_add(sums[b], sum);
+            sum = load_block(simd, &basis[b]).mul_add(sums[b], sum);
         }
         value.0 = sum.into();
     }
 }
 
 impl Projection {
-    /// From J at the points of a patch: s (p_q − U'(J_q)) \[Pa\].
+    /// s (p_q − U'(J_q)) \[Pa\] from J at the points of a patch.
     #[inline(always)]
     pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
         &self,
         simd: S,
         law: &L,
-        eights: Range<usize>,
-        jacobians: &Parts<Eight>,
-        pressures: &mut Parts<Eight>,
+        groups: Range<usize>,
+        jacobians: &Parts<SimdBlock>,
+        pressures: &mut Parts<SimdBlock>,
     ) {
-        let count = eights.len();
-        let patch = &self.eights[eights];
+        let count = groups.len();
+        let patch = &self.blocks[groups];
         pressures.values[..count].copy_from_slice(&jacobians.values[..count]);
         project(simd, patch, &mut pressures.values[..count]);
         if R::SLOPES {
@@ -86,11 +87,14 @@ impl Projection {
             project(simd, patch, &mut pressures.slopes[..count]);
         }
         for entry in 0..count {
-            law.bulk_slope(R::load(simd, pressures, entry)).store(pressures, entry);
+            for piece in 0..R::PER_BLOCK {
+                let theta = R::load(simd, pressures, entry, piece);
+                law.bulk_slope(theta).store(pressures, entry, piece);
+            }
         }
-        // Where no point is, θ is 0 and U' may be none; a weight of 0 does not undo that.
+        // At the padding θ is 0 and U' may be NaN, which a weight of 0 does not remove.
         if let Some(last) = patch.last() {
-            for lane in (0..8).filter(|&lane| last.weights.0[lane] == 0.0) {
+            for lane in (0..LANES).filter(|&lane| last.weights.0[lane] == 0.0) {
                 pressures.values[count - 1].0[lane] = 0.0;
                 pressures.slopes[count - 1].0[lane] = 0.0;
             }
@@ -100,40 +104,42 @@ impl Projection {
             project(simd, patch, &mut pressures.slopes[..count]);
         }
         for entry in 0..count {
-            let pointwise = law.bulk_slope(R::load(simd, jacobians, entry));
-            let pressure = R::load(simd, pressures, entry);
-            ((pressure - pointwise) * self.share).store(pressures, entry);
+            for piece in 0..R::PER_BLOCK {
+                let pointwise = law.bulk_slope(R::load(simd, jacobians, entry, piece));
+                let pressure = R::load(simd, pressures, entry, piece);
+                ((pressure - pointwise) * self.fraction).store(pressures, entry, piece);
+            }
         }
     }
 
     /// Σ_q w_q s (U(θ_q) − U(J_q)) \[J\] of a patch.
-    pub fn energy(&self, law: &Law, eights: Range<usize>, jacobians: &[f64]) -> f64 {
-        let patch = &self.eights[eights];
-        let weights = patch.iter().flat_map(|eight| eight.weights.0);
+    pub fn energy(&self, law: &Law, groups: Range<usize>, jacobians: &[f64]) -> f64 {
+        let patch = &self.blocks[groups];
+        let weights = patch.iter().flat_map(|block| block.weights.0);
         let thetas = projected(patch, jacobians);
-        let gained = jacobians
+        let gains = jacobians
             .iter()
             .zip(thetas)
             .map(|(J, theta)| law.bulk_energy(theta) - law.bulk_energy(*J));
-        self.share * weights.zip(gained).map(|(w, gained)| w * gained).sum::<f64>()
+        self.fraction * weights.zip(gains).map(|(w, gain)| w * gain).sum::<f64>()
     }
 
-    /// [`Projection::pressures`] of plain numbers, now and then.
-    pub fn plain_pressures(&self, law: &Law, eights: Range<usize>, jacobians: &[f64]) -> Vec<f64> {
-        let patch = &self.eights[eights];
+    /// As [`Projection::pressures`], for output.
+    pub fn plain_pressures(&self, law: &Law, groups: Range<usize>, jacobians: &[f64]) -> Vec<f64> {
+        let patch = &self.blocks[groups];
         let slopes = |values: &[f64]| values.iter().map(|J| law.bulk_slope(*J)).collect::<Vec<_>>();
         let pressures = projected(patch, &slopes(&projected(patch, jacobians)));
         let pairs = pressures.iter().zip(slopes(jacobians));
-        pairs.map(|(p, pointwise)| self.share * (p - pointwise)).collect()
+        pairs.map(|(p, pointwise)| self.fraction * (p - pointwise)).collect()
     }
 }
 
 /// The projection of values at the points of a patch.
-fn projected(patch: &[Weighted], values: &[f64]) -> Vec<f64> {
-    let row = |q: usize| patch[q / 8].basis.map(|b| b.0[q % 8]);
+fn projected(patch: &[BasisBlock], values: &[f64]) -> Vec<f64> {
+    let row = |q: usize| patch[q / LANES].basis.map(|b| b.0[q % LANES]);
     let mut moments = [0.0; 4];
     for (q, value) in values.iter().enumerate() {
-        let weight = patch[q / 8].weights.0[q % 8];
+        let weight = patch[q / LANES].weights.0[q % LANES];
         moments.iter_mut().zip(row(q)).for_each(|(m, b)| *m += weight * value * b);
     }
     (0..values.len()).map(|q| row(q).iter().zip(moments).map(|(b, m)| b * m).sum()).collect()
@@ -146,22 +152,22 @@ mod tests {
     use crate::discretisation::patches::orthonormal_basis;
     use fearless_simd::{Level, dispatch};
 
-    /// 27 points, so that the last eight are not full.
-    fn patch() -> (Vec<Vector3>, Vec<f64>, Vec<Weighted>) {
+    /// 27 points, so that the last block is padded.
+    fn patch() -> (Vec<Vector3>, Vec<f64>, Vec<BasisBlock>) {
         let at = |n: usize| Vector3::new((n % 3) as f64, (n / 3 % 3) as f64, (n / 9) as f64);
         let positions: Vec<Vector3> = (0..27).map(|n| at(n) + at(n * n % 27) * 0.1).collect();
         let weights: Vec<f64> = (0..27).map(|n| 1.0 + 0.1 * (n % 5) as f64).collect();
         let basis = orthonormal_basis(&positions, &weights, 0..27, 3);
-        let eights = Weighted::eights(&weights, &basis);
-        (positions, weights, eights)
+        let blocks = BasisBlock::of_patch(&weights, &basis);
+        (positions, weights, blocks)
     }
 
     #[test]
     fn the_projection_keeps_linear_fields_and_the_mean_of_all() {
         let (positions, weights, patch) = patch();
         let linear: Vec<f64> = positions.iter().map(|X| 1.0 + 0.2 * X.x - 0.3 * X.z).collect();
-        let kept = projected(&patch, &linear);
-        linear.iter().zip(&kept).for_each(|(a, b)| assert!((a - b).abs() < 1e-13));
+        let projection = projected(&patch, &linear);
+        linear.iter().zip(&projection).for_each(|(a, b)| assert!((a - b).abs() < 1e-13));
         let rough: Vec<f64> = (0..27).map(|n| (n * 7 % 11) as f64).collect();
         let smooth = projected(&patch, &rough);
         let mean =
@@ -173,13 +179,13 @@ mod tests {
     fn vectors_project_as_plain_numbers_do() {
         let (_, _, patch) = patch();
         let rough: Vec<f64> = (0..27).map(|n| (n * 7 % 11) as f64).collect();
-        let mut eights: Vec<Eight> = rough
-            .chunks(8)
-            .map(|chunk| Eight(std::array::from_fn(|l| chunk.get(l).copied().unwrap_or(1e3))))
+        let mut blocks: Vec<SimdBlock> = rough
+            .chunks(LANES)
+            .map(|chunk| SimdBlock(std::array::from_fn(|l| chunk.get(l).copied().unwrap_or(1e3))))
             .collect();
-        dispatch!(Level::new(), simd => project(simd, &patch, &mut eights));
+        dispatch!(Level::new(), simd => project(simd, &patch, &mut blocks));
         let plain = projected(&patch, &rough);
-        let pairs = eights.iter().flat_map(|eight| eight.0).zip(plain);
+        let pairs = blocks.iter().flat_map(|block| block.0).zip(plain);
         pairs.for_each(|(a, b)| assert!((a - b).abs() < 1e-13, "{a} {b}"));
     }
 }

@@ -1,12 +1,13 @@
-//! Bounds on the stable time step at rest that need no eigenvalue.
+//! Bounds of the stable time step at rest without eigenvalues.
 
 use crate::discretisation::Discretisation;
 use crate::problem::{MassRule, Problem};
 
-/// Smallest per-point bound at rest \[s\]. For the even split of masses
-/// Δt_q = 2/(c √(n_q Σ_a |Grad φ_a|²)) (Joldes, Wittek, Miller 2012, eq. 28);
-/// for other masses, with W_a the mass of all points that node a supports,
-/// Δt_q = 2/(c √(Σ_a |Grad φ_a|² W_a/m_a)), from Σ_q w_q λ_q shares of m_a.
+/// Smallest per-point bound at rest \[s\] for lumped masses \[node\] \[kg\]. For the
+/// even split of masses it is Δt_q = 2/(c √(n_q Σ_a |Grad φ_a|²)) (Joldes, Wittek,
+/// Miller 2012, eq. 28; method book, eq. 17.4); for other masses, with W_a the mass
+/// of all points in whose supports node a is,
+/// Δt_q = 2/(c √(Σ_a |Grad φ_a|² W_a/m_a)) (eq. 17.5).
 pub fn per_point_bound(problem: &Problem, discretisation: &Discretisation, mass: &[f64]) -> f64 {
     let (supports, quadrature) = (&discretisation.supports, &discretisation.quadrature);
     let material = |point: usize| &problem.regions[quadrature.regions[point] as usize].material;
@@ -22,11 +23,11 @@ pub fn per_point_bound(problem: &Problem, discretisation: &Discretisation, mass:
         let sum: f64 = row
             .map(|entry| {
                 let node = supports.nodes[entry] as usize;
-                let share = match problem.recipe.mass {
+                let mass_ratio = match problem.recipe.mass {
                     MassRule::EvenSplit => n,
                     MassRule::RowSum => covered[node] / mass[node],
                 };
-                supports.grad_phi[entry].norm_squared() * share
+                supports.grad_phi[entry].norm_squared() * mass_ratio
             })
             .sum();
         2.0 / (material(point).wave_speed() * sum.sqrt())
@@ -34,10 +35,10 @@ pub fn per_point_bound(problem: &Problem, discretisation: &Discretisation, mass:
     (0..supports.len()).map(bound).fold(f64::INFINITY, f64::min)
 }
 
-/// Two more bounds at rest \[s\], of which runs use none: with the stiffness
-/// of a point K_q ≤ w_q M_q G_q ⊗ G_q for G_q the lengths |Grad φ_a|, M = ρc²,
-/// and T_a = Σ_q w_q M_q |Grad φ_a(X_q)|,
-/// - by shares: a point takes the part w_q M_q |Grad φ_a|/T_a of each m_a, and
+/// Two more bounds at rest, which no run uses, from the stiffness of a point
+/// K_q ≤ w_q M_q G_q ⊗ G_q for G_q the lengths |Grad φ_a|, M = ρc², and
+/// T_a = Σ_q w_q M_q |Grad φ_a(X_q)| (method book, eqs. 17.6 and 17.7):
+/// - by fractions: a point takes the part w_q M_q |Grad φ_a|/T_a of each m_a, and
 ///   λ ≤ max_q Σ_a |Grad φ_a(X_q)| T_a/m_a;
 /// - by rows, after Gershgorin: λ ≤ max_a Σ_q w_q M_q |Grad φ_a| Σ_b |Grad φ_b|/m_a.
 pub fn comparison_bounds(
@@ -68,14 +69,19 @@ pub fn comparison_bounds(
         };
         supports.row(point).map(part).sum()
     };
-    let by_shares = (0..supports.len()).map(of_point).fold(0.0, f64::max);
+    let by_fractions = (0..supports.len()).map(of_point).fold(0.0, f64::max);
     let by_rows = row_sums.iter().zip(mass).map(|(sum, m)| sum / m).fold(0.0, f64::max);
-    ComparisonBounds { by_shares: 2.0 / f64::sqrt(by_shares), by_rows: 2.0 / f64::sqrt(by_rows) }
+    ComparisonBounds {
+        by_fractions: 2.0 / f64::sqrt(by_fractions),
+        by_rows: 2.0 / f64::sqrt(by_rows),
+    }
 }
 
-/// Steps \[s\] that [`comparison_bounds`] gives.
+/// The time steps of [`comparison_bounds`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ComparisonBounds {
-    pub by_shares: f64,
+    /// From fractions of the masses \[s\].
+    pub by_fractions: f64,
+    /// From row sums \[s\].
     pub by_rows: f64,
 }

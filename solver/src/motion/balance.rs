@@ -1,4 +1,4 @@
-//! How far a body is from equilibrium.
+//! The imbalance of forces, and norms of it.
 
 use crate::algebra::packed::{dot, largest};
 use crate::model::Model;
@@ -21,7 +21,7 @@ pub(crate) struct Imbalance {
 
 impl Imbalance {
     /// At displacements `u` \[m\] under the conditions of time `t` \[s\] and the
-    /// external forces in `buffers`; what the conditions take goes to `forces`.
+    /// external forces in `buffers`; constraint forces are written to `forces`.
     pub fn new(
         model: &Model,
         u: &[f64],
@@ -32,8 +32,12 @@ impl Imbalance {
         let d = model.components;
         let smallest_jacobian =
             internal_force(model, u, &mut buffers.workspace, &mut buffers.f_int);
-        let force: Vec<f64> =
-            buffers.f_ext.iter().zip(&buffers.f_int).map(|(given, own)| given - own).collect();
+        let force: Vec<f64> = buffers
+            .f_ext
+            .iter()
+            .zip(&buffers.f_int)
+            .map(|(external, internal)| external - internal)
+            .collect();
         let mut acceleration: Vec<f64> =
             force.iter().enumerate().map(|(i, f)| f / model.inertia[i / d]).collect();
         model.constraints.project(t, &model.inertia, &mut acceleration, forces);
@@ -41,7 +45,7 @@ impl Imbalance {
         Imbalance { force, acceleration, scale, smallest_jacobian }
     }
 
-    /// Leaves out nodes whose balance is not theirs to keep.
+    /// Ignores the imbalance of some nodes, such as those in contact.
     pub fn ignore(&mut self, model: &Model, nodes: &[u32]) {
         let d = model.components;
         for &node in nodes {
@@ -69,7 +73,7 @@ impl Imbalance {
     }
 
     /// √(rᵀ M⁻¹ r) of the free unbalanced forces r \[N/√kg\]. Not from the full
-    /// forces: next to reactions the rest would drown in round-off.
+    /// forces: the round-off of reactions would exceed it.
     pub fn norm(&self, model: &Model) -> f64 {
         dot(&self.free(model), &self.acceleration).sqrt()
     }

@@ -1,7 +1,8 @@
 //! The largest stable step of the tangent operator, by Lanczos.
 #![allow(non_snake_case)]
 
-use crate::algebra::packed::{axpy, dot, noise};
+use crate::algebra::packed::{axpy, dot};
+use crate::algebra::random::noise;
 use crate::model::Model;
 use crate::motion::internal_force::Workspace;
 use crate::motion::tangent::Tangent;
@@ -31,7 +32,7 @@ const MOST_PRODUCTS: usize = 80;
 const PATTERN_POWER: usize = 18;
 /// Fewest products from a random start, and from what an earlier run has left.
 /// A small residual only tells that some eigenvalue is near; from a random
-/// start the largest of n is missed by more than a share ε with a probability
+/// start the largest of n is missed by more than a fraction ε with a probability
 /// below 1.648 √n exp(−(2k − 1)√ε) after k products (Kuczyński, Woźniakowski
 /// 1992): one per cent for n = 10⁴, ε = 6 % and k = 20. The levelled pattern of
 /// an earlier run holds the stiffest motion of every neighbourhood, and few
@@ -42,8 +43,8 @@ const FEWEST_PRODUCTS_KNOWN: usize = 8;
 /// The stable limit 2/√λ_max(M⁻¹K) of the tangent operator at displacements
 /// `u` \[m\] under the conditions of time `t` \[s\], by Lanczos with full
 /// reorthogonalisation on M^(−1/2) K M^(−1/2). The returned step belongs to
-/// the Ritz value plus its residual, which is the safe side unless a mode has
-/// stayed out of sight (measured on 500 random small bodies: 3, by 0.3 % at most).
+/// the Ritz value plus its residual, which is the safe side unless a mode was
+/// missed (study "time_step" measures how often, on random small bodies).
 pub fn critical_time_step(
     model: &Model,
     u: &[f64],
@@ -133,10 +134,10 @@ fn level(model: &Model, field: &mut [f64], squares: &[f64]) {
     }
 }
 
-/// Components that are taken at a time, small enough to stay near the processor.
+/// Components processed together, few enough to stay in the first cache.
 const PIECE: usize = 1024;
 
-/// Takes out of a vector its overlaps with those of an orthonormal basis. Twice is
+/// Removes from a vector its components along an orthonormal basis. Twice is
 /// enough: round-off of one pass is removed by the second. Overlaps are summed piece
 /// by piece, in the order of the pieces on any number of threads.
 fn orthogonalise(vector: &mut [f64], basis: &[Vec<f64>]) {

@@ -4,13 +4,18 @@ use crate::model::Model;
 use crate::motion::internal_force::{Workspace, strain_energy};
 use crate::motion::state::State;
 
-/// Energies \[J\] half a step before the state's time, where velocities live.
+/// Energies \[J\] half a step before the time of the state, like velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energies {
+    /// ½ Σ m v².
     pub kinetic: f64,
+    /// Σ_q w_q ψ(F_q).
     pub strain: f64,
+    /// Work of body forces and tractions.
     pub external_work: f64,
+    /// Work of prescribed displacements and contact.
     pub constraint_work: f64,
+    /// Dissipated by damping.
     pub damping_loss: f64,
 }
 
@@ -23,7 +28,7 @@ impl Energies {
 }
 
 /// Kinetic energy ½ Σ m v² at t − Δt/2, strain energy as the mean of those at
-/// t − Δt and t, and the work kept up by the steps.
+/// t − Δt and t, and the accumulated work.
 pub fn energies(model: &Model, state: &State, workspace: &mut Workspace) -> Energies {
     let d = model.components;
     let mut kinetic = 0.0;

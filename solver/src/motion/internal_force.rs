@@ -1,15 +1,16 @@
-//! Internal forces f_int,a = Σ_q w_q P(F_q) Grad φ_a(X_q) of all blocks, and
-//! what is asked of the same points now and then.
+//! Internal forces f_int,a = Σ_q w_q P(F_q) Grad φ_a(X_q) of all blocks (method book,
+//! eq. 11.1), their derivative, and the strain energy of the same points.
 #![allow(non_snake_case)]
 
-use crate::algebra::lanes::{Four, with_vectors};
+use crate::algebra::lanes::{Lanes, Number, PaddedVector, with_vectors};
 use crate::algebra::real::Dual;
 use crate::algebra::tensor::Matrix3;
-use crate::model::blocks::{Held, with_stored};
+use crate::model::blocks::{StoredNumber, with_gradients};
 use crate::model::{Block, Chunk, Model};
 use crate::motion::kernel::{Scratch, block_force};
-use fearless_simd::{Level, Simd, f64x8};
+use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
+use std::marker::PhantomData;
 
 /// Scratch memory of a run; nothing in it outlives a step.
 #[derive(Debug, Clone)]
@@ -24,10 +25,12 @@ pub struct Workspace {
 pub struct SmallestJacobian {
     /// J = det F \[–\]
     pub jacobian: f64,
+    /// Index of the quadrature point.
     pub point: usize,
 }
 
 impl SmallestJacobian {
+    /// Before any point has been evaluated.
     pub const NONE: SmallestJacobian = SmallestJacobian { jacobian: f64::INFINITY, point: 0 };
 
     /// The smaller of two.
@@ -37,14 +40,14 @@ impl SmallestJacobian {
 }
 
 impl Workspace {
+    /// For a model, at the widest vector instructions of this processor.
     pub fn new(model: &Model) -> Workspace {
         let scratch = |block: &Block| Scratch::new(block, model.components);
         Workspace { level: Level::new(), blocks: model.blocks.iter().map(scratch).collect() }
     }
 }
 
-/// Models of fewer points run on one thread: to wake a second one costs more
-/// than it gains.
+/// Models of fewer points run on one thread, which is faster than to wake another.
 const POINTS_FOR_THREADS: usize = 4096;
 
 /// Internal forces \[component of node\] \[N\] at displacements `u` \[m\].
@@ -89,11 +92,15 @@ fn internal_force_in<const D: usize>(
     let run = |(block, scratch): (&Block, &mut Scratch)| {
         gather::<D>(block, u, &mut scratch.u);
         match v {
-            None => with_vectors!(level, simd => force::<_, D>(simd, block, scratch)),
+            None => {
+                with_vectors!(level, (simd, numbers) => force::<_, _, D>(simd, numbers, block, scratch))
+            }
             Some(v) => {
-                scratch.v.resize(block.nodes.len(), Four::default());
+                scratch.v.resize(block.nodes.len(), PaddedVector::default());
                 gather::<D>(block, v, &mut scratch.v);
-                with_vectors!(level, simd => derivative::<_, D>(simd, block, scratch));
+                with_vectors!(level, (simd, numbers) => {
+                    derivative::<_, _, D>(simd, numbers, block, scratch)
+                });
             }
         }
     };
@@ -119,26 +126,36 @@ fn internal_force_in<const D: usize>(
 }
 
 #[inline(always)]
-fn force<S: Simd, const D: usize>(simd: S, block: &Block, scratch: &mut Scratch) {
-    block_force::<S, f64x8<S>, D>(simd, block, scratch);
+fn force<S: Simd, N: Lanes<S>, const D: usize>(
+    simd: S,
+    _: PhantomData<N>,
+    block: &Block,
+    scratch: &mut Scratch,
+) {
+    block_force::<S, N, D>(simd, block, scratch);
 }
 
 #[inline(always)]
-fn derivative<S: Simd, const D: usize>(simd: S, block: &Block, scratch: &mut Scratch) {
-    block_force::<S, Dual<f64x8<S>>, D>(simd, block, scratch);
+fn derivative<S: Simd, N: Number<S>, const D: usize>(
+    simd: S,
+    _: PhantomData<N>,
+    block: &Block,
+    scratch: &mut Scratch,
+) {
+    block_force::<S, Dual<N>, D>(simd, block, scratch);
 }
 
-/// The forces of all blocks, stretch by stretch of the nodes; each node gets its
+/// The forces of all blocks, chunk by chunk of the nodes; each node gets its
 /// terms in the order of the blocks.
 fn sum_in_order<const D: usize>(model: &Model, blocks: &[Scratch], nodes: &mut [[f64; D]]) {
-    let length = model.sums.stretch;
+    let length = model.sums.chunk;
     nodes.par_chunks_mut(length).zip(&model.sums.terms).enumerate().for_each(
-        |(stretch, (nodes, terms))| {
+        |(chunk, (nodes, terms))| {
             nodes.fill([0.0; D]);
             for term in terms {
                 let forces = &blocks[term.block].f;
                 for (node, local) in &term.nodes {
-                    add(&mut nodes[*node as usize - stretch * length], &forces[*local as usize]);
+                    add(&mut nodes[*node as usize - chunk * length], &forces[*local as usize]);
                 }
             }
         },
@@ -146,11 +163,11 @@ fn sum_in_order<const D: usize>(model: &Model, blocks: &[Scratch], nodes: &mut [
 }
 
 #[inline(always)]
-fn add<const D: usize>(node: &mut [f64; D], force: &Four) {
+fn add<const D: usize>(node: &mut [f64; D], force: &PaddedVector) {
     node.iter_mut().zip(force.0).for_each(|(sum, f)| *sum += f);
 }
 
-fn gather<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) {
+fn gather<const D: usize>(block: &Block, u: &[f64], local: &mut [PaddedVector]) {
     let global = u.as_chunks::<D>().0;
     for (&node, value) in block.nodes.iter().zip(local) {
         value.0[..D].copy_from_slice(&global[node as usize]);
@@ -159,9 +176,13 @@ fn gather<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) {
 
 /// F = I + Σ_a u_a ⊗ Grad φ_a; in a plane F₃₃ = 1.
 #[inline(always)]
-fn deformation_gradient<const D: usize>(block: &Block, point: usize, u: &[Four]) -> Matrix3 {
-    let sums = with_stored!(&block.grad_phi, held => {
-        let (nodes, gradients) = block.support::<_, D>(held, point);
+fn deformation_gradient<const D: usize>(
+    block: &Block,
+    point: usize,
+    u: &[PaddedVector],
+) -> Matrix3 {
+    let sums = with_gradients!(&block.grad_phi, grad_phi => {
+        let (nodes, gradients) = block.support::<_, D>(grad_phi, point);
         displacement_gradient(nodes, gradients, u)
     });
     let mut F = Matrix3::identity();
@@ -175,10 +196,10 @@ fn deformation_gradient<const D: usize>(block: &Block, point: usize, u: &[Four])
 
 /// Σ_a u_a ⊗ Grad φ_a.
 #[inline(always)]
-fn displacement_gradient<G: Held, const D: usize>(
+fn displacement_gradient<G: StoredNumber, const D: usize>(
     nodes: &[u32],
     gradients: &[[G; D]],
-    u: &[Four],
+    u: &[PaddedVector],
 ) -> [[f64; D]; D] {
     let mut sums = [[0.0; D]; D];
     for (&node, gradient) in nodes.iter().zip(gradients) {
@@ -202,7 +223,7 @@ pub fn strain_energy(model: &Model, u: &[f64], workspace: &mut Workspace) -> f64
     blocks.map(energy).sum()
 }
 
-fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) -> f64 {
+fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [PaddedVector]) -> f64 {
     gather::<D>(block, u, local);
     let mut energy = 0.0;
     let mut jacobians = Vec::new();
@@ -214,7 +235,7 @@ fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [Four]) ->
             jacobians.push(F.determinant());
         }
         if let Some(projection) = &block.projection {
-            energy += projection.energy(&block.law, chunk.eights, &jacobians);
+            energy += projection.energy(&block.law, chunk.groups, &jacobians);
         }
     }
     energy
@@ -235,12 +256,12 @@ fn block_mean_stress<const D: usize>(block: &Block, u: &[f64]) -> Vec<f64> {
     let Some(projection) = &block.projection else {
         return vec![0.0; block.quadrature_weights.len()];
     };
-    let mut local = vec![Four::default(); block.nodes.len()];
+    let mut local = vec![PaddedVector::default(); block.nodes.len()];
     gather::<D>(block, u, &mut local);
     let jacobian = |point: usize| deformation_gradient::<D>(block, point, &local).determinant();
     let pressures = |chunk: Chunk| {
         let jacobians: Vec<f64> = chunk.points.map(jacobian).collect();
-        projection.plain_pressures(&block.law, chunk.eights, &jacobians)
+        projection.plain_pressures(&block.law, chunk.groups, &jacobians)
     };
     block.chunks().flat_map(pressures).collect()
 }

@@ -1,4 +1,4 @@
-//! Heavier nodes for a longer step: selective mass scaling of quasi-static motion.
+//! Mass scaling: heavier nodes for a longer time step of quasi-static motion.
 
 use crate::discretisation::Discretisation;
 use crate::error::Error;
@@ -8,16 +8,16 @@ use crate::motion::critical_time_step::critical_time_step;
 use crate::motion::internal_force::Workspace;
 use crate::problem::{Motion, Problem};
 
-/// Largest share of the body's mass that may be added \[–\].
+/// Largest fraction of the body's mass that may be added \[–\].
 const MOST_ADDED: f64 = 0.1;
 /// Trials of the largest frequency that a node may keep.
 const MOST_TRIALS: usize = 12;
 
 /// Raises the masses of the nodes that dictate the critical step at rest until
 /// that step is `mass_scaling` times longer: m_a = max(m_a, K_aa/τ) with the
-/// largest τ that does. Other nodes keep their masses, and loads know nothing
-/// of the added ones. Refused where it takes more than a tenth of the body's
-/// mass: inertia would no longer be a matter of a few nodes.
+/// largest τ that achieves it (method book, eq. 17.10). Other nodes keep their masses, and
+/// loads do not act on the added mass. Refused where it takes more than a tenth of the
+/// body's mass, since inertia would then change everywhere.
 pub fn raise_masses(
     model: Model,
     problem: &Problem,
@@ -30,17 +30,17 @@ pub fn raise_masses(
     if factor <= 1.0 {
         return Ok(model);
     }
-    let wanted = factor * time_step_at_rest(&model);
+    let target = factor * time_step_at_rest(&model);
     let quotients = model.stiffness.iter().zip(&model.lumped_mass).map(|(k, m)| k / m);
     let mut limit = quotients.fold(0.0, f64::max) / (factor * factor);
     let mut raised = model;
     for _ in 0..MOST_TRIALS {
         raised = with_limit(raised, problem, discretisation, limit)?;
-        let share = raised.added_mass / raised.lumped_mass.iter().sum::<f64>();
-        if share > MOST_ADDED {
-            return Err(Error::TooMuchAddedMass { factor, share, most: MOST_ADDED });
+        let fraction = raised.added_mass / raised.lumped_mass.iter().sum::<f64>();
+        if fraction > MOST_ADDED {
+            return Err(Error::TooMuchAddedMass { factor, fraction, most: MOST_ADDED });
         }
-        let reached = time_step_at_rest(&raised) / wanted;
+        let reached = time_step_at_rest(&raised) / target;
         if (1.0..1.02).contains(&reached) {
             break;
         }

@@ -1,16 +1,17 @@
-//! What moves: internal forces, time steps, dynamic relaxation and Newton's method.
+//! Runs: internal forces, time steps, dynamic relaxation and Newton's method.
 
 pub mod balance;
 pub mod critical_time_step;
 pub mod energy;
-pub mod equilibrium;
 pub mod internal_force;
 mod kernel;
 pub mod mass_scaling;
+pub mod newton;
 pub mod observe;
-pub mod pace;
 pub mod relaxation;
 pub mod simulate;
 pub mod state;
 pub mod step;
+pub mod step_control;
+pub mod summary;
 pub mod tangent;

@@ -1,4 +1,4 @@
-//! What may watch a run.
+//! Observers of a run.
 
 use crate::algebra::tensor::Vector3;
 use crate::model::Model;
@@ -7,14 +7,17 @@ use crate::motion::energy::{Energies, energies};
 use crate::motion::state::State;
 use crate::motion::step::Buffers;
 
-/// A run, seen after a step. Nothing is computed until it is asked for.
+/// A run after a step, as an observer sees it; energies and reactions are computed
+/// on request.
 pub struct View<'a> {
+    /// What stays constant.
     pub model: &'a Model,
+    /// What has evolved.
     pub state: &'a State,
     pub(crate) buffers: &'a mut Buffers,
     /// Smallest J over all quadrature points, before the last step \[–\].
     pub smallest_jacobian: f64,
-    /// Share of the run that is done \[–\].
+    /// Completed fraction of the run \[–\].
     pub progress: f64,
 }
 
@@ -38,26 +41,27 @@ impl View<'_> {
     }
 }
 
-/// Whether a run goes on.
+/// Whether a run continues.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Continue {
+    /// It does.
     Yes,
     /// The run ends here, complete up to this step.
     Stop,
 }
 
-/// Watches a run. What it has recorded stays with it if the run fails.
+/// Observes a run. Its records stay valid if the run fails.
 pub trait Observer {
     /// Called once before the first step and after every step.
     fn observe(&mut self, view: &mut View) -> Continue;
 
-    /// Whether work is to be kept up, for an energy balance.
+    /// Whether the run accumulates work, for an energy balance.
     fn tracks_work(&self) -> bool {
         false
     }
 }
 
-/// An observer that looks at nothing.
+/// An observer that does nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Unobserved;
 
@@ -65,4 +69,16 @@ impl Observer for Unobserved {
     fn observe(&mut self, _view: &mut View) -> Continue {
         Continue::Yes
     }
+}
+
+/// Notifies the observer of the present state.
+pub(crate) fn notify(
+    model: &Model,
+    state: &State,
+    buffers: &mut Buffers,
+    smallest_jacobian: f64,
+    progress: f64,
+    observer: &mut dyn Observer,
+) -> Continue {
+    observer.observe(&mut View { model, state, buffers, smallest_jacobian, progress })
 }

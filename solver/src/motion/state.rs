@@ -1,14 +1,14 @@
-//! What evolves.
+//! The state of a run.
 
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
 use crate::model::contact::ContactState;
 use crate::model::essential::ConstraintForces;
 
-/// Displacements and velocities at one instant, and what has been done so far.
+/// Displacements and velocities at one instant, and the work so far.
 #[derive(Debug)]
 pub struct State {
-    /// Steps taken.
+    /// Number of steps.
     pub step: usize,
     /// \[s\]
     pub time: f64,
@@ -16,24 +16,27 @@ pub struct State {
     pub displacement: Vec<f64>,
     /// Velocity at t − Δt/2 \[component of node\] \[m/s\].
     pub velocity: Vec<f64>,
-    /// The step that led here \[s\]; 0 at the start.
+    /// The last time step \[s\]; 0 at the start.
     pub time_step: f64,
-    /// Turns multipliers m Δu of the last step into forces \[1/s²\].
+    /// Factor from multipliers m Δu of the last step to forces \[1/s²\].
     pub force_factor: f64,
+    /// Multipliers of the last step.
     pub constraint_forces: ConstraintForces,
     pub(crate) residual_scratch: ConstraintForces,
+    /// Nodes in contact.
     pub contact: ContactState,
+    /// Work so far.
     pub work: Work,
 }
 
-/// Work done up to t − Δt/2 \[J\]; kept up only if asked for.
+/// Work up to t − Δt/2 \[J\]; accumulated on request only.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Work {
     /// By body forces and tractions.
     pub external: f64,
     /// By prescribed displacements and by contact.
     pub constraint: f64,
-    /// Taken out by damping.
+    /// Dissipated by damping.
     pub damping: f64,
 }
 

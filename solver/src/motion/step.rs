@@ -25,7 +25,7 @@ pub struct Scheme {
 impl Scheme {
     /// Central differences with damping α: with a = αΔt̄/2 and Δt̄ the mean of
     /// the two steps, (1 + a) v⁺ = (1 − a) v⁻ + Δt̄ M⁻¹f. For
-    /// α = 0 and equal steps this is the seed's eq. 3. The first step starts
+    /// α = 0 and equal steps this is eq. 3 of Horton 2007. The first step starts
     /// from v(0), half a step back.
     pub fn central_difference(time_step: f64, last_step: f64, damping: f64) -> Scheme {
         let mean_step = 0.5 * (time_step + last_step);
@@ -52,19 +52,22 @@ impl Scheme {
     }
 }
 
-/// Vectors that a step needs, kept between steps.
+/// Vectors that a step needs, allocated once.
 #[derive(Debug)]
 pub struct Buffers {
+    /// For the internal force.
     pub workspace: Workspace,
     /// \[component of node\] \[N\]
     pub f_int: Vec<f64>,
+    /// \[component of node\] \[N\]
     pub f_ext: Vec<f64>,
     velocity_before: Vec<f64>,
-    /// Whether work is kept up.
+    /// Whether work is accumulated.
     pub track_work: bool,
 }
 
 impl Buffers {
+    /// For a model; `track_work` has the steps accumulate work.
     pub fn new(model: &Model, track_work: bool) -> Buffers {
         let zeros = || vec![0.0; model.size()];
         Buffers {
@@ -77,9 +80,10 @@ impl Buffers {
     }
 }
 
-/// What a step has seen.
+/// Result of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepReport {
+    /// Smallest J before the step.
     pub smallest_jacobian: SmallestJacobian,
     /// Largest change of a displacement component \[m\]; NaN if there is one.
     pub largest_increment: f64,
@@ -115,11 +119,11 @@ pub fn step(
 
 /// Sum of all load patterns at time `t` \[s\].
 pub fn external_force(model: &Model, t: f64, f_ext: &mut [f64]) {
-    let length = STRETCH * model.components;
-    let add = |(stretch, f_ext): (usize, &mut [f64])| {
+    let length = CHUNK * model.components;
+    let add = |(chunk, f_ext): (usize, &mut [f64])| {
         f_ext.fill(0.0);
         for load in &model.loads {
-            let (amplitude, force) = (load.amplitude.at(t), &load.force[stretch * length..]);
+            let (amplitude, force) = (load.amplitude.at(t), &load.force[chunk * length..]);
             f_ext.iter_mut().zip(force).for_each(|(f, pattern)| *f += amplitude * pattern);
         }
     };
@@ -129,25 +133,25 @@ pub fn external_force(model: &Model, t: f64, f_ext: &mut [f64]) {
     }
 }
 
-/// Nodes that one thread takes at a time; smaller models stay on one.
-const STRETCH: usize = 4096;
+/// Nodes of a chunk, the unit of work of a thread; smaller models stay on one thread.
+const CHUNK: usize = 4096;
 
 /// The free step.
 fn predict(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers) {
     let (d, inertia) = (model.components, &model.inertia);
     let State { velocity, displacement, .. } = state;
     let Buffers { f_ext, f_int, .. } = buffers;
-    if inertia.len() <= STRETCH {
-        return predict_stretch(d, scheme, inertia, (velocity, displacement), (f_ext, f_int));
+    if inertia.len() <= CHUNK {
+        return predict_chunk(d, scheme, inertia, (velocity, displacement), (f_ext, f_int));
     }
-    let moving = velocity.par_chunks_mut(d * STRETCH).zip(displacement.par_chunks_mut(d * STRETCH));
-    let forces = f_ext.par_chunks(d * STRETCH).zip(f_int.par_chunks(d * STRETCH));
-    inertia.par_chunks(STRETCH).zip(moving).zip(forces).for_each(|((inertia, moving), forces)| {
-        predict_stretch(d, scheme, inertia, moving, forces);
+    let moving = velocity.par_chunks_mut(d * CHUNK).zip(displacement.par_chunks_mut(d * CHUNK));
+    let forces = f_ext.par_chunks(d * CHUNK).zip(f_int.par_chunks(d * CHUNK));
+    inertia.par_chunks(CHUNK).zip(moving).zip(forces).for_each(|((inertia, moving), forces)| {
+        predict_chunk(d, scheme, inertia, moving, forces);
     });
 }
 
-fn predict_stretch(
+fn predict_chunk(
     d: usize,
     scheme: &Scheme,
     inertia: &[f64],
@@ -188,11 +192,11 @@ fn largest_or_nan(values: &[f64]) -> f64 {
         let sum: f64 = values.iter().sum();
         if sum.is_nan() { f64::NAN } else { largest }
     };
-    if values.len() <= 3 * STRETCH {
+    if values.len() <= 3 * CHUNK {
         return largest(values);
     }
     let larger = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
-    values.par_chunks(3 * STRETCH).map(largest).reduce(|| 0.0, larger)
+    values.par_chunks(3 * CHUNK).map(largest).reduce(|| 0.0, larger)
 }
 
 /// Adds the work from the middle of the last step to the middle of this one:
@@ -205,10 +209,10 @@ fn add_work(model: &Model, scheme: &Scheme, state: &mut State, buffers: &Buffers
             let mean = 0.5 * (state.velocity[i] + buffers.velocity_before[i]);
             let gained = mass * (state.velocity[i] - buffers.velocity_before[i]);
             let dissipated = scheme.damping * mass * mean * mean * scheme.mean_step;
-            let given = (buffers.f_ext[i] - buffers.f_int[i]) * mean * scheme.mean_step;
+            let by_forces = (buffers.f_ext[i] - buffers.f_int[i]) * mean * scheme.mean_step;
             external += buffers.f_ext[i] * mean * scheme.mean_step;
-            // What the forces did not give, constraints and contact gave.
-            total += gained * mean - given + dissipated;
+            // What is not work of the forces is work of constraints and contact.
+            total += gained * mean - by_forces + dissipated;
             damping += dissipated;
         }
     }

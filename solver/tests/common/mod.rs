@@ -2,15 +2,17 @@
 #![allow(dead_code)] // Every test binary uses only a part of this.
 
 use mtled::algebra::tensor::Vector3;
+pub use mtled::algebra::tensor::vector_at;
 use mtled::discretisation::Discretisation;
-use mtled::geometry::Shape;
-use mtled::geometry::selection::{Extent, Selector};
+use mtled::geometry::{Extent, Selector, Shape};
 use mtled::material::*;
 use mtled::model::Model;
 use mtled::model::essential::Reaction;
 use mtled::motion::energy::Energies;
+use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::*;
+use nalgebra::DMatrix;
 
 /// Edge of the cube and of the square \[m\].
 pub const EDGE: f64 = 0.1;
@@ -21,7 +23,7 @@ pub fn constants() -> ElasticConstants {
     ElasticConstants::from_young_poisson(3000.0, 0.3).unwrap()
 }
 
-/// Every objective law; the small-strain one is not.
+/// Every law but the linear one, which is not objective.
 pub fn objective_laws() -> Vec<Law> {
     vec![
         Law::MooneyRivlin(MooneyRivlin::new(1052.0, 100.0, 0.49).unwrap()),
@@ -90,7 +92,7 @@ pub fn with_law(mut problem: Problem, law: Law) -> Problem {
     problem
 }
 
-/// The half x < EDGE/2 of another law.
+/// The half x < EDGE/2 made of another law.
 pub fn with_stiff_half(mut problem: Problem, law: Law) -> Problem {
     let half = Region { name: "half".into(), part: half_space(), material: material(law) };
     problem.regions.insert(0, half);
@@ -148,6 +150,16 @@ pub fn gravity(problem: &mut Problem, acceleration: Vector3) {
     problem.loads.body_forces.push(BodyForce { acceleration: acceleration.into(), amplitude });
 }
 
+pub fn obstacle(shape: Shape, side: ObstacleSide, friction: Friction) -> Obstacle {
+    Obstacle { name: "obstacle".into(), shape, offset: 0.0, side, friction }
+}
+
+/// The half-space below `height` \[m\] along `normal`.
+pub fn floor(height: f64, normal: Vector3, friction: Friction) -> Obstacle {
+    let shape = Shape::HalfSpace { point: normal * height, normal };
+    obstacle(shape, ObstacleSide::Outside, friction)
+}
+
 pub fn build(problem: &Problem) -> (Discretisation, Model) {
     let discretisation = Discretisation::new(problem).unwrap();
     let model = Model::new(problem, &discretisation).unwrap();
@@ -169,6 +181,30 @@ pub fn field(model: &Model, u: impl Fn(&Vector3) -> Vector3) -> Vec<f64> {
         .collect()
 }
 
+/// Internal forces at displacements `u`.
+pub fn forces(model: &Model, u: &[f64]) -> Vec<f64> {
+    let mut f = vec![0.0; model.size()];
+    internal_force(model, u, &mut Workspace::new(model), &mut f);
+    f
+}
+
+/// The symmetric part of the tangent at `u`, by central differences of `step` \[m\].
+pub fn dense_tangent(model: &Model, u: &[f64], step: f64) -> DMatrix<f64> {
+    let mut columns = DMatrix::zeros(model.size(), model.size());
+    let mut moved = u.to_vec();
+    for (j, mut column) in columns.column_iter_mut().enumerate() {
+        moved[j] = u[j] + step;
+        let plus = forces(model, &moved);
+        moved[j] = u[j] - step;
+        let minus = forces(model, &moved);
+        moved[j] = u[j];
+        let differences =
+            plus.iter().zip(&minus).map(|(plus, minus)| (plus - minus) / (2.0 * step));
+        column.iter_mut().zip(differences).for_each(|(entry, difference)| *entry = difference);
+    }
+    0.5 * (&columns + columns.transpose())
+}
+
 /// Random displacements up to `size` \[m\] per component.
 pub fn noise(model: &Model, size: f64, seed: u64) -> Vec<f64> {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
@@ -181,11 +217,6 @@ pub fn noise(model: &Model, size: f64, seed: u64) -> Vec<f64> {
     (0..model.size()).map(|_| next()).collect()
 }
 
-/// Entry `node` of a packed field as a vector.
-pub fn vector(field: &[f64], node: usize, components: usize) -> Vector3 {
-    Vector3::from_fn(|k, _| if k < components { field[components * node + k] } else { 0.0 })
-}
-
 pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |a: f64, x| a.max(x.abs()))
 }
@@ -194,7 +225,7 @@ pub fn largest(values: &[f64]) -> f64 {
 pub fn mean_by_mass(model: &Model, field: &[f64]) -> Vector3 {
     let total: f64 = model.lumped_mass.iter().sum();
     let sum: Vector3 = (0..model.positions.len())
-        .map(|node| vector(field, node, model.components) * model.lumped_mass[node])
+        .map(|node| vector_at(field, node, model.components) * model.lumped_mass[node])
         .sum();
     sum / total
 }
@@ -205,12 +236,12 @@ pub struct Recorder {
     pub energies: Vec<Energies>,
     /// About the origin.
     pub reactions: Vec<Reaction>,
-    pub seen: usize,
+    pub observations: usize,
 }
 
 impl Observer for Recorder {
     fn observe(&mut self, view: &mut View) -> Continue {
-        self.seen += 1;
+        self.observations += 1;
         self.energies.push(view.energies());
         if view.state.step > 0 {
             self.reactions = view.reactions(&Vector3::zeros());
@@ -223,10 +254,10 @@ impl Observer for Recorder {
     }
 }
 
-/// Calls a function at every step.
-pub struct Watch<F: FnMut(&mut View)>(pub F);
+/// Calls a function at each observation.
+pub struct EachStep<F: FnMut(&mut View)>(pub F);
 
-impl<F: FnMut(&mut View)> Observer for Watch<F> {
+impl<F: FnMut(&mut View)> Observer for EachStep<F> {
     fn observe(&mut self, view: &mut View) -> Continue {
         (self.0)(view);
         Continue::Yes

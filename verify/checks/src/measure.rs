@@ -42,8 +42,8 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// Like `f64::max`, but NaN wins: a lost sample must not look like a small one.
-fn larger(a: f64, b: f64) -> f64 {
+/// Like `f64::max`, but NaN wins: a missing sample must not look like a small one.
+pub fn larger(a: f64, b: f64) -> f64 {
     if b.is_nan() || b > a { b } else { a }
 }
 
@@ -107,9 +107,11 @@ pub fn asymptotic_ratio(fine_index: f64, coarse_index: f64, ratio: f64, order: f
 /// Line ln y = `intercept` + `slope` ln x through samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogLogFit {
+    /// d ln y / d ln x.
     pub slope: f64,
+    /// ln y at x = 1.
     pub intercept: f64,
-    /// Of the slope; infinite with two samples, which cannot tell.
+    /// Of the slope; infinite with two samples.
     pub standard_deviation: f64,
 }
 
@@ -125,15 +127,18 @@ pub fn log_log_fit(samples: &[(f64, f64)]) -> Option<LogLogFit> {
     let logs: Vec<(f64, f64)> = samples.iter().map(|&(x, y)| (x.ln(), y.ln())).collect();
     let mean_x = logs.iter().map(|l| l.0).sum::<f64>() / count;
     let mean_y = logs.iter().map(|l| l.1).sum::<f64>() / count;
-    let spread: f64 = logs.iter().map(|l| (l.0 - mean_x).powi(2)).sum();
-    if spread <= f64::EPSILON {
+    let variation: f64 = logs.iter().map(|l| (l.0 - mean_x).powi(2)).sum();
+    if variation <= f64::EPSILON {
         return None;
     }
-    let slope = logs.iter().map(|l| (l.0 - mean_x) * (l.1 - mean_y)).sum::<f64>() / spread;
+    let slope = logs.iter().map(|l| (l.0 - mean_x) * (l.1 - mean_y)).sum::<f64>() / variation;
     let intercept = mean_y - slope * mean_x;
     let residual: f64 = logs.iter().map(|l| (l.1 - intercept - slope * l.0).powi(2)).sum();
-    let standard_deviation =
-        if samples.len() > 2 { (residual / (count - 2.0) / spread).sqrt() } else { f64::INFINITY };
+    let standard_deviation = if samples.len() > 2 {
+        (residual / (count - 2.0) / variation).sqrt()
+    } else {
+        f64::INFINITY
+    };
     Some(LogLogFit { slope, intercept, standard_deviation })
 }
 
@@ -199,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_are_euclidean_and_a_lost_sample_is_seen() {
+    fn distances_are_euclidean_and_nan_is_not_hidden() {
         let a = [[0.0; 3], [1.0, 0.0, 0.0]];
         let b = [[0.0, 3.0, 4.0], [1.0, 0.0, 0.0]];
         assert_relative_eq!(max_distance(&a, &b), 5.0);

@@ -1,6 +1,6 @@
 //! A field of the bonded block on a finer mesh than the reference has.
 
-use crate::bundled::carried_reference;
+use crate::bundled::bundled_reference;
 use crate::reference::read_reference;
 use crate::scene::Case;
 use anyhow::{Context, Result};
@@ -23,36 +23,37 @@ struct Stored {
 
 /// Displacements of a quantity, x, y, z of each position in turn.
 #[derive(Debug)]
-pub struct Finest {
+pub struct FinestField {
+    /// Its key in a reference file.
     pub quantity: String,
     /// \[m\]
     pub values: Vec<f64>,
-    /// \[m\]
+    /// Error bars \[m\].
     pub errors: Vec<f64>,
     /// Code and element.
     pub source: String,
 }
 
-/// The finest field of a case, if one is stored for this very problem. At the bonded
-/// edges no element converges faster than with order 1: the error bar is what the last
-/// refinement, by r, leaves at that order, |f₁ − f₂|/(r − 1).
-pub fn finest(case: &Case) -> Result<Option<Finest>> {
+/// The finest field of a case, if one is stored for exactly this problem. At the bonded
+/// edges no element converges faster than with order 1, so that the error bar is
+/// |f₁ − f₂|/(r − 1) after the last refinement by r.
+pub fn finest(case: &Case) -> Result<Option<FinestField>> {
     let text = include_str!("../../../reference/race/bonded_block.json");
     let stored: Stored = serde_json::from_str(text).context("reference/race/bonded_block.json")?;
     if stored.problem_hash != case.problem_hash {
         return Ok(None);
     }
     let quantity = format!("displacement/{LATTICE}");
-    let coarser = carried_reference("bonded_block").context("the block has no reference")?;
+    let coarser = bundled_reference("bonded_block").context("the block has no reference")?;
     let coarser = read_reference(case, coarser)?;
     let solution = coarser.solutions.iter().find(|solution| solution.code == stored.code);
     let mesh = solution.and_then(|solution| solution.meshes.last());
     let coarser = mesh.and_then(|mesh| mesh.values.get(&quantity));
     let coarser = coarser.context("the reference lacks the lattice")?.flat();
-    let share = 1.0 / (stored.refinement - 1.0);
+    let factor = 1.0 / (stored.refinement - 1.0);
     let pairs = stored.displacement_m.iter().zip(&coarser);
-    Ok(Some(Finest {
-        errors: pairs.map(|(a, b)| share * (a - b).abs()).collect(),
+    Ok(Some(FinestField {
+        errors: pairs.map(|(a, b)| factor * (a - b).abs()).collect(),
         quantity,
         source: format!("{}, {}", stored.code, stored.element),
         values: stored.displacement_m,

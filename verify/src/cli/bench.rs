@@ -1,6 +1,6 @@
 //! `mtled bench`.
 
-use crate::cli::{Common, Format, print_data};
+use super::common::Common;
 use crate::speed::bench::{measure, to_markdown};
 use clap::Args;
 
@@ -12,15 +12,9 @@ pub struct BenchArgs {
 }
 
 pub fn bench(arguments: &BenchArgs, common: &Common) -> anyhow::Result<u8> {
-    let tell = |what: &str| {
-        if !common.quiet {
-            eprintln!("measuring: {what}");
-        }
-    };
-    let figures = measure(arguments.quick, &tell)?;
-    match common.format {
-        Format::Human => print_data(&to_markdown(&figures))?,
-        Format::Json => print_data(&(serde_json::to_string_pretty(&figures)? + "\n"))?,
-    }
+    let figures = measure(arguments.quick, &|name| common.say(&format!("measuring: {name}")))?;
+    let json = || Ok(serde_json::to_string_pretty(&figures)? + "\n");
+    // The tables are the result, so that --quiet does not suppress them.
+    common.print_result(&json, &|| to_markdown(&figures))?;
     Ok(0)
 }

@@ -1,17 +1,17 @@
-//! Pythons that can run the finite-element codes.
+//! Python interpreters for the finite-element codes.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// How to get FEniCSx, told where it is not found.
+/// How to install FEniCSx.
 const FENICSX: &str =
     "no Python that imports dolfinx was found. Install FEniCSx in one of these ways:
   Debian, Ubuntu:  apt-get install python3-dolfinx-real libopenblas0-serial
   conda-forge:     conda create -n fenicsx -c conda-forge fenics-dolfinx && conda activate fenicsx
   container:       docker run -ti -v \"$PWD\":/work -w /work dolfinx/dolfinx:stable";
 
-/// How to get what a virtual environment needs.
+/// How to install what a virtual environment needs.
 const VENV: &str = "Install Python 3.11 or newer with venv (Debian: apt-get install python3-venv) and let pip reach a package index";
 
 /// An interpreter with its flags.
@@ -36,7 +36,7 @@ impl Python {
     }
 
     /// Program and flags.
-    pub fn words(&self) -> Vec<String> {
+    pub fn program_and_flags(&self) -> Vec<String> {
         let program = self.program.display().to_string();
         std::iter::once(program).chain(self.flags.iter().map(|flag| flag.to_string())).collect()
     }
@@ -49,7 +49,7 @@ impl Python {
     }
 }
 
-/// The Python that runs `code`; an error tells what to install.
+/// The Python that runs `code`, set up if necessary; an error says what to install.
 pub fn python_for(code: &str, reference: &Path, say: &dyn Fn(&str)) -> Result<Python> {
     match code {
         "fenicsx" => fenicsx(),
@@ -57,7 +57,7 @@ pub fn python_for(code: &str, reference: &Path, say: &dyn Fn(&str)) -> Result<Py
     }
 }
 
-/// The Python that runs `code` as things are; nothing is installed.
+/// The Python that runs `code`, if it is installed.
 pub fn installed(code: &str, reference: &Path) -> Option<Python> {
     match code {
         "fenicsx" => fenicsx().ok(),
@@ -65,12 +65,22 @@ pub fn installed(code: &str, reference: &Path) -> Option<Python> {
     }
 }
 
+/// The folder `reference` of the checkout around the working directory.
+pub fn checkout() -> Result<PathBuf> {
+    let here = std::env::current_dir()?;
+    let found = here.ancestors().map(|folder| folder.join("reference"));
+    let found = found.into_iter().find(|folder| folder.join("pyproject.toml").is_file());
+    found.ok_or_else(|| {
+        anyhow!("no folder `reference` with the Python package was found; work in a checkout or name it with --reference DIR")
+    })
+}
+
 fn virtual_environment(reference: &Path) -> Python {
     let program = if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" };
     Python { program: reference.join(".venv").join(program), flags: &[] }
 }
 
-/// Debian's own first: `-s` keeps packages of the user out, which break petsc4py.
+/// That of Debian first: `-s` ignores packages of the user, which break petsc4py.
 fn fenicsx() -> Result<Python> {
     let candidates = [("/usr/bin/python3", &["-s"] as &[&str]), ("python3", &[])];
     for (program, flags) in candidates {
@@ -82,14 +92,14 @@ fn fenicsx() -> Result<Python> {
     bail!(FENICSX)
 }
 
-/// The virtual environment `reference/.venv`, made where it is missing.
+/// The virtual environment `reference/.venv`, created if it is missing.
 fn scikit_fem(reference: &Path, say: &dyn Fn(&str)) -> Result<Python> {
     let folder = reference.join(".venv");
     let python = virtual_environment(reference);
     if python.imports("skfem") {
         return Ok(python);
     }
-    say("making reference/.venv with scikit-fem");
+    say("creating reference/.venv with scikit-fem");
     let system = if cfg!(windows) { "python" } else { "python3" };
     run(Command::new(system).args(["-m", "venv"]).arg(&folder))?;
     let package = format!("{}[scikit-fem]", reference.display());

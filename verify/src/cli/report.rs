@@ -1,23 +1,23 @@
 //! `mtled report`.
 
-use crate::cli::{Common, Format, print_data};
+use super::common::Common;
 use clap::Args;
 use mtled_checks::gate::{compare as compare_with, compare_runs, read_baseline};
-use mtled_checks::report::{human, json, read_report, versus, write_atomically, write_report};
+use mtled_checks::report::{human, json, read_report, two_runs, write_atomically, write_report};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct ReportArgs {
     /// Folder of a report, or its results.json.
     run: PathBuf,
-    /// A later run: both are compared instead.
+    /// A later report, which is compared with the first one.
     later: Option<PathBuf>,
-    /// Where to write [default: into the folder of the report; of two,
+    /// Folder for the pages [default: the folder of the report; for two reports
     /// reports/compare].
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Judge the stored run by this baseline, as `mtled verify --baseline` does a run of
-    /// its own; exit code 1 where a check got worse or fails.
+    /// Compare the stored run with this baseline, as `mtled verify --baseline` does a new run;
+    /// exit code 1 if a check got worse or fails.
     #[arg(long, value_name = "FILE", conflicts_with = "later")]
     baseline: Option<PathBuf>,
 }
@@ -29,27 +29,23 @@ pub fn report(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
     }
 }
 
-/// Pages, figures and the rest from the one file that holds everything.
+/// Writes the pages and figures again from results.json.
 fn rebuild(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
     let mut report = read_report(&arguments.run)?;
     if let Some(path) = &arguments.baseline {
-        // Which studies were left out on purpose is not in the file: none is missed.
+        // The file does not say which studies were left out on purpose: none counts as missing.
         report.comparison = Some(compare_with(&report, &read_baseline(path)?, false)?);
     }
-    let beside = || match arguments.run.is_dir() {
+    let same = || match arguments.run.is_dir() {
         true => arguments.run.clone(),
         false => arguments.run.parent().map(PathBuf::from).unwrap_or_default(),
     };
-    let out = arguments.out.clone().unwrap_or_else(beside);
+    let out = arguments.out.clone().unwrap_or_else(same);
     write_report(&report, &out)?;
-    match common.format {
-        Format::Json => print_data(&json::to_json(&report))?,
-        Format::Human if !common.quiet => {
-            let table = human::to_table(&report, common.colours());
-            print_data(&format!("{table}\nreport: {}\n", out.join("index.html").display()))?;
-        }
-        Format::Human => {}
-    }
+    common.print_summary(&|| Ok(json::to_json(&report)), &|| {
+        let table = human::to_table(&report, common.colours());
+        format!("{table}\nreport: {}\n", out.join("index.html").display())
+    })?;
     Ok(u8::from(arguments.baseline.is_some() && !report.passed()))
 }
 
@@ -59,17 +55,13 @@ fn compare(arguments: &ReportArgs, later: &Path, common: &Common) -> anyhow::Res
     let comparison = compare_runs(&before, &now);
     let out = arguments.out.clone().unwrap_or_else(|| "reports/compare".into());
     let page = out.join("index.html");
-    let text = versus::to_markdown(&before, &now, &comparison);
-    write_atomically(&page, versus::to_html(&before, &now, &comparison)?.as_bytes())?;
+    let text = two_runs::to_markdown(&before, &now, &comparison);
+    write_atomically(&page, two_runs::to_html(&before, &now, &comparison)?.as_bytes())?;
     write_atomically(&out.join("summary.md"), text.as_bytes())?;
-    match common.format {
-        Format::Json => print_data(&(serde_json::to_string_pretty(&comparison)? + "\n"))?,
-        Format::Human if !common.quiet => {
-            let changed = human::changed_lines(&comparison, common.colours());
-            let words = human::compared_with(&comparison);
-            print_data(&format!("{changed}{words}\nreport: {}\n", page.display()))?;
-        }
-        Format::Human => {}
-    }
+    common.print_summary(&|| Ok(serde_json::to_string_pretty(&comparison)? + "\n"), &|| {
+        let changed = human::changed_lines(&comparison, common.colours());
+        let summary = human::compared_with(&comparison);
+        format!("{changed}{summary}\nreport: {}\n", page.display())
+    })?;
     Ok(0)
 }

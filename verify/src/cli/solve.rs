@@ -1,34 +1,30 @@
 //! `mtled solve`.
 
-use crate::cli::case::{diagnose, fits, load};
-use crate::cli::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
+use super::common::{COULD_NOT_RUN, Common, STOPPED};
+use super::load::{diagnose, load};
+use super::progress::progress_bar;
 use crate::run::{
-    Prepared, Record, Recorder, Solved, march_on, prepare_to_run, summary_text, write_outputs,
-    write_recorded,
+    Prepared, Recorder, Recording, Solved, integrate_prepared, prepare_to_run, summary_text,
+    write_outputs, write_recorded,
 };
 use crate::scene::Case;
 use anyhow::Context;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct SolveArgs {
     /// Case file (TOML).
     case: PathBuf,
-    /// Folder for VTU frames, history.csv and result.json
-    /// [default: reports/<case>].
+    /// Folder for VTU frames, history.csv and result.json [default: reports/<case>].
     #[arg(long)]
     out: Option<PathBuf>,
 }
 
 pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
     let Some(case) = load(&arguments.case) else { return Ok(COULD_NOT_RUN) };
-    if !fits(&case) {
-        return Ok(COULD_NOT_RUN);
-    }
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(&case.name));
-    // A folder that cannot be written must not cost a whole run.
+    // A folder that cannot be written must not be discovered after a long run.
     std::fs::create_dir_all(&out)
         .with_context(|| format!("cannot make the folder {}", out.display()))?;
     match solve_to(&case, &out, common) {
@@ -59,13 +55,13 @@ fn solve_to(
         }
     };
     let mut recorder = Recorder::new(case, &prepared, case.outputs.frames)?.with_progress(&show);
-    let march = march_on(&case.problem, &prepared, &mut recorder);
+    let solution = integrate_prepared(&case.problem, &prepared, &mut recorder);
     bar.finish_and_clear();
     let record = recorder.finish();
-    match march {
-        Ok(march) => Ok(finish(case, &Solved::new(prepared, march), &record, out, common)),
+    match solution {
+        Ok(solution) => Ok(finish(case, &Solved::new(prepared, solution), &record, out, common)),
         Err(error) => {
-            if let Err(error) = keep(case, &prepared, &record, out) {
+            if let Err(error) = write_partial(case, &prepared, &record, out) {
                 return Ok(Err(error));
             }
             Err(error)
@@ -73,12 +69,17 @@ fn solve_to(
     }
 }
 
-/// Writes what a failed run had, and says so.
-fn keep(case: &Case, prepared: &Prepared, record: &Record, out: &Path) -> anyhow::Result<()> {
+/// Writes what a failed run has recorded.
+fn write_partial(
+    case: &Case,
+    prepared: &Prepared,
+    record: &Recording,
+    out: &Path,
+) -> anyhow::Result<()> {
     write_recorded(case, prepared, record, out)?;
     if let Some(last) = record.samples.last() {
         eprintln!(
-            "{} holds what was sound: up to step {}, t = {:.6} s; there is no result.json",
+            "{} contains the run up to step {}, t = {:.6} s; there is no result.json",
             out.display(),
             last.step,
             last.time
@@ -90,40 +91,26 @@ fn keep(case: &Case, prepared: &Prepared, record: &Record, out: &Path) -> anyhow
 fn finish(
     case: &Case,
     solved: &Solved,
-    record: &Record,
+    record: &Recording,
     out: &Path,
     common: &Common,
 ) -> anyhow::Result<u8> {
     let result = write_outputs(case, solved, record, out)?;
-    match common.format {
-        Format::Json => print_data(&result)?,
-        Format::Human if !common.quiet => {
-            let summary = summary_text(case, solved, record);
-            print_data(&format!("{summary}\n  results in {}\n", out.display()))?;
-        }
-        Format::Human => {}
-    }
-    if let Some(crushed) = solved.summary.crushed(&solved.prepared.model).filter(|_| !common.quiet)
+    common.print_summary(&|| Ok(result.clone()), &|| {
+        let summary = summary_text(case, solved, record);
+        format!("{summary}\n  results in {}\n", out.display())
+    })?;
+    if let Some(collapsed) =
+        solved.summary.collapsed_point(&solved.prepared.model).filter(|_| !common.quiet)
     {
-        eprintln!("warning: {crushed}");
+        eprintln!("warning: {collapsed}");
     }
     if solved.summary.stopped {
         eprintln!(
-            "stopped at t = {:.6} s; the files hold what was done until then",
+            "stopped at t = {:.6} s; the files contain the run up to then",
             solved.state.time
         );
         return Ok(STOPPED);
     }
     Ok(0)
-}
-
-/// A bar of a thousand parts, hidden where nobody looks.
-pub fn progress_bar(common: &Common) -> ProgressBar {
-    if !common.draws() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr_with_hz(10));
-    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
 }

@@ -12,6 +12,7 @@ pub struct ConfinedColumn {
     pub density: f64,
     /// Downwards \[N/kg\].
     pub gravity: f64,
+    /// Of the material.
     pub constants: ElasticConstants,
 }
 

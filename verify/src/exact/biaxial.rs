@@ -2,7 +2,7 @@
 //! (Rivlin and Saunders 1951).
 #![allow(non_snake_case)]
 
-use super::free_stretch;
+use super::roots::free_stretch;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::material::Law;
 

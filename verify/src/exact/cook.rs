@@ -2,10 +2,10 @@
 //! 1 mm thick, plane strain, left edge clamped, dead load of 1 N up on the right
 //! edge, ψ = μ/2(J^(−2/3)I₁ − 3) + K/4(J² − 1 − 2 ln J), μ = 0.4225 MPa, ν = 0.3.
 
-use super::Published;
+use super::published::Published;
 
 /// u_y at (48, 52) mm, the middle of the loaded edge \[m\]: 14.74 mm; the
-/// uncertainty is the spread to [`TIP_ABAQUS`].
+/// uncertainty is the difference from [`TIP_ABAQUS`].
 pub const TIP: Published = Published {
     value: 14.74e-3,
     uncertainty: 14.74e-3 - 14.7273e-3,

@@ -1,8 +1,8 @@
 //! Frictionless contact of elastic spheres at small displacements (Hertz 1882;
 //! Johnson 1985, section 4.2).
 //!
-//! It holds for half-spaces: a block must be tens of contact radii wide before
-//! its walls are out of the way, so that no case poses this one.
+//! No case uses it: it holds for half-spaces, and a block would have to be tens of
+//! contact radii wide.
 
 use std::f64::consts::PI;
 

@@ -9,8 +9,11 @@ use std::ops::{Add, Mul};
 /// The value of a function at a point, its gradient and its Hessian.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jet {
+    /// f
     pub value: f64,
+    /// ∂f/∂X_i
     pub gradient: Vector3,
+    /// ∂²f/∂X_i∂X_j
     pub hessian: Matrix3,
 }
 

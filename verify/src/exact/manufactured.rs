@@ -1,5 +1,5 @@
 //! Manufactured solutions at finite strain: a displacement field is chosen, and
-//! the body force that keeps it in balance is b = −Div P/ρ (Roache 2002, J.
+//! its body force is b = −Div P/ρ (Roache 2002, J.
 //! Fluids Eng. 124, 4). `reference/manufactured/derive.py` derives the same
 //! forces from the strain energies with SymPy.
 #![allow(non_snake_case)]
@@ -12,14 +12,14 @@ use mtled::material::{
 };
 use std::f64::consts::PI;
 
-/// The laws, each with its stress and the derivative of its stress.
+/// Constitutive laws, with their first Piola–Kirchhoff stress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
     /// P = μF + (λ ln J − μ)F⁻ᵀ.
     LogJ,
     /// P = μJ^(−2/3)(F − I₁/3 F⁻ᵀ) + K(J − 1)J F⁻ᵀ.
     Isochoric,
-    /// The seed's rubber with A = 0.4 μ and B = 0.1 μ:
+    /// Mooney–Rivlin (Horton 2007, section 3.3) with A = 0.4 μ and B = 0.1 μ:
     /// P = 2A F + 2B(I₁F − FC) + [−4C J⁻⁴ + 4D(J⁴ − J²)]F⁻ᵀ.
     MooneyRivlin,
 }
@@ -38,10 +38,13 @@ pub enum FieldKind {
 /// A field in a material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Manufactured {
+    /// The displacement.
     pub field: FieldKind,
+    /// The constitutive law.
     pub family: Family,
+    /// Of the law.
     pub constants: ElasticConstants,
-    /// \[kg/m³\]
+    /// Per reference volume \[kg/m³\].
     pub density: f64,
 }
 
@@ -74,9 +77,9 @@ impl Manufactured {
         match self.field {
             FieldKind::General => general(at),
             FieldKind::NearlyIsochoric => {
-                let share = self.constants.shear_modulus / self.constants.lame_modulus();
+                let ratio = self.constants.shear_modulus / self.constants.lame_modulus();
                 let (shears, rest) = (shears(at), general(at));
-                [0, 1, 2].map(|k| shears[k] + rest[k] * share)
+                [0, 1, 2].map(|k| shears[k] + rest[k] * ratio)
             }
         }
     }
@@ -98,8 +101,8 @@ fn deformation_gradient(u: &[Jet; 3]) -> Matrix3 {
     Matrix3::identity() + Matrix3::from_fn(|i, J| u[i].gradient[J])
 }
 
-/// A, B, C and D of the seed's rubber \[Pa\].
-fn rubber(constants: &ElasticConstants) -> [f64; 4] {
+/// A, B, C and D of the Mooney–Rivlin law \[Pa\] (method book, eq. 3.7).
+fn mooney_rivlin(constants: &ElasticConstants) -> [f64; 4] {
     let nu = constants.poisson_ratio();
     let (a, b) = (0.4 * constants.shear_modulus, 0.1 * constants.shear_modulus);
     let d = (a * (5.0 * nu - 2.0) + b * (11.0 * nu - 5.0)) / (2.0 * (1.0 - 2.0 * nu));
@@ -116,7 +119,7 @@ impl Family {
                 VolumetricTerm::Quadratic,
             )),
             Family::MooneyRivlin => {
-                let [a, b, ..] = rubber(&constants);
+                let [a, b, ..] = mooney_rivlin(&constants);
                 Law::MooneyRivlin(MooneyRivlin::new(a, b, constants.poisson_ratio())?)
             }
         })
@@ -142,7 +145,7 @@ impl Family {
                 isochoric + (G * ((2.0 * J - 1.0) * growth) + dG * (J - 1.0)) * (K * J)
             }
             Family::MooneyRivlin => {
-                let [a, b, c, d] = rubber(constants);
+                let [a, b, c, d] = mooney_rivlin(constants);
                 let (C, dC) = (F.transpose() * F, dF.transpose() * F + F.transpose() * dF);
                 let second = F * d_first + dF * first - dF * C - F * dC;
                 let w = -4.0 * c * J.powi(-4) + 4.0 * d * (J.powi(4) - J.powi(2));
@@ -221,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn the_general_field_turns_nothing_inside_out() {
+    fn the_general_field_keeps_j_positive() {
         let s = solution(FieldKind::General, Family::LogJ, 0.3);
         let mut range = (f64::INFINITY, 0.0_f64);
         for n in 0..11 * 11 * 11 {
@@ -233,7 +236,7 @@ mod tests {
         assert!(range.0 > 0.8 && range.1 < 1.8, "{range:?}");
     }
 
-    /// A row of what SymPy derived.
+    /// A row of the values derived by SymPy.
     #[derive(Deserialize)]
     struct Derived {
         field: String,

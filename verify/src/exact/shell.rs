@@ -1,13 +1,15 @@
 //! Inflation of a thick spherical shell of incompressible neo-Hookean material
 //! (Green and Zerna 1968, section 3.10; Ogden 1984, section 5.3.2).
 //!
-//! A pressure follows the surface; the solver's tractions are dead, so that no
-//! case poses this one.
+//! No case uses it: the pressure follows the surface, and the solver has dead tractions
+//! only.
 
 /// A shell between the radii `inner` and `outer` \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shell {
+    /// \[m\]
     pub inner: f64,
+    /// \[m\]
     pub outer: f64,
     /// \[Pa\]
     pub shear_modulus: f64,

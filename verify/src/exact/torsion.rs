@@ -9,8 +9,8 @@ pub fn moment(shear_modulus: f64, twist: f64, radius: f64) -> f64 {
     0.5 * PI * shear_modulus * twist * radius.powi(4)
 }
 
-/// Axial force N = −πμψ²R⁴/4 \[N\]: negative, as the cylinder must be held
-/// from growing longer (Poynting effect).
+/// Axial force N = −πμψ²R⁴/4 \[N\]: negative, because the cylinder is kept from
+/// growing longer (Poynting effect).
 pub fn axial_force(shear_modulus: f64, twist: f64, radius: f64) -> f64 {
     -0.25 * PI * shear_modulus * twist * twist * radius.powi(4)
 }

@@ -2,7 +2,7 @@
 //! free end: 0.35 m × 0.02 m, plane strain, St Venant–Kirchhoff, ρ = 1000 kg/m³,
 //! ν = 0.4, g = 2 N/kg downwards.
 
-use super::Published;
+use super::published::Published;
 
 const SOURCE: &str =
     "Turek, Hron 2006, Proposal for numerical benchmarking of fluid-structure interaction";

@@ -1,7 +1,7 @@
 //! Uniaxial stress: one stretch is given, the lateral faces are free.
 #![allow(non_snake_case)]
 
-use super::{bisect, free_stretch};
+use super::roots::{bisect, free_stretch};
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::material::Law;
 
@@ -15,8 +15,7 @@ pub struct UniaxialState {
 }
 
 /// Solves P₂₂(diag(λ, λ_l, λ_l)) = 0 for λ_l by bisection from the side of
-/// λ_l = 1. None where no lateral stretch
-/// within a factor of four frees the faces.
+/// λ_l = 1. None where no lateral stretch within a factor of four frees the faces.
 pub fn uniaxial_stress(law: &Law, stretch: f64) -> Option<UniaxialState> {
     let P = |lateral: f64| {
         let F = Matrix3::from_diagonal(&Vector3::new(stretch, lateral, lateral));

@@ -1,6 +1,10 @@
-//! Many runs: kept, split, searched.
+//! Many runs of a case: stored, compared over ranges of the recipe, searched for the
+//! best recipe.
+
+pub mod label;
+pub mod store;
+
+pub mod sweep;
 
 pub mod budget;
-pub mod store;
-pub mod sweep;
 pub mod tune;

@@ -7,12 +7,15 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {mistake}", path.display())]
 pub struct FileError {
+    /// The file.
     pub path: PathBuf,
+    /// What is wrong with it.
     pub mistake: Mistake,
 }
 
 /// What is wrong with a file.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages say it.
 pub enum Mistake {
     #[error("the file cannot be read: {0}")]
     Unreadable(std::io::Error),
@@ -27,7 +30,7 @@ pub enum Mistake {
     #[error("line {line} of the header is `{text}`; expected `field: value`")]
     BadHeaderLine { line: usize, text: String },
     #[error(
-        "the file is truncated: its header promises {expected} bytes of data, there are {found}; copy or export it again"
+        "the file is truncated: its header states {expected} bytes of data, there are {found}; copy or export it again"
     )]
     Truncated { expected: usize, found: usize },
     #[error("the header ends after {found} bytes; the file is truncated or damaged")]
@@ -61,14 +64,13 @@ pub enum Mistake {
 }
 
 impl Mistake {
+    /// A header field with a value that cannot be used.
+    pub(super) fn bad_field(field: &'static str, value: &str, expected: &'static str) -> Mistake {
+        Mistake::BadField { field, value: value.to_string(), expected }
+    }
+
     /// The mistake as that of a file.
     pub fn of(self, path: &Path) -> FileError {
         FileError { path: path.to_path_buf(), mistake: self }
     }
-}
-
-/// The first characters of a file for a message.
-pub(super) fn start_of(bytes: &[u8]) -> String {
-    let start = &bytes[..bytes.len().min(12)];
-    String::from_utf8_lossy(start).escape_default().to_string()
 }

@@ -107,7 +107,7 @@ fn damaged_nrrd_files_are_refused_with_a_reason() {
     let raw = format!("{SMALL}encoding: raw\n");
     let cases: [(Vec<u8>, &str); 12] = [
         (b"hello".to_vec(), "this is not an NRRD file"),
-        (nrrd_text(&raw, &LABELS[..5]), "promises 8 bytes of data, there are 5"),
+        (nrrd_text(&raw, &LABELS[..5]), "states 8 bytes of data, there are 5"),
         (nrrd_text(&raw.replace("uint8", "int16"), &LABELS), "header has no `endian`"),
         (nrrd_text(&raw.replace("sizes: 2 2 2\n", ""), &LABELS), "header has no `sizes`"),
         (nrrd_text(&raw.replace("spacings: 1 2 3\n", ""), &LABELS), "no `space directions`"),
@@ -209,7 +209,7 @@ fn nifti_prefers_the_sform_to_the_qform_and_turns_the_qform() {
 fn damaged_nifti_files_are_refused_with_a_reason() {
     let good = nifti_bytes(false, |_| {});
     let cases: [(Vec<u8>, &str); 6] = [
-        (good[..good.len() - 3].to_vec(), "promises 16 bytes of data, there are 13"),
+        (good[..good.len() - 3].to_vec(), "states 16 bytes of data, there are 13"),
         (good[..100].to_vec(), "the header ends after 100 bytes"),
         (nifti_bytes(false, |put| put(344, b"abc\0")), "this is not a NIfTI-1 file"),
         (nifti_bytes(false, |put| put(344, b"ni1\0")), "convert the .hdr/.img pair"),

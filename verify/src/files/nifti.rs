@@ -1,13 +1,12 @@
 //! NIfTI-1 label maps, `.nii` and `.nii.gz` (nifti.nimh.nih.gov/nifti-1).
 
-use super::error::start_of;
-use super::voxels::{self, ByteOrder, Scalar};
-use super::{FileError, LengthUnit, Mistake, bytes_of};
-use flate2::read::MultiGzDecoder;
+use super::bytes::{ByteOrder, Scalar, bytes_of, inflate, start_of};
+use super::error::{FileError, Mistake};
+use super::unit::LengthUnit;
+use super::voxels;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::LabelMap;
 use nifti::{Endianness, NiftiHeader, NiftiType};
-use std::io::Read;
 use std::path::Path;
 
 /// Length of a NIfTI-1 header \[byte\].
@@ -20,7 +19,7 @@ pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMap, FileError
 }
 
 fn parse(bytes: Vec<u8>, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> {
-    let bytes = if bytes.starts_with(&[0x1f, 0x8b]) { inflate(&bytes)? } else { bytes };
+    let bytes = if bytes.starts_with(&[0x1f, 0x8b]) { inflate(&bytes, usize::MAX)? } else { bytes };
     let header = header(&bytes)?;
     let size = size(&header)?;
     let (origin, directions) = frame(&header);
@@ -36,17 +35,7 @@ fn parse(bytes: Vec<u8>, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> 
     let start = (header.vox_offset.max(0.0) as usize).max(HEADER);
     let data = bytes.get(start..).unwrap_or(&[]);
     let labels = voxels::labels(data, count, scalar, order, scaling(&header))?;
-    super::label_map(size, origin * metres, directions * metres, labels)
-}
-
-/// Everything that can be inflated; a stream cut short is told by the header.
-fn inflate(bytes: &[u8]) -> Result<Vec<u8>, Mistake> {
-    let mut out = Vec::new();
-    match MultiGzDecoder::new(bytes).read_to_end(&mut out) {
-        Ok(_) => Ok(out),
-        Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => Ok(out),
-        Err(error) => Err(Mistake::Undecodable { encoding: "gzip", reason: error.to_string() }),
-    }
+    voxels::label_map(size, origin * metres, directions * metres, labels)
 }
 
 fn header(bytes: &[u8]) -> Result<NiftiHeader, Mistake> {
@@ -60,7 +49,7 @@ fn header(bytes: &[u8]) -> Result<NiftiHeader, Mistake> {
     let magic = &bytes[HEADER - 4..HEADER];
     if magic == b"ni1\0" {
         let expected = "`n+1`; convert the .hdr/.img pair to one .nii";
-        return Err(Mistake::BadField { field: "magic", value: "ni1".to_string(), expected });
+        return Err(Mistake::bad_field("magic", "ni1", expected));
     }
     let header = NiftiHeader::from_reader(bytes)
         .map_err(|_| Mistake::WrongFormat { format, start: start_of(magic) })?;
@@ -76,7 +65,7 @@ fn size(header: &NiftiHeader) -> Result<[usize; 3], Mistake> {
     let sizes: Vec<usize> = header.dim[1..].iter().take(axes).map(|&n| usize::from(n)).collect();
     if axes < 3 || sizes[3..].iter().any(|&n| n > 1) {
         let expected = "three axes, one label per voxel";
-        return Err(Mistake::BadField { field: "dim", value: format!("{sizes:?}"), expected });
+        return Err(Mistake::bad_field("dim", &format!("{sizes:?}"), expected));
     }
     Ok([sizes[0], sizes[1], sizes[2]])
 }
@@ -94,9 +83,8 @@ fn scalar(header: &NiftiHeader) -> Result<Scalar, Mistake> {
         Ok(NiftiType::Float32) => Scalar::F32,
         Ok(NiftiType::Float64) => Scalar::F64,
         _ => {
-            let value = header.datatype.to_string();
             let expected = "a type of whole numbers such as 2 (uint8)";
-            return Err(Mistake::BadField { field: "datatype", value, expected });
+            return Err(Mistake::bad_field("datatype", &header.datatype.to_string(), expected));
         }
     })
 }
@@ -116,7 +104,7 @@ fn stated_unit(header: &NiftiHeader) -> Result<LengthUnit, Mistake> {
         3 => Ok(LengthUnit::Micrometre),
         other => {
             let expected = "0 (unknown), 1 (m), 2 (mm) or 3 (µm)";
-            Err(Mistake::BadField { field: "xyzt_units", value: other.to_string(), expected })
+            Err(Mistake::bad_field("xyzt_units", &other.to_string(), expected))
         }
     }
 }

@@ -1,13 +1,13 @@
 //! NRRD label maps, versions 1 to 5, attached or detached; raw, gzip or text
 //! (format: teem.sourceforge.net/nrrd/format.html).
 
+use super::bytes::{ByteOrder, Scalar, bytes_of, inflate};
+use super::error::{FileError, Mistake};
 use super::nrrd_header::{Encoding, Header};
-use super::voxels::{self, ByteOrder, Scalar};
-use super::{FileError, LabelMapFile, LengthUnit, Mistake, bytes_of};
-use flate2::read::MultiGzDecoder;
+use super::unit::LengthUnit;
+use super::voxels::{self, LabelMapFile};
 use mtled::geometry::LabelMap;
 use std::borrow::Cow;
-use std::io::Read;
 use std::path::Path;
 
 /// Reads a label map into RAS metres; `unit` overrides the file's.
@@ -19,8 +19,7 @@ pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileE
         None => Cow::Borrowed(&bytes[header.length..]),
         Some(name) if name.starts_with("LIST") || name.contains('%') => {
             let expected = "the name of one data file";
-            let mistake = Mistake::BadField { field: "data file", value: name.into(), expected };
-            return Err(mistake.of(path));
+            return Err(Mistake::bad_field("data file", name, expected).of(path));
         }
         Some(name) => {
             let data = path.parent().unwrap_or(Path::new(".")).join(name);
@@ -50,39 +49,31 @@ fn map(header: &Header, data: &[u8], unit: Option<LengthUnit>) -> Result<LabelMa
         }
         Encoding::Gzip => {
             let skip = header.skip("byteskip", "byte skip")?.unwrap_or(0);
-            let data = inflate(data, skip + count * scalar.size())?;
+            let expected = skip + count * scalar.size();
+            let data = inflate(data, expected)?;
+            if data.len() < expected {
+                return Err(Mistake::Truncated { expected, found: data.len() });
+            }
             let data = after_bytes(header, &data, count * scalar.size())?;
             voxels::labels(data, count, scalar, order, (1.0, 0.0))?
         }
     };
-    super::label_map(size, origin * metres, directions * metres, labels)
+    voxels::label_map(size, origin * metres, directions * metres, labels)
 }
 
-/// The data behind `line skip`.
+/// The data after `line skip`.
 fn after_lines<'a>(header: &Header, data: &'a [u8]) -> Result<&'a [u8], Mistake> {
     let lines = header.skip("lineskip", "line skip")?.unwrap_or(0);
     let length = data.split_inclusive(|&b| b == b'\n').take(lines).map(<[u8]>::len).sum();
     Ok(&data[length..])
 }
 
-/// The data behind `byte skip`; -1 means that they are the last bytes.
+/// The data after `byte skip`; -1 means that they are the last bytes.
 fn after_bytes<'a>(header: &Header, data: &'a [u8], expected: usize) -> Result<&'a [u8], Mistake> {
     let truncated = Mistake::Truncated { expected, found: data.len() };
     match header.skip("byteskip", "byte skip")? {
         Some(skip) => data.get(skip..).ok_or(truncated),
         None => data.len().checked_sub(expected).map(|from| &data[from..]).ok_or(truncated),
-    }
-}
-
-/// At most `expected` bytes of gzip data.
-fn inflate(data: &[u8], expected: usize) -> Result<Vec<u8>, Mistake> {
-    let mut bytes = Vec::new();
-    match MultiGzDecoder::new(data).take(expected as u64).read_to_end(&mut bytes) {
-        Ok(_) => Ok(bytes),
-        Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
-            Err(Mistake::Truncated { expected, found: bytes.len() })
-        }
-        Err(error) => Err(Mistake::Undecodable { encoding: "gzip", reason: error.to_string() }),
     }
 }
 

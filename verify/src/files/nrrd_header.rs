@@ -1,9 +1,8 @@
 //! The header of an NRRD file: lines of `field: value` up to an empty line.
 
-use super::LengthUnit;
-use super::Mistake;
-use super::error::start_of;
-use super::voxels::{ByteOrder, Scalar};
+use super::bytes::{ByteOrder, Scalar, start_of};
+use super::error::Mistake;
+use super::unit::LengthUnit;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use std::collections::HashMap;
 
@@ -72,13 +71,13 @@ impl Header {
     pub fn sizes(&self) -> Result<[usize; 3], Mistake> {
         let dimension = self.need("dimension", "dimension")?;
         if dimension != "3" {
-            return Err(bad("dimension", dimension, "3, one label per voxel"));
+            return Err(Mistake::bad_field("dimension", dimension, "3, one label per voxel"));
         }
         let text = self.need("sizes", "sizes")?;
         let sizes: Option<Vec<usize>> = text.split_whitespace().map(|n| n.parse().ok()).collect();
         sizes
             .and_then(|sizes| sizes.try_into().ok())
-            .ok_or_else(|| bad("sizes", text, "three whole numbers"))
+            .ok_or_else(|| Mistake::bad_field("sizes", text, "three whole numbers"))
     }
 
     pub fn scalar(&self) -> Result<Scalar, Mistake> {
@@ -108,7 +107,13 @@ impl Header {
             | "uint64_t" => Scalar::U64,
             "float" => Scalar::F32,
             "double" => Scalar::F64,
-            _ => return Err(bad("type", text, "a type of whole numbers such as `unsigned char`")),
+            _ => {
+                return Err(Mistake::bad_field(
+                    "type",
+                    text,
+                    "a type of whole numbers such as `unsigned char`",
+                ));
+            }
         })
     }
 
@@ -118,7 +123,11 @@ impl Header {
             "raw" => Ok(Encoding::Raw),
             "gzip" | "gz" => Ok(Encoding::Gzip),
             "ascii" | "text" | "txt" => Ok(Encoding::Text),
-            _ => Err(bad("encoding", text, "raw, gzip or ascii; save it in one of these")),
+            _ => Err(Mistake::bad_field(
+                "encoding",
+                text,
+                "raw, gzip or ascii; save it in one of these",
+            )),
         }
     }
 
@@ -127,7 +136,7 @@ impl Header {
         match self.get("endian").map(str::to_lowercase).as_deref() {
             Some("little") => Ok(ByteOrder::Little),
             Some("big") => Ok(ByteOrder::Big),
-            Some(other) => Err(bad("endian", other, "little or big")),
+            Some(other) => Err(Mistake::bad_field("endian", other, "little or big")),
             None if scalar.size() == 1 || encoding == Encoding::Text => Ok(ByteOrder::Little),
             None => Err(Mistake::MissingField { field: "endian" }),
         }
@@ -138,9 +147,10 @@ impl Header {
         match self.get(name) {
             None => Ok(Some(0)),
             Some("-1") => Ok(None),
-            Some(text) => {
-                text.parse().map(Some).map_err(|_| bad(field, text, "a whole number or -1"))
-            }
+            Some(text) => text
+                .parse()
+                .map(Some)
+                .map_err(|_| Mistake::bad_field(field, text, "a whole number or -1")),
         }
     }
 
@@ -154,7 +164,7 @@ impl Header {
             "left-anterior-superior" | "las" => Ok(Vector3::new(-1.0, 1.0, 1.0)),
             "left-posterior-superior" | "lps" => Ok(Vector3::new(-1.0, -1.0, 1.0)),
             "scanner-xyz" | "3d-right-handed" | "3d-left-handed" => Ok(Vector3::repeat(1.0)),
-            _ => Err(bad("space", text, "RAS, LAS or LPS, without time")),
+            _ => Err(Mistake::bad_field("space", text, "RAS, LAS or LPS, without time")),
         }
     }
 
@@ -163,20 +173,24 @@ impl Header {
     pub fn frame(&self) -> Result<(Vector3, Matrix3), Mistake> {
         let signs = self.to_ras()?;
         let origin = match self.get("spaceorigin") {
-            Some(text) => vectors(text)
-                .filter(|found| found.len() == 1)
-                .map(|found| found[0])
-                .ok_or_else(|| bad("space origin", text, "one vector such as (1,2,3)"))?,
+            Some(text) => {
+                vectors(text).filter(|found| found.len() == 1).map(|found| found[0]).ok_or_else(
+                    || Mistake::bad_field("space origin", text, "one vector such as (1,2,3)"),
+                )?
+            }
             None => Vector3::zeros(),
         };
         let directions = match (self.get("spacedirections"), self.get("spacings")) {
             (Some(text), _) => vectors(text)
                 .filter(|found| found.len() == 3)
                 .map(|found| Matrix3::from_columns(&found))
-                .ok_or_else(|| bad("space directions", text, "three vectors such as (1,0,0)"))?,
+                .ok_or_else(|| {
+                    Mistake::bad_field("space directions", text, "three vectors such as (1,0,0)")
+                })?,
             (None, Some(text)) => {
                 let steps: Option<Vec<f64>> = numbers(text).filter(|steps| steps.len() == 3);
-                let steps = steps.ok_or_else(|| bad("spacings", text, "three numbers"))?;
+                let steps =
+                    steps.ok_or_else(|| Mistake::bad_field("spacings", text, "three numbers"))?;
                 Matrix3::from_diagonal(&Vector3::from_vec(steps))
             }
             (None, None) => return Err(Mistake::MissingField { field: "space directions" }),
@@ -196,13 +210,13 @@ impl Header {
             ["mm" | "millimeter" | "millimetre"] => Ok(LengthUnit::Millimetre),
             ["m" | "meter" | "metre"] => Ok(LengthUnit::Metre),
             ["um" | "µm" | "micrometer" | "micrometre"] => Ok(LengthUnit::Micrometre),
-            _ => Err(bad("space units", text, "the same \"mm\", \"m\" or \"um\" three times")),
+            _ => Err(Mistake::bad_field(
+                "space units",
+                text,
+                "the same \"mm\", \"m\" or \"um\" three times",
+            )),
         }
     }
-}
-
-fn bad(field: &'static str, value: &str, expected: &'static str) -> Mistake {
-    Mistake::BadField { field, value: value.to_string(), expected }
 }
 
 fn numbers(text: &str) -> Option<Vec<f64>> {

@@ -1,7 +1,8 @@
 //! Triangulated surfaces from STL files, ASCII or binary.
 
-use super::error::start_of;
-use super::{FileError, LengthUnit, Mistake, bytes_of};
+use super::bytes::{bytes_of, start_of};
+use super::error::{FileError, Mistake};
+use super::unit::LengthUnit;
 use mtled::algebra::tensor::Vector3;
 use std::io::Cursor;
 use std::path::Path;
@@ -11,6 +12,7 @@ use std::path::Path;
 pub struct Triangles {
     /// \[m\]
     pub vertices: Vec<Vector3>,
+    /// Indices of the corners \[triangle\].
     pub triangles: Vec<[u32; 3]>,
 }
 

@@ -1,71 +1,32 @@
-//! Bytes of voxels → labels.
+//! Label maps from the bytes of their voxels.
 
-use super::Mistake;
+use super::bytes::{ByteOrder, Scalar};
+use super::error::Mistake;
+use mtled::algebra::tensor::{Matrix3, Vector3};
+use mtled::geometry::LabelMap;
+use std::path::PathBuf;
 
-/// Type of a stored number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
+/// A label map in RAS world coordinates (x right, y anterior, z superior) and
+/// the files it came from.
+#[derive(Debug, Clone)]
+pub struct LabelMapFile {
+    /// The labels.
+    pub map: LabelMap,
+    /// The file that was named, then a detached data file.
+    pub files: Vec<PathBuf>,
 }
 
-/// Order of the bytes of a stored number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ByteOrder {
-    Little,
-    Big,
+/// An image in metres from its parts.
+pub fn label_map(
+    size: [usize; 3],
+    origin: Vector3,
+    directions: Matrix3,
+    labels: Vec<u32>,
+) -> Result<LabelMap, Mistake> {
+    LabelMap::new(size, origin, directions, labels).map_err(Mistake::Geometry)
 }
 
-impl ByteOrder {
-    pub fn name(self) -> &'static str {
-        match self {
-            ByteOrder::Little => "little",
-            ByteOrder::Big => "big",
-        }
-    }
-}
-
-impl Scalar {
-    /// Size \[byte\].
-    pub fn size(self) -> usize {
-        match self {
-            Scalar::I8 | Scalar::U8 => 1,
-            Scalar::I16 | Scalar::U16 => 2,
-            Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
-            Scalar::I64 | Scalar::U64 | Scalar::F64 => 8,
-        }
-    }
-
-    /// The number stored in the first bytes, which must be enough.
-    pub fn read(self, bytes: &[u8], order: ByteOrder) -> f64 {
-        let mut word = [0u8; 8];
-        let n = self.size();
-        word[..n].copy_from_slice(&bytes[..n]);
-        if order == ByteOrder::Big {
-            word[..n].reverse();
-        }
-        let whole = u64::from_le_bytes(word);
-        match self {
-            Scalar::U8 | Scalar::U16 | Scalar::U32 | Scalar::U64 => whole as f64,
-            Scalar::I8 => f64::from(whole as i8),
-            Scalar::I16 => f64::from(whole as i16),
-            Scalar::I32 => f64::from(whole as i32),
-            Scalar::I64 => whole as i64 as f64,
-            Scalar::F32 => f64::from(f32::from_bits(whole as u32)),
-            Scalar::F64 => f64::from_bits(whole),
-        }
-    }
-}
-
-/// The largest label that makes sense.
+/// The largest label.
 const LARGEST: f64 = 65535.0;
 
 /// Number of voxels of an image, refused where it is 0 or more than 2³².

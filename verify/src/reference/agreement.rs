@@ -1,5 +1,4 @@
-//! Do two codes agree within their error bars, and which value is the
-//! reference?
+//! Agreement of two codes within their error bars, and the reference value.
 
 use super::format::{ReferenceFile, Solution};
 use super::quantity::{Family, Quantity, is_dynamic, quantities, size_of};
@@ -15,9 +14,10 @@ const ORDER_OF_FUNCTIONALS: f64 = 4.0;
 /// Order of the schemes in time, refined together with the mesh \[–\].
 const ORDER_IN_TIME: f64 = 2.0;
 
-/// What two codes say of one quantity.
+/// The values of two codes for one quantity.
 #[derive(Debug, Clone)]
 pub struct Agreement {
+    /// What is compared.
     pub quantity: Quantity,
     /// By the order of the solutions of the file.
     pub estimates: Vec<Estimate>,
@@ -42,6 +42,7 @@ impl Agreement {
         rms_of_points(values, self.quantity.family.components())
     }
 
+    /// Whether the codes differ by no more than their error bars.
     pub fn agrees(&self) -> bool {
         self.ratio() <= 1.0
     }
@@ -53,12 +54,12 @@ impl Agreement {
 
     /// The better value; its bar is not shorter than the difference of the
     /// codes.
-    pub fn reference(&self) -> Agreed {
+    pub fn reference(&self) -> ReferenceValues {
         let better = &self.estimates[self.better()];
         let other = &self.estimates[self.estimates.len() - 1 - self.better()];
         let bars = (better.errors.iter().zip(&better.values).zip(&other.values))
             .map(|((bar, a), b)| bar.max((a - b).abs()));
-        Agreed {
+        ReferenceValues {
             quantity: self.quantity.clone(),
             values: better.values.clone(),
             errors: bars.collect(),
@@ -70,10 +71,12 @@ impl Agreement {
 
 /// The reference value of a quantity.
 #[derive(Debug, Clone)]
-pub struct Agreed {
+pub struct ReferenceValues {
+    /// What is measured.
     pub quantity: Quantity,
     /// Instant by instant.
     pub values: Vec<f64>,
+    /// Error bars.
     pub errors: Vec<f64>,
     /// rms of the error over points and instants, in the unit.
     pub error: f64,
@@ -81,7 +84,7 @@ pub struct Agreed {
     pub scale: f64,
 }
 
-impl Agreed {
+impl ReferenceValues {
     /// The numbers of one instant.
     pub fn instant(&self, index: usize) -> &[f64] {
         let index = if self.quantity.changes { index } else { 0 };
@@ -96,7 +99,7 @@ impl Agreed {
 }
 
 /// Compares the two codes of a reference, quantity by quantity.
-pub fn agree(case: &Case, file: &ReferenceFile) -> Vec<Agreement> {
+pub fn agreements(case: &Case, file: &ReferenceFile) -> Vec<Agreement> {
     let scales = scales(case, file);
     let compare = |quantity: Quantity| {
         let scale = scales[&quantity.family];
@@ -140,9 +143,9 @@ fn extrapolated(solution: &Solution, quantity: &Quantity, highest: f64, scale: f
     estimate([&fine, &medium, &coarse], sizes, highest, scale)
 }
 
-/// The largest number of each family on the finest meshes. What vanishes by
-/// symmetry is measured against others: centres against the body's size,
-/// moments against the largest force times that size.
+/// The largest value of each family on the finest meshes; for families that may vanish
+/// by symmetry at least the size of the body (centres) or the largest force times that
+/// size (moments).
 pub fn scales(case: &Case, file: &ReferenceFile) -> BTreeMap<Family, f64> {
     let mut largest: BTreeMap<Family, f64> = BTreeMap::new();
     for quantity in quantities(case) {

@@ -1,19 +1,21 @@
-//! A mesh that has been solved again against what is stored of it.
+//! Meshes that have been solved again, compared with the stored ones.
 
 use super::agreement::scales;
 use super::format::ReferenceFile;
 use crate::scene::Case;
 
-/// How far numbers may move from machine to machine, relative to the largest
-/// number of their kind in the case \[–\].
-pub const SAME: f64 = 1e-6;
+/// Allowed change of values from machine to machine, relative to the largest value of
+/// their kind in the case \[–\].
+pub const TOLERANCE: f64 = 1e-6;
 
 /// The largest change of a mesh, and where.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Change {
+pub struct MeshChange {
+    /// Name of the code.
     pub code: String,
     /// Number of elements of the mesh.
     pub elements: u64,
+    /// Its key in a reference file.
     pub quantity: String,
     /// Relative to the largest number of the kind \[–\].
     pub relative: f64,
@@ -25,22 +27,22 @@ pub fn compare(
     case: &Case,
     stored: &ReferenceFile,
     again: &ReferenceFile,
-) -> Result<Vec<Change>, String> {
+) -> Result<Vec<MeshChange>, String> {
     let scales = scales(case, stored);
     let mut changes = Vec::new();
     for solution in &again.solutions {
         let known = stored.solutions.iter().find(|known| known.code == solution.code);
         for mesh in &solution.meshes {
-            let twin = known.and_then(|known| {
+            let counterpart = known.and_then(|known| {
                 known.meshes.iter().find(|other| other.elements == mesh.elements)
             });
-            let twin = twin.ok_or_else(|| {
+            let counterpart = counterpart.ok_or_else(|| {
                 format!(
                     "{}: nothing is stored of {} with {} elements",
                     case.name, solution.code, mesh.elements
                 )
             })?;
-            let mut worst = Change {
+            let mut worst = MeshChange {
                 code: solution.code.clone(),
                 elements: mesh.elements,
                 quantity: String::new(),
@@ -48,7 +50,8 @@ pub fn compare(
             };
             for quantity in super::quantities(case) {
                 let name = &quantity.name;
-                let (Some(new), Some(old)) = (mesh.values.get(name), twin.values.get(name)) else {
+                let (Some(new), Some(old)) = (mesh.values.get(name), counterpart.values.get(name))
+                else {
                     return Err(format!("{}: {name} is missing", case.name));
                 };
                 let (new, old) = (new.flat(), old.flat());
@@ -58,7 +61,7 @@ pub fn compare(
                 let differences = new.iter().zip(&old).map(|(a, b)| (a - b).abs());
                 let relative = differences.fold(0.0, f64::max) / scales[&quantity.family];
                 if relative > worst.relative || worst.quantity.is_empty() {
-                    worst = Change { quantity: quantity.name, relative, ..worst };
+                    worst = MeshChange { quantity: quantity.name, relative, ..worst };
                 }
             }
             changes.push(worst);

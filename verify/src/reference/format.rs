@@ -6,10 +6,12 @@ use std::collections::BTreeMap;
 /// Version of the layout that is read here.
 pub const SCHEMA_VERSION: u32 = 1;
 
-/// What finite-element codes found for one case.
+/// Finite-element solutions of one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ReferenceFile {
+    /// Version of the layout.
     pub schema_version: u32,
+    /// Name of the case.
     pub case: String,
     /// Fingerprint of the problem that was solved
     /// ([`crate::scene::problem_hash`]).
@@ -20,22 +22,27 @@ pub struct ReferenceFile {
     pub solutions: Vec<Solution>,
 }
 
-/// What one code found, and how.
+/// The solution of one code.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Solution {
     /// `fenicsx` or `scikit-fem`.
     pub code: String,
+    /// Of the code.
     pub version: String,
     /// YYYY-MM-DD.
     pub date: String,
+    /// Unknown fields and treatment of incompressibility.
     pub formulation: String,
+    /// Kind of element.
     pub element: String,
+    /// Kind of mesh.
     pub mesh_family: String,
+    /// Of the nonlinear and linear equations.
     pub solver: String,
     /// Of dynamic cases.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_scheme: Option<String>,
-    /// Versions of what it ran on.
+    /// Versions of other packages.
     pub packages: BTreeMap<String, String>,
     /// From coarse to fine.
     pub meshes: Vec<Mesh>,
@@ -46,16 +53,21 @@ pub struct Solution {
 pub struct Mesh {
     /// Size of the elements \[m\].
     pub size_m: f64,
+    /// Number of elements.
     pub elements: u64,
+    /// Number of unknowns.
     pub unknowns: u64,
     /// CPU time of this mesh, one thread \[s\].
     pub cpu_s: f64,
+    /// Peak memory \[bytes\].
     pub peak_memory_bytes: u64,
-    /// Of dynamic cases \[s\].
+    /// Time step of dynamic cases \[s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_step_s: Option<f64>,
+    /// Of static cases.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load_steps: Option<u64>,
+    /// Of all load steps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub newton_iterations: Option<u64>,
     /// By the name of the quantity.

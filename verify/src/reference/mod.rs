@@ -9,7 +9,7 @@ mod quantity;
 mod read;
 pub mod richardson;
 
-pub use agreement::{Agreed, Agreement, agree};
+pub use agreement::{Agreement, ReferenceValues, agreements};
 pub use format::{Mesh, ReferenceFile, SCHEMA_VERSION, Solution, Values};
 pub use quantity::{Family, Quantity, is_dynamic, quantities, size_of};
 pub use read::{CODES, MESHES, ReferenceError, read_reference};

@@ -1,4 +1,4 @@
-//! What a reference of a case must hold.
+//! The quantities of a reference of a case.
 
 use crate::scene::{Case, ProbeKind};
 use mtled::problem::Motion;
@@ -14,11 +14,14 @@ pub enum Family {
     Force,
     /// Moment that a support exerts on the body.
     Moment,
+    /// Of the whole body.
     StrainEnergy,
+    /// Of the whole body.
     KineticEnergy,
 }
 
 impl Family {
+    /// SI unit.
     pub fn unit(self) -> &'static str {
         match self {
             Family::Displacement | Family::Centre => "m",
@@ -42,6 +45,7 @@ impl Family {
 pub struct Quantity {
     /// Its key in a reference file, such as `force/top`.
     pub name: String,
+    /// Its kind.
     pub family: Family,
     /// Numbers per instant.
     pub width: usize,
@@ -49,7 +53,7 @@ pub struct Quantity {
     pub changes: bool,
 }
 
-/// The quantities of a case, every one of them wanted.
+/// All quantities of a case, in the order of its probes and conditions.
 pub fn quantities(case: &Case) -> Vec<Quantity> {
     let quantity = |name: String, family: Family, positions: usize| Quantity {
         name,
@@ -57,29 +61,26 @@ pub fn quantities(case: &Case) -> Vec<Quantity> {
         width: positions * family.components(),
         changes: family != Family::Centre,
     };
-    let mut wanted = Vec::new();
+    let mut all = Vec::new();
     for probe in &case.probes {
         let positions = probe.kind.positions().len().max(1);
-        wanted.push(quantity(
-            format!("displacement/{}", probe.name),
-            Family::Displacement,
-            positions,
-        ));
+        all.push(quantity(format!("displacement/{}", probe.name), Family::Displacement, positions));
         if matches!(probe.kind, ProbeKind::CentreOfMass { .. }) {
-            wanted.push(quantity(format!("centre/{}", probe.name), Family::Centre, 1));
+            all.push(quantity(format!("centre/{}", probe.name), Family::Centre, 1));
         }
     }
     for condition in &case.problem.conditions {
-        wanted.push(quantity(format!("force/{}", condition.name), Family::Force, 1));
-        wanted.push(quantity(format!("moment/{}", condition.name), Family::Moment, 1));
+        all.push(quantity(format!("force/{}", condition.name), Family::Force, 1));
+        all.push(quantity(format!("moment/{}", condition.name), Family::Moment, 1));
     }
-    wanted.push(quantity("strain_energy".into(), Family::StrainEnergy, 1));
+    all.push(quantity("strain_energy".into(), Family::StrainEnergy, 1));
     if is_dynamic(case) {
-        wanted.push(quantity("kinetic_energy".into(), Family::KineticEnergy, 1));
+        all.push(quantity("kinetic_energy".into(), Family::KineticEnergy, 1));
     }
-    wanted
+    all
 }
 
+/// Whether the case has a history in time.
 pub fn is_dynamic(case: &Case) -> bool {
     matches!(case.problem.motion, Motion::Dynamic { .. })
 }

@@ -14,6 +14,7 @@ pub const MESHES: usize = 3;
 
 /// Why stored values are no reference of a case.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs)] // The messages say it.
 pub enum ReferenceError {
     #[error("{case}: there is no stored reference")]
     Absent { case: String },
@@ -52,7 +53,7 @@ pub fn read_reference(case: &Case, text: &str) -> Result<ReferenceFile, Referenc
         reason: error.to_string(),
     };
     let value: serde_json::Value = serde_json::from_str(text).map_err(unreadable)?;
-    // Another version may have another layout, so it is looked at first.
+    // Another version may have another layout, so it is read first.
     if let Some(found) = value["schema_version"].as_u64()
         && found != u64::from(SCHEMA_VERSION)
     {
@@ -85,9 +86,9 @@ fn check(case: &Case, file: &ReferenceFile) -> Result<(), ReferenceError> {
             return Err(ReferenceError::Solutions { case: name(), code: code.into(), count });
         }
     }
-    let wanted = quantities(case);
+    let required = quantities(case);
     for solution in &file.solutions {
-        check_solution(case, solution, file.times_s.len(), &wanted)?;
+        check_solution(case, solution, file.times_s.len(), &required)?;
     }
     Ok(())
 }
@@ -117,7 +118,7 @@ pub fn check_solution(
     case: &Case,
     solution: &Solution,
     instants: usize,
-    wanted: &[Quantity],
+    required: &[Quantity],
 ) -> Result<(), ReferenceError> {
     check_provenance(case, solution)?;
     if solution.meshes.len() < MESHES {
@@ -128,7 +129,7 @@ pub fn check_solution(
         });
     }
     for (index, mesh) in solution.meshes.iter().enumerate() {
-        check_mesh(case, &solution.code, index, mesh, instants, wanted)?;
+        check_mesh(case, &solution.code, index, mesh, instants, required)?;
     }
     Ok(())
 }
@@ -189,15 +190,15 @@ fn check_mesh(
     index: usize,
     mesh: &Mesh,
     instants: usize,
-    wanted: &[Quantity],
+    required: &[Quantity],
 ) -> Result<(), ReferenceError> {
     let (case, code) = (case.name.clone(), code.to_string());
-    let known = |name: &str| wanted.iter().any(|quantity| quantity.name == name);
+    let known = |name: &str| required.iter().any(|quantity| quantity.name == name);
     if let Some(name) = mesh.values.keys().find(|name| !known(name)) {
         let quantity = name.clone();
         return Err(ReferenceError::UnknownQuantity { case, code, mesh: index, quantity });
     }
-    for quantity in wanted {
+    for quantity in required {
         let name = quantity.name.clone();
         let Some(values) = mesh.values.get(&quantity.name) else {
             return Err(ReferenceError::MissingQuantity {
@@ -217,9 +218,9 @@ fn check_mesh(
 /// What is wrong with the numbers of a quantity.
 fn fault(quantity: &Quantity, values: &Values, instants: usize) -> Option<String> {
     let lists = values.instants();
-    let wanted = if quantity.changes { instants } else { 1 };
-    if matches!(values, Values::History(_)) != quantity.changes || lists.len() != wanted {
-        return Some(format!("has {} lists instead of {wanted}", lists.len()));
+    let expected = if quantity.changes { instants } else { 1 };
+    if matches!(values, Values::History(_)) != quantity.changes || lists.len() != expected {
+        return Some(format!("has {} lists instead of {expected}", lists.len()));
     }
     if let Some(list) = lists.iter().find(|list| list.len() != quantity.width) {
         return Some(format!("has {} numbers instead of {}", list.len(), quantity.width));

@@ -15,7 +15,7 @@
 //!   is f₁ and F_s = 3.
 //! - p in (1.1 p_max, p_max + 1], errors of different orders cancel: nothing is
 //!   extrapolated, F_s = 3 with p_max.
-//! - p > p_max + 1, the coarse mesh was hopeless: f₁ ± 3 |d₁|/(r − 1).
+//! - p > p_max + 1, the coarse mesh is of no use: f₁ ± 3 |d₁|/(r − 1).
 //! - p < 0.5, divergence or oscillation: f₁ ± 3 max(|d₁|, |d₂|)/(r − 1).
 //!
 //! Differences of rms below 10⁻⁸ of the size of such quantities are round-off
@@ -29,17 +29,17 @@
 use mtled_checks::measure::{observed_order, richardson};
 use std::fmt;
 
-/// Relative size of differences that say nothing \[–\].
+/// Relative size of differences that are round-off \[–\].
 pub const NOISE: f64 = 1e-8;
 /// F_s where three meshes show an order \[–\].
 pub const SAFETY: f64 = 1.25;
 /// F_s elsewhere \[–\].
 pub const SAFETY_WITHOUT_ORDER: f64 = 3.0;
-/// Lowest order that is believed.
+/// Lowest accepted order \[–\].
 pub const LOWEST_ORDER: f64 = 0.5;
-/// Orders above this multiple of the highest are no sign of convergence \[–\].
+/// Orders above this multiple of the highest are not accepted \[–\].
 const TOO_GOOD: f64 = 1.1;
-/// Smallest cosine between successive differences that point the same way.
+/// Smallest cosine between successive differences of the same direction \[–\].
 const SAME_WAY: f64 = 0.5;
 
 /// Where an error bar comes from.
@@ -55,7 +55,7 @@ pub enum Basis {
     Noise,
 }
 
-/// The order, in brackets where it was not believed.
+/// The order, in brackets where it was not accepted.
 impl fmt::Display for Basis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -71,9 +71,11 @@ impl fmt::Display for Basis {
 /// Values with error bars.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
+    /// Extrapolated, or of the finest mesh.
     pub values: Vec<f64>,
     /// Error bar of each value, in its unit.
     pub errors: Vec<f64>,
+    /// What the error bars follow from.
     pub basis: Basis,
 }
 
@@ -104,12 +106,12 @@ pub fn estimate(fields: [&[f64]; 3], sizes: [f64; 3], highest: f64, scale: f64) 
     let same_way = cosine(&near, &far);
     match observed {
         Some(p) if (LOWEST_ORDER..=highest + 1.0).contains(&p) && same_way > -SAME_WAY => {
-            let used = p.min(highest);
-            match (same_way >= SAME_WAY, p <= TOO_GOOD * highest) {
-                (true, true) => extrapolated(fine, medium, ratio, used, floor, Basis::Order(p)),
-                (false, true) => bounded(fine, medium, ratio, used, floor, Basis::InNorm(p)),
-                (_, false) => bounded(fine, medium, ratio, used, floor, Basis::NoOrder(observed)),
-            }
+            let basis = match (same_way >= SAME_WAY, p <= TOO_GOOD * highest) {
+                (true, true) => Basis::Order(p),
+                (false, true) => Basis::InNorm(p),
+                (_, false) => Basis::NoOrder(observed),
+            };
+            with_order(fine, medium, ratio, p.min(highest), floor, basis)
         }
         Some(p) if p > highest + 1.0 => {
             without_order(fine, &near, &near, ratio, floor, Basis::NoOrder(observed))
@@ -118,8 +120,8 @@ pub fn estimate(fields: [&[f64]; 3], sizes: [f64; 3], highest: f64, scale: f64) 
     }
 }
 
-/// f* with F_s = 1.25.
-fn extrapolated(
+/// f* with F_s = 1.25 if the basis is an order, else f₁ with F_s = 3.
+fn with_order(
     fine: &[f64],
     medium: &[f64],
     ratio: f64,
@@ -127,27 +129,16 @@ fn extrapolated(
     floor: f64,
     basis: Basis,
 ) -> Estimate {
+    let extrapolate = matches!(basis, Basis::Order(_));
+    let safety = if extrapolate { SAFETY } else { SAFETY_WITHOUT_ORDER };
+    let factor = safety / (ratio.powf(order) - 1.0);
     let pairs = || fine.iter().zip(medium);
-    let share = SAFETY / (ratio.powf(order) - 1.0);
-    Estimate {
-        values: pairs().map(|(&f, &m)| richardson(f, m, ratio, order)).collect(),
-        errors: pairs().map(|(f, m)| (share * (m - f).abs()).max(floor)).collect(),
-        basis,
-    }
-}
-
-/// f₁ with F_s = 3.
-fn bounded(
-    fine: &[f64],
-    medium: &[f64],
-    ratio: f64,
-    order: f64,
-    floor: f64,
-    basis: Basis,
-) -> Estimate {
-    let share = SAFETY_WITHOUT_ORDER / (ratio.powf(order) - 1.0);
-    let bar = |(f, m): (&f64, &f64)| (share * (m - f).abs()).max(floor);
-    Estimate { values: fine.to_vec(), errors: fine.iter().zip(medium).map(bar).collect(), basis }
+    let values = match extrapolate {
+        true => pairs().map(|(&f, &m)| richardson(f, m, ratio, order)).collect(),
+        false => fine.to_vec(),
+    };
+    let errors = pairs().map(|(f, m)| (factor * (m - f).abs()).max(floor)).collect();
+    Estimate { values, errors, basis }
 }
 
 /// The order of the norms of differences.
@@ -164,8 +155,8 @@ fn without_order(
     floor: f64,
     basis: Basis,
 ) -> Estimate {
-    let share = SAFETY_WITHOUT_ORDER / (ratio - 1.0);
-    let bar = |(a, b): (&f64, &f64)| (share * a.abs().max(b.abs())).max(floor);
+    let factor = SAFETY_WITHOUT_ORDER / (ratio - 1.0);
+    let bar = |(a, b): (&f64, &f64)| (factor * a.abs().max(b.abs())).max(floor);
     Estimate { values: fine.to_vec(), errors: near.iter().zip(far).map(bar).collect(), basis }
 }
 

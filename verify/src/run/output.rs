@@ -1,8 +1,11 @@
 //! Files of a run: VTU frames with a PVD, histories as CSV, `result.json`.
 #![allow(non_snake_case)]
 
-use super::{Prepared, Record, Solved, result_json};
-use crate::run::vtu::{PointArray, VtuFrame, write_pvd, write_vtu};
+use super::prepare::Prepared;
+use super::record::Recording;
+use super::result::result_json;
+use super::solve::Solved;
+use super::vtu::{PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::scene::Case;
 use anyhow::Result;
 use mtled::algebra::tensor::Matrix3;
@@ -11,18 +14,27 @@ use mtled::problem::{Motion, Problem};
 use mtled_checks::report::write_atomically;
 use std::path::Path;
 
-/// Writes everything of a run to `dir` and returns what stands in
-/// `result.json`.
-pub fn write_outputs(case: &Case, solved: &Solved, record: &Record, dir: &Path) -> Result<String> {
+/// Writes all files of a run to `dir` and returns the text of `result.json`.
+pub fn write_outputs(
+    case: &Case,
+    solved: &Solved,
+    record: &Recording,
+    dir: &Path,
+) -> Result<String> {
     write_recorded(case, &solved.prepared, record, dir)?;
     let text = serde_json::to_string_pretty(&result_json(case, solved, record))? + "\n";
     write_atomically(&dir.join("result.json"), text.as_bytes())?;
     Ok(text)
 }
 
-/// Writes what was recorded, which a failed run has too. A `result.json` of an
-/// earlier run goes: it would not belong to these files.
-pub fn write_recorded(case: &Case, prepared: &Prepared, record: &Record, dir: &Path) -> Result<()> {
+/// Writes the recording, which a failed run has too, and removes the `result.json` of
+/// an earlier run.
+pub fn write_recorded(
+    case: &Case,
+    prepared: &Prepared,
+    record: &Recording,
+    dir: &Path,
+) -> Result<()> {
     if let Err(error) = std::fs::remove_file(dir.join("result.json"))
         && error.kind() != std::io::ErrorKind::NotFound
     {
@@ -32,14 +44,14 @@ pub fn write_recorded(case: &Case, prepared: &Prepared, record: &Record, dir: &P
     write_atomically(&dir.join("history.csv"), history_csv(case, record)?.as_bytes())
 }
 
-fn write_frames(case: &Case, prepared: &Prepared, record: &Record, dir: &Path) -> Result<()> {
+fn write_frames(case: &Case, prepared: &Prepared, record: &Recording, dir: &Path) -> Result<()> {
     let dynamic = matches!(case.problem.motion, Motion::Dynamic { .. });
     let positions = &prepared.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
     let mut series = Vec::new();
     for (index, frame) in record.frames.iter().enumerate() {
         let name = format!("nodes_{index:04}.vtu");
-        // A static run has no time of its own: its steps tell frames apart.
+        // A static run has no physical time: its frames are numbered by steps.
         let time = if dynamic { frame.time } else { frame.step as f64 };
         write_vtu(
             &dir.join(&name),
@@ -50,8 +62,8 @@ fn write_frames(case: &Case, prepared: &Prepared, record: &Record, dir: &Path) -
     write_pvd(&dir.join(format!("{}.pvd", case.name)), &series)
 }
 
-/// Fields at the nodes: displacement of the field (not its parameters), and
-/// J, Cauchy stress and pressure averaged from the quadrature points around.
+/// Fields at the nodes: displacement of the approximation (not the nodal parameters),
+/// and J, Cauchy stress and pressure averaged from the quadrature points around.
 fn node_frame<'a>(
     problem: &Problem,
     prepared: &Prepared,
@@ -78,8 +90,8 @@ fn node_frame<'a>(
     })
 }
 
-/// J \[–\] and Cauchy stress by rows \[Pa\], its projected pressure included, averaged over the quadrature points
-/// that a node supports, weighted by their volume times φ where positive.
+/// J \[–\] and Cauchy stress by rows \[Pa\], projected pressure included, averaged over the
+/// quadrature points that a node supports, weighted by volume times φ where positive.
 fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let discretisation = &prepared.discretisation;
     let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
@@ -93,11 +105,11 @@ fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec
         let sigma = law.cauchy(&F) + Matrix3::from_diagonal_element(mean_stress);
         for entry in rows.row(point) {
             let node = rows.nodes[entry] as usize;
-            let share = quadrature.weights[point] * rows.phi[entry].max(1e-6);
-            total[node] += share;
-            jacobian[node] += share * F.determinant();
+            let weight = quadrature.weights[point] * rows.phi[entry].max(1e-6);
+            total[node] += weight;
+            jacobian[node] += weight * F.determinant();
             for (k, value) in sigma.transpose().iter().enumerate() {
-                stress[9 * node + k] += share * value;
+                stress[9 * node + k] += weight * value;
             }
         }
     }
@@ -110,7 +122,7 @@ fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec
 
 /// One row per sample; probes with one position only (lattices are in
 /// `result.json`).
-fn history_csv(case: &Case, record: &Record) -> Result<String> {
+fn history_csv(case: &Case, record: &Recording) -> Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let axes = ["x", "y", "z"];
     let single: Vec<usize> =

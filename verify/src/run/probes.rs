@@ -9,20 +9,20 @@ use mtled::problem::Problem;
 pub struct MassCentre {
     /// X_c \[m\]
     pub reference: Vector3,
-    /// \[kg\]
+    /// Mass of the region \[kg\].
     pub mass: f64,
     /// s_a = Σ_q ρ w_q φ_a / Σ_q ρ w_q over the points of the region
     /// \[node\] \[–\].
-    shares: Vec<f64>,
+    weights: Vec<f64>,
 }
 
 impl MassCentre {
     /// Displacement of the centre \[m\] for nodal parameters `u`.
     pub fn displacement(&self, u: &[f64], components: usize) -> Vector3 {
         let mut displacement = Vector3::zeros();
-        for (node, share) in self.shares.iter().enumerate() {
+        for (node, weight) in self.weights.iter().enumerate() {
             for k in 0..components {
-                displacement[k] += share * u[components * node + k];
+                displacement[k] += weight * u[components * node + k];
             }
         }
         displacement
@@ -32,7 +32,7 @@ impl MassCentre {
 /// The centre of mass of every region, in the order of the problem.
 pub fn centres_of_mass(problem: &Problem, discretisation: &Discretisation) -> Vec<MassCentre> {
     let nodes = discretisation.cloud.positions.len();
-    let empty = MassCentre { reference: Vector3::zeros(), mass: 0.0, shares: vec![0.0; nodes] };
+    let empty = MassCentre { reference: Vector3::zeros(), mass: 0.0, weights: vec![0.0; nodes] };
     let mut centres = vec![empty; problem.regions.len()];
     let (quadrature, supports) = (&discretisation.quadrature, &discretisation.supports);
     for point in 0..supports.len() {
@@ -42,12 +42,12 @@ pub fn centres_of_mass(problem: &Problem, discretisation: &Discretisation) -> Ve
         centre.mass += mass;
         centre.reference += quadrature.positions[point] * mass;
         for entry in supports.row(point) {
-            centre.shares[supports.nodes[entry] as usize] += mass * supports.phi[entry];
+            centre.weights[supports.nodes[entry] as usize] += mass * supports.phi[entry];
         }
     }
     for centre in centres.iter_mut().filter(|centre| centre.mass > 0.0) {
         centre.reference /= centre.mass;
-        centre.shares.iter_mut().for_each(|share| *share /= centre.mass);
+        centre.weights.iter_mut().for_each(|weight| *weight /= centre.mass);
     }
     centres
 }

@@ -1,9 +1,12 @@
 //! The result of a run as JSON and as a screen of text.
 
-use super::{Footprint, Record, Solved, Work};
+use super::record::Recording;
+use super::solve::Solved;
+use super::work::Work;
 use crate::machine::{peak_memory, provenance};
 use crate::scene::{Case, ProbeKind};
 use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::Footprint;
 use mtled::discretisation::Warning;
 use mtled::problem::Motion;
 use mtled_checks::report::four_digits;
@@ -12,9 +15,9 @@ use serde_json::{Value, json};
 /// Version of the layout of `result.json`.
 const SCHEMA_VERSION: u32 = 1;
 
-/// `result.json`. All that may differ between two runs of the same binary on
-/// the same case stands under `timings`.
-pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
+/// `result.json`. Only `timings` may differ between two runs of the same binary on
+/// the same case.
+pub fn result_json(case: &Case, solved: &Solved, record: &Recording) -> Value {
     let (discretisation, model) = (&solved.prepared.discretisation, &solved.prepared.model);
     let quadrature = &discretisation.quadrature;
     json!({
@@ -51,12 +54,12 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Record) -> Value {
     })
 }
 
-/// What a user should know before trusting the result.
+/// Reasons to doubt the result.
 fn warnings(solved: &Solved) -> Vec<String> {
     let Solved { prepared, summary, .. } = solved;
     let mut all: Vec<String> =
         prepared.discretisation.warnings().iter().map(Warning::to_string).collect();
-    all.extend(summary.crushed(&prepared.model).map(|crushed| crushed.to_string()));
+    all.extend(summary.collapsed_point(&prepared.model).map(|collapsed| collapsed.to_string()));
     all
 }
 
@@ -87,7 +90,7 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
         "largest_time_step_s": moves.then_some(summary.time_steps.1),
         "critical_time_step_s": moves.then_some(summary.critical_time_step),
         // Of the lumped masses, which a static run does not have.
-        "per_point_bound_s": dynamic.then_some(solved.prepared.model.bound),
+        "per_point_bound_s": dynamic.then_some(solved.prepared.model.per_point_bound),
         "smallest_jacobian": summary.smallest_jacobian.jacobian,
         "relaxation": relaxation,
         "newton": newton,
@@ -98,7 +101,7 @@ fn array(v: &Vector3) -> [f64; 3] {
     [v.x, v.y, v.z]
 }
 
-fn probes_json(case: &Case, record: &Record) -> Vec<Value> {
+fn probes_json(case: &Case, record: &Recording) -> Vec<Value> {
     let Some(last) = record.samples.last() else { return Vec::new() };
     let rows = case.probes.iter().zip(&record.references).zip(&last.displacements);
     rows.map(|((probe, references), displacements)| {
@@ -116,7 +119,7 @@ fn probes_json(case: &Case, record: &Record) -> Vec<Value> {
     .collect()
 }
 
-fn reactions_json(case: &Case, record: &Record) -> Vec<Value> {
+fn reactions_json(case: &Case, record: &Recording) -> Vec<Value> {
     let Some(last) = record.samples.last() else { return Vec::new() };
     let rows = case.problem.conditions.iter().zip(&last.reactions);
     rows.map(|(condition, reaction)| {
@@ -130,7 +133,7 @@ fn reactions_json(case: &Case, record: &Record) -> Vec<Value> {
     .collect()
 }
 
-fn energies_json(record: &Record) -> Value {
+fn energies_json(record: &Recording) -> Value {
     record.samples.last().map_or(Value::Null, |last| {
         let e = &last.energies;
         json!({
@@ -143,8 +146,8 @@ fn energies_json(record: &Record) -> Value {
     })
 }
 
-/// What a user wants to know at a glance, a line each.
-pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
+/// The main results, a line each.
+pub fn summary_text(case: &Case, solved: &Solved, record: &Recording) -> String {
     let (d, s) = (&solved.prepared.discretisation, &solved.summary);
     let model = &solved.prepared.model;
     let mut lines = vec![
@@ -176,8 +179,8 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
         },
     ];
     if model.added_mass > 0.0 {
-        let share = model.added_mass / model.lumped_mass.iter().sum::<f64>();
-        lines.push(format!("  nodes made heavier by {} % of the mass", four_digits(100.0 * share)));
+        let fraction = model.added_mass / model.lumped_mass.iter().sum::<f64>();
+        lines.push(format!("  mass scaling adds {} % of the mass", four_digits(100.0 * fraction)));
     }
     if let Some(convergence) = s.relaxation {
         lines.push(format!(
@@ -222,13 +225,13 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Record) -> String {
     ));
     lines.extend(memory_text(case, solved));
     lines.push(format!(
-        "  set-up {:.2} s, march {:.2} s wall ({:.2} s CPU)",
+        "  set-up {:.2} s, run {:.2} s wall ({:.2} s CPU)",
         solved.prepared.setup_seconds, solved.solve_seconds, solved.cpu_seconds
     ));
     lines.join("\n")
 }
 
-/// Memory at its peak, per point and per node, and what had been estimated.
+/// Peak memory, in total, per point and per node, beside the estimate.
 fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
     let peak = peak_memory()? as f64;
     let (d, model) = (&solved.prepared.discretisation, &solved.prepared.model);

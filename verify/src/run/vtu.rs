@@ -8,19 +8,21 @@ use std::path::Path;
 /// VTK's number of a cell that is a single point.
 const VTK_VERTEX: u8 = 1;
 
-/// One moment of a cloud of points; every point becomes a vertex cell.
+/// A cloud of points at one instant; every point becomes a vertex cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VtuFrame<'a> {
     /// \[s\]
     pub time: f64,
     /// \[m\]
     pub points: &'a [[f64; 3]],
+    /// Fields at the points.
     pub point_data: Vec<PointArray>,
 }
 
 /// A field at the points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointArray {
+    /// Name of the field.
     pub name: String,
     /// 1 for a scalar, 3 for a vector, 9 for a tensor by rows.
     pub components: usize,
@@ -29,6 +31,7 @@ pub struct PointArray {
 }
 
 impl PointArray {
+    /// A field from its values.
     pub fn new(name: &str, components: usize, values: Vec<f64>) -> PointArray {
         PointArray { name: name.to_string(), components, values }
     }

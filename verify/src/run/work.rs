@@ -1,27 +1,29 @@
-//! What a run has done, counted: figures that do not depend on the machine.
+//! Work of a run in counts that do not depend on the machine.
 
-use super::Solved;
+use super::solve::Solved;
 use serde::{Deserialize, Serialize};
 
-/// Counters of a run; all may be compared between machines.
+/// Counts of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
+    /// Time steps.
     pub steps: usize,
     /// Evaluations of the internal force.
     pub force_evaluations: usize,
-    /// Those of them that looked for the critical step.
+    /// Those of them for the critical time step.
     pub lanczos_evaluations: usize,
-    /// Iterations that made the gradients consistent.
+    /// Iterations for consistent gradients.
     pub correction_iterations: usize,
-    /// Quadrature points that all evaluations have visited.
+    /// Quadrature points of all evaluations.
     pub point_evaluations: usize,
-    /// Support entries that all evaluations have visited.
+    /// Support entries of all evaluations.
     pub neighbour_visits: usize,
-    /// Bytes of gradients and indices that all evaluations have read.
+    /// Bytes of gradients and indices read by all evaluations.
     pub bytes_streamed: usize,
 }
 
 impl Work {
+    /// The counts of a solved problem.
     pub fn of(solved: &Solved) -> Work {
         let (summary, prepared) = (&solved.summary, &solved.prepared);
         let supports = &prepared.discretisation.supports;

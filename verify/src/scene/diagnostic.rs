@@ -1,4 +1,4 @@
-//! A mistake in a case file and the place where it stands.
+//! A mistake in a case file and its place.
 
 use std::fmt;
 use std::ops::Range;
@@ -7,8 +7,11 @@ use std::ops::Range;
 /// Line 0 means the file as a whole.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Location {
+    /// Path of the file.
     pub file: String,
+    /// Line, from 1.
     pub line: usize,
+    /// Column, from 1.
     pub column: usize,
 }
 
@@ -37,9 +40,11 @@ impl fmt::Display for Location {
 /// A mistake: where, which key, and what was expected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnostic {
+    /// Where it is.
     pub location: Location,
     /// Key path, such as `material.brain.poisson_ratio`; empty for syntax.
     pub key: String,
+    /// What is wrong and what is expected.
     pub message: String,
     /// The line of the file, empty if there is none.
     pub source_line: String,

@@ -4,7 +4,7 @@ use crate::scene::diagnostic::{Diagnostic, Location};
 use std::ops::Range;
 use toml_edit::{Item, TableLike};
 
-/// A parsed case file that remembers where everything stood.
+/// A parsed case file with the place of every key and value.
 #[derive(Debug, Clone)]
 pub struct Document {
     file: String,
@@ -25,8 +25,19 @@ impl Document {
         }
     }
 
+    /// The text as it was read.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// The name of the file, for messages.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Its tables, with their places.
+    pub fn tree(&self) -> &toml_edit::Document<String> {
+        &self.tree
     }
 
     /// A mistake at a key path; where the path ends early, at its last part
@@ -41,12 +52,11 @@ impl Document {
         Diagnostic::at(&self.file, &self.text, span, key, message)
     }
 
-    /// Where a key path such as `prescribe[1].where` stands, `None` if there is
-    /// no such key. An array of tables can be entered by name too:
-    /// `prescribe.top.where`.
+    /// Place of a key path such as `prescribe[1].where`, `None` if there is no such key. A
+    /// table of an array can be named too: `prescribe.top.where`.
     pub fn locate(&self, key: &str) -> Option<Location> {
-        let (found, span) = self.span(key);
-        found.then(|| Location::of(&self.file, &self.text, span.start))
+        let (exists, span) = self.span(key);
+        exists.then(|| Location::of(&self.file, &self.text, span.start))
     }
 
     /// Whether the whole path exists, and the bytes of its last part that does.
@@ -63,20 +73,20 @@ impl Document {
         (true, span)
     }
 
-    /// Numbers such as `nan` and `inf`, which TOML allows and mechanics does not.
+    /// A mistake for each `nan` and `inf`, which TOML allows.
     pub fn numbers_that_are_not_finite(&self) -> Vec<Diagnostic> {
-        let mut found = Vec::new();
+        let mut mistakes = Vec::new();
         visit(self.tree.as_item(), "", &mut |path, _, item| {
             if let Some(value) = item.as_float().filter(|value| !value.is_finite()) {
                 let message = format!("is {value}; it must be a finite number");
-                found.push(self.diagnostic(path, message));
+                mistakes.push(self.diagnostic(path, message));
             }
         });
-        found.dedup();
-        found
+        mistakes.dedup();
+        mistakes
     }
 
-    /// The path of the innermost key or value that holds a byte of the text.
+    /// The path of the innermost key or value at a byte of the text.
     pub fn path_at(&self, offset: usize) -> String {
         let mut best = (usize::MAX, String::new());
         visit(self.tree.as_item(), "", &mut |path, span, _| {
@@ -94,7 +104,7 @@ fn segments(key: &str) -> Vec<String> {
     key.split(['.', '[', ']']).filter(|part| !part.is_empty()).map(str::to_string).collect()
 }
 
-/// The child called `segment` and where it stands.
+/// The child called `segment` and its place.
 fn step_into<'a>(item: &'a Item, segment: &str) -> Option<(&'a Item, Option<Range<usize>>)> {
     if let Some(table) = item.as_table_like() {
         let (key, child) = table.get_key_value(segment)?;

@@ -15,50 +15,51 @@ use mtled::problem::{
 use std::path::Path;
 use std::sync::Arc;
 
-/// How the cube lies in the background grid.
+/// Orientation of the cube in the background grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum Orientation {
     /// Its faces run along the grid.
     Along,
-    /// It is turned by 1.1 rad about (1, 2, 3), a body of triangles like any other:
-    /// nodes lie on a lattice inside and along its faces, cells are cut anyhow.
+    /// It is turned by 1.1 rad about (1, 2, 3) and given as a surface of triangles: nodes lie on a
+    /// lattice inside and along its faces, and the faces cut cells at any angle.
     Turned,
 }
 
 /// How a solution is discretised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scheme {
-    /// Everything that is not stated is the default.
+pub enum RecipeKind {
+    /// The defaults of the case format.
     Default,
-    /// The default with 2 cells per spacing, that is eight points per node.
+    /// The default with 2 cells per spacing, eight points per node.
     Finer,
-    /// The seed's: plain gradients, cells kept whole where their centre is inside,
-    /// nodal parameters prescribed, J point by point, masses split evenly; with
-    /// no fewer points than this.
+    /// That of Horton 2007: plain gradients, cells kept whole where their centre is inside,
+    /// nodal parameters prescribed, J at every point, masses split evenly; with at least
+    /// this many points.
     Plain { points: usize },
 }
 
-/// \[Pa\]
+/// Young's modulus \[Pa\].
 pub const YOUNG_MODULUS: f64 = 3000.0;
-/// \[kg/m³\]
+/// Density \[kg/m³\].
 pub const DENSITY: f64 = 1000.0;
 
 /// A solution after X → R X.
 #[derive(Debug, Clone, Copy)]
-pub struct Placed {
+pub struct Oriented {
     solution: Manufactured,
-    place: Place,
-    /// R
+    orientation: Orientation,
+    /// Rotation R.
     pub turn: Matrix3,
 }
 
-impl Placed {
-    pub fn new(solution: Manufactured, place: Place) -> Placed {
-        let turn = match place {
-            Place::Along => Matrix3::identity(),
-            Place::Turned => rotation(&Vector3::new(1.0, 2.0, 3.0).normalize(), 1.1),
+impl Oriented {
+    /// A solution in one of the two orientations.
+    pub fn new(solution: Manufactured, orientation: Orientation) -> Oriented {
+        let turn = match orientation {
+            Orientation::Along => Matrix3::identity(),
+            Orientation::Turned => rotation(&Vector3::new(1.0, 2.0, 3.0).normalize(), 1.1),
         };
-        Placed { solution, place, turn }
+        Oriented { solution, orientation, turn }
     }
 
     /// R u(Rᵀ X) \[m\].
@@ -78,7 +79,7 @@ impl Placed {
     }
 }
 
-/// Everything about the discretisation that is not stated is the default.
+/// Case file with the defaults of the format for everything that is left out.
 fn case_text(nodes_per_edge: usize, seed: u64) -> String {
     format!(
         r#"
@@ -123,33 +124,38 @@ point = [0.5, 0.5, 0.5]
     )
 }
 
-/// The problem whose solution is known.
-pub fn pose(placed: Placed, nodes_per_edge: usize, seed: u64, scheme: Scheme) -> Result<Problem> {
+/// The problem that has the solution.
+pub fn manufactured_problem(
+    oriented: Oriented,
+    nodes_per_edge: usize,
+    seed: u64,
+    kind: RecipeKind,
+) -> Result<Problem> {
     let text = case_text(nodes_per_edge, seed);
     let case = parse_case(&text, "manufactured", Path::new(".")).map_err(one_error)?;
     let mut problem = case.problem;
-    if placed.place == Place::Turned {
-        problem.body = turned_cube(&placed.turn)?;
+    if oriented.orientation == Orientation::Turned {
+        problem.body = turned_cube(&oriented.turn)?;
     }
-    match scheme {
-        Scheme::Default => {}
-        Scheme::Finer => problem.recipe.grid.cell = 0.5 / (nodes_per_edge - 1) as f64,
-        Scheme::Plain { points } => make_plain(&mut problem, points)?,
+    match kind {
+        RecipeKind::Default => {}
+        RecipeKind::Finer => problem.recipe.grid.cell = 0.5 / (nodes_per_edge - 1) as f64,
+        RecipeKind::Plain { points } => make_plain(&mut problem, points)?,
     }
-    impose(&mut problem, placed)?;
+    impose(&mut problem, oriented)?;
     Ok(problem)
 }
 
 /// Gives a body of one region with one condition the material, boundary values and
 /// body force of a solution.
-pub fn impose(problem: &mut Problem, placed: Placed) -> Result<()> {
-    let solution = placed.solution;
+pub fn impose(problem: &mut Problem, oriented: Oriented) -> Result<()> {
+    let solution = oriented.solution;
     let law = solution.family.law(solution.constants)?;
     problem.regions[0].material = Material { density: solution.density, law };
     problem.conditions[0].prescribed =
-        Prescribed::Field(Field::of(move |X| placed.displacement(X)));
+        Prescribed::Field(Field::of(move |X| oriented.displacement(X)));
     problem.loads.body_forces = vec![BodyForce {
-        acceleration: Field::of(move |X| placed.body_force(X)),
+        acceleration: Field::of(move |X| oriented.body_force(X)),
         amplitude: Amplitude::Smooth { duration: 1.0 },
     }];
     Ok(())
@@ -165,8 +171,8 @@ fn turned_cube(turn: &Matrix3) -> Result<Shape> {
     Ok(Shape::Surface(Arc::new(Surface::new(vertices, halves.collect())?)))
 }
 
-/// The seed's scheme with the largest cells, by steps of half a percent, that give
-/// no fewer points. Along the grid they fit the cube, which is kind to it.
+/// The plain scheme with the largest cells, by steps of half a percent, that give at least
+/// `points` points. Along the grid they fit the cube, which favours the scheme.
 fn make_plain(problem: &mut Problem, points: usize) -> Result<()> {
     let recipe = &mut problem.recipe;
     recipe.grid.inside = InsideRule::Centre;
@@ -182,11 +188,11 @@ fn make_plain(problem: &mut Problem, points: usize) -> Result<()> {
         }
         _ => {
             grid.cell = 1.02 / (points as f64).cbrt();
-            let laid = |grid: &_| {
+            let count = |grid: &_| {
                 quadrature(&problem.body, &problem.regions, grid, &problem.dimension)
                     .map(|quadrature| quadrature.positions.len())
             };
-            while laid(grid)? < points {
+            while count(grid)? < points {
                 grid.cell *= 0.995;
             }
         }

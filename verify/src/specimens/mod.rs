@@ -1,5 +1,6 @@
-//! Problems stated in code: simple bodies and manufactured solutions.
+//! Problems stated in code: simple bodies, manufactured solutions, other spacings.
 
 pub mod manufactured;
 pub mod simple;
+pub mod spacing;
 pub mod stable_step;

@@ -1,14 +1,12 @@
-//! Problems that several studies pose: simple bodies with a recipe each.
+//! Simple bodies, their material, recipe and conditions, as several studies use them.
 #![allow(non_snake_case)]
 
 use mtled::algebra::tensor::Vector3;
-use mtled::geometry::Shape;
-use mtled::geometry::selection::{Extent, Selector};
+use mtled::geometry::{Extent, Selector, Shape};
 use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use mtled::problem::{
-    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, Enforcement, EssentialCondition,
-    GradientStorage, Gradients, InsideRule, Loads, MassRule, Motion, Prescribed, Problem, Recipe,
-    Region, Relaxation, RelaxationMass, StepControl, VolumetricProjection, WeightFunction,
+    Amplitude, Cloud, Dimension, EssentialCondition, Gradients, Loads, MassRule, Motion,
+    Prescribed, Problem, Recipe, Region, Relaxation,
 };
 
 /// Plane strain in a slab of 1 m.
@@ -33,8 +31,8 @@ pub fn tissue(poisson_ratio: f64) -> anyhow::Result<Material> {
     Ok(Material { density: 1000.0, law: Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants)) })
 }
 
-/// Lattice or jittered nodes, linear basis, 1.26 cells per spacing with
-/// volume fractions, even mass split, collocation.
+/// The recommended recipe on a lattice or jittered nodes, but with masses split evenly and
+/// gradients consistent to round-off.
 pub fn recipe(spacing: f64, jitter: f64, seed: u64) -> Recipe {
     let cloud = match jitter {
         0.0 => Cloud::Regular { spacing },
@@ -42,30 +40,13 @@ pub fn recipe(spacing: f64, jitter: f64, seed: u64) -> Recipe {
     };
     Recipe {
         cloud,
-        dilation: 1.8,
-        basis: Basis::Linear,
-        weight_function: WeightFunction::QuarticSpline,
-        grid: grid(spacing / 1.26),
         mass: MassRule::EvenSplit,
-        enforcement: Enforcement::Collocation,
         gradients: Gradients::Consistent { tolerance: 1e-12 },
-        gradient_storage: GradientStorage::Double,
-        volumetric_projection: VolumetricProjection::Patches,
+        ..Recipe::with_spacing(spacing)
     }
 }
 
-/// Cells of one edge \[m\] with one point each and volume fractions.
-pub fn grid(cell: f64) -> BackgroundGrid {
-    BackgroundGrid {
-        cell,
-        boundary_cell: None,
-        refinements: Vec::new(),
-        gauss_points: 1,
-        inside: InsideRule::VolumeFraction,
-    }
-}
-
-/// A free body of one material that is not pushed; static unless changed.
+/// An unloaded, unconstrained body of one material; its motion is a dynamic relaxation.
 pub fn free_body(dimension: Dimension, body: Shape, material: Material, recipe: Recipe) -> Problem {
     let region = Region { name: "body".into(), part: Selector::All, material };
     Problem {
@@ -80,8 +61,8 @@ pub fn free_body(dimension: Dimension, body: Shape, material: Material, recipe: 
     }
 }
 
-/// Moves all nodes of the block's face `axis` = `at` \[m\] by `by` \[m\] along
-/// that axis and holds the other components.
+/// Prescribes all components on the block's face `axis` = `at` \[m\]: `by` \[m\] along that
+/// axis, 0 along the others.
 pub fn bonded_face(axis: usize, at: f64, by: f64, amplitude: Amplitude) -> EssentialCondition {
     let mut normal = Vector3::zeros();
     normal[axis] = 1.0;
@@ -97,34 +78,12 @@ pub fn bonded_face(axis: usize, at: f64, by: f64, amplitude: Amplitude) -> Essen
     }
 }
 
-/// Dynamic relaxation whose amplitudes run to 1 s.
+/// Dynamic relaxation under loads that grow over 1 s in `load_steps` steps.
 pub fn relaxation(load_steps: usize, tolerance: f64) -> Motion {
     Motion::Static(Relaxation {
-        load_end: 1.0,
         load_steps,
         tolerance,
         max_steps: 100_000,
-        step: StepControl::default(),
-        mass: RelaxationMass::default(),
+        ..Relaxation::default()
     })
-}
-
-/// Random numbers that depend on the seed alone: SplitMix64 (Steele, Lea and
-/// Flood 2014).
-#[derive(Debug, Clone)]
-pub struct Random(pub u64);
-
-impl Random {
-    /// Uniform in −1 ≤ r < 1.
-    pub fn symmetric(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    /// A vector of such numbers; z is 0 in a plane.
-    pub fn vector(&mut self, components: usize) -> Vector3 {
-        Vector3::from_fn(|k, _| if k < components { self.symmetric() } else { 0.0 })
-    }
 }

@@ -1,6 +1,6 @@
 //! The largest stable step of real runs, found by bisection.
 
-use crate::specimens::simple::Random;
+use mtled::algebra::random::Random;
 use mtled::model::Model;
 use mtled::motion::state::State;
 use mtled::motion::step::{Buffers, Scheme, step};
@@ -8,22 +8,23 @@ use mtled::motion::step::{Buffers, Scheme, step};
 /// Steps of a trial run. A step 0.1 % above the limit multiplies the highest
 /// mode by 1 + √(8·0.001) = 1.09 in each step, by 10¹⁹ in all.
 pub const TRIAL_STEPS: usize = 500;
-/// Growth of the kinetic energy that tells an unstable run: modes just below
-/// the limit swell by no more than the square of the number of steps.
+/// Growth of the kinetic energy above which a run is unstable: modes just below the limit
+/// grow by no more than the square of the number of steps.
 pub const GROWTH: f64 = 1e8;
 /// Width of the bracket at which bisection ends \[–\].
 pub const BISECTION: f64 = 1e-3;
-/// A random velocity that moves nodes by 1e-8 of the spacing in a step of the
-/// size of the per-point bound.
+
+/// A random velocity \[m/s\], a value per component of each node, that moves nodes by 1e-8 of the
+/// spacing in a step of the size of the per-point bound.
 pub fn trial_velocity(model: &Model, spacing: &[f64]) -> Vec<f64> {
     let finest = spacing.iter().copied().fold(f64::INFINITY, f64::min);
-    let size = 1e-8 * finest / model.bound;
+    let size = 1e-8 * finest / model.per_point_bound;
     let mut random = Random(11);
     (0..model.size()).map(|_| size * random.symmetric()).collect()
 }
 
-/// By bisection between a step \[s\] that is stable and one that is not; `guess`
-/// only says where to look first.
+/// Largest stable step \[s\] by bisection between a stable and an unstable one; `guess` is
+/// only where the search starts.
 pub fn largest_stable_step(model: &Model, u: &[f64], t: f64, velocity: &[f64], guess: f64) -> f64 {
     let stable = |time_step: f64| is_stable(model, u, t, velocity, time_step);
     let (mut low, mut high) = (0.98 * guess, 1.02 * guess);
@@ -40,7 +41,7 @@ pub fn largest_stable_step(model: &Model, u: &[f64], t: f64, velocity: &[f64], g
     0.5 * (low + high)
 }
 
-/// Marches with conditions held as at time `t` and no damping.
+/// Integrates without damping, with the conditions constant as at time `t`.
 fn is_stable(model: &Model, u: &[f64], t: f64, velocity: &[f64], time_step: f64) -> bool {
     let mut state = State::new(model);
     state.displacement.copy_from_slice(u);

@@ -1,23 +1,24 @@
-//! The seed's experiment: a slice of brain pushed at a craniotomy.
+//! The experiment of Horton 2007: a slice of brain pushed at a craniotomy.
 #![allow(non_snake_case)]
 
-use crate::run::{MassCentre, Recorder, Solved, centres_of_mass, march, prepare};
+use crate::run::{MassCentre, Recorder, Solved, centres_of_mass, integrate, prepare};
 use crate::scene::Case;
-use crate::studies::workbench::{Workbench, respaced, spacing_of};
+use crate::specimens::spacing::{respaced, spacing_of};
+use crate::studies::workbench::Workbench;
 use anyhow::{Context, Result};
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{LabelField, Shape};
 use mtled::model::contact::gap;
 use mtled::problem::{Dimension, Motion};
 use mtled_checks::study::{
-    Bound, Cell, Check, Column, Drawing, Figure, Kind, Layer, LayerStyle, Study, Table,
+    Bound, Cell, Check, Column, Drawing, Figure, Kind, Layer, LayerStyle, Study, Table, number,
 };
 
-/// What one run of the slice gives.
-struct Run {
+/// One solution of the slice.
+struct SliceRun {
     case: Case,
     solved: Solved,
-    /// Before, at the release and at the end, in this order.
+    /// At the start, at the release and at the end.
     moments: [Moment; 3],
     centres: Vec<MassCentre>,
     energy_drift: f64,
@@ -30,9 +31,9 @@ struct Moment {
     displacement: Vec<f64>,
 }
 
-/// Largest difference of the seed's two codes in a centre of mass \[m\]
-/// (seed, table 1: ventricles and tumour).
-const SEED_DIFFERENCE: f64 = 0.32e-3;
+/// Largest difference of two codes in a centre of mass \[m\] (Horton 2007, table 1: ventricles and
+/// tumour).
+const DIFFERENCE_OF_CODES: f64 = 0.32e-3;
 
 pub fn brain(bench: &Workbench, study: &mut Study) -> Result<()> {
     let case = bench.case("brain_slice")?;
@@ -51,7 +52,7 @@ pub fn brain(bench: &Workbench, study: &mut Study) -> Result<()> {
     }
     let discretisation = &run.solved.prepared.discretisation;
     study.notes.push(format!(
-        "{} nodes, {} quadrature points, {} steps of {:.1} µs; damping, push and skull gap are stated in \
+        "{} nodes, {} quadrature points, {} steps of {:.1} µs; damping, push and skull gap are those of \
          the case file. Coordinates are RAS in the frame of the template.",
         discretisation.cloud.positions.len(),
         discretisation.supports.len(),
@@ -69,23 +70,23 @@ fn with_half_steps(case: &Case) -> Case {
     case
 }
 
-fn solve(case: Case) -> Result<Run> {
+fn solve(case: Case) -> Result<SliceRun> {
     let prepared = prepare(&case.problem)?;
     let centres = centres_of_mass(&case.problem, &prepared.discretisation);
     // Two frames per second of the case: start, release and end among them.
     let mut recorder = Recorder::new(&case, &prepared, 2)?;
-    let solved = march(&case.problem, prepared, &mut recorder)?;
+    let solved = integrate(&case.problem, prepared, &mut recorder)?;
     let record = recorder.finish();
-    let at = |wanted: f64| -> Result<Moment> {
+    let at = |time: f64| -> Result<Moment> {
         let frame = record
             .frames
             .iter()
-            .min_by(|a, b| (a.time - wanted).abs().total_cmp(&(b.time - wanted).abs()))
-            .context("no frame was kept")?;
+            .min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()))
+            .context("the record has no frame")?;
         let sample = record
             .samples
             .iter()
-            .min_by(|a, b| (a.time - wanted).abs().total_cmp(&(b.time - wanted).abs()));
+            .min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()));
         Ok(Moment {
             time: frame.time,
             touching: sample.map_or(0, |sample| sample.touching),
@@ -98,10 +99,10 @@ fn solve(case: Case) -> Result<Run> {
     let largest =
         record.samples.iter().map(|s| s.energies.strain + s.energies.kinetic).fold(0.0, f64::max);
     let energy_drift = balances.iter().fold(0.0f64, |a, b| a.max(*b)) / largest;
-    Ok(Run { case, solved, moments, centres, energy_drift })
+    Ok(SliceRun { case, solved, moments, centres, energy_drift })
 }
 
-impl Run {
+impl SliceRun {
     fn moved(&self, region: usize, moment: usize) -> Vector3 {
         let d = self.solved.prepared.model.components;
         self.centres[region].displacement(&self.moments[moment].displacement, d)
@@ -115,7 +116,7 @@ impl Run {
         weighted.sum::<Vector3>() / total
     }
 
-    /// Deepest entry of a boundary node into the skull \[m\].
+    /// Largest penetration of a boundary node into the skull \[m\].
     fn penetration(&self) -> f64 {
         let model = &self.solved.prepared.model;
         let depth = |moment: &Moment, node: u32| {
@@ -135,34 +136,27 @@ impl Run {
         self.moments.iter().flat_map(|m| nodes().map(move |&n| depth(m, n))).fold(0.0, f64::max)
     }
 
-    /// Largest difference of a region's centre from that of another run \[m\].
-    fn difference(&self, other: &Run, moment: usize) -> f64 {
+    /// Largest difference of a region's centre of mass from that of another run \[m\].
+    fn difference(&self, other: &SliceRun, moment: usize) -> f64 {
         let regions = 0..self.centres.len();
         regions.map(|r| (self.moved(r, moment) - other.moved(r, moment)).norm()).fold(0.0, f64::max)
     }
 }
 
-fn check_motion(study: &mut Study, run: &Run) {
+fn check_motion(study: &mut Study, run: &SliceRun) {
     let mut check = |id: &str, quantity: &str, kind, value, bound, unit: &str, source: &str| {
-        study.checks.push(Check::new(
-            &format!("brain/{id}"),
-            quantity,
-            kind,
-            value,
-            bound,
-            unit,
-            source,
-        ));
+        let id = format!("brain/{id}");
+        study.checks.push(Check::new(&id, quantity, kind, value, bound, unit, source));
     };
     let shift = run.whole(1).norm();
     check(
         "shift",
-        "centre of mass of the whole slice: way at the release",
+        "centre of mass of the whole slice: displacement at the release",
         Kind::Reference,
         shift,
         Bound::Between(3.5e-3, 4.5e-3),
         "m",
-        "seed, table 1: 3.9 mm for the brain; the push is chosen to meet it",
+        "Horton 2007, table 1: 3.9 mm for the brain; the push is chosen to give that",
     );
     check(
         "touching",
@@ -171,13 +165,13 @@ fn check_motion(study: &mut Study, run: &Run) {
         run.moments[1].touching as f64,
         Bound::AtLeast(1.0),
         "1",
-        "seed, section 3.4: the far side meets the skull",
+        "Horton 2007, section 3.4: the far side touches the skull",
     );
-    // A node on a curved wall is put back along its normal there: what is left
-    // is of second order in the depth of one step.
+    // A node at a curved wall is moved back along the normal there: the remainder is of second
+    // order in the penetration of one step.
     check(
         "penetration",
-        "deepest entry of a node into the skull",
+        "largest penetration of a node into the skull",
         Kind::Exact,
         run.penetration(),
         Bound::AtMost(0.1e-3),
@@ -191,7 +185,7 @@ fn check_motion(study: &mut Study, run: &Run) {
         run.solved.summary.smallest_jacobian.jacobian,
         Bound::AtLeast(0.0),
         "1",
-        "matter does not turn inside out",
+        "no point inverts",
     );
     check(
         "energy",
@@ -200,11 +194,11 @@ fn check_motion(study: &mut Study, run: &Run) {
         run.energy_drift,
         Bound::AtMost(0.02),
         "1",
-        "central differences keep the balance up to O(Δt²)",
+        "central differences conserve the balance up to O(Δt²)",
     );
 }
 
-fn check_changes(study: &mut Study, run: &Run, finer: &Run, smaller_step: &Run) {
+fn check_changes(study: &mut Study, run: &SliceRun, finer: &SliceRun, smaller_step: &SliceRun) {
     for (id, what, other) in
         [("spacing", "a finer cloud", finer), ("step", "half the time step", smaller_step)]
     {
@@ -214,20 +208,20 @@ fn check_changes(study: &mut Study, run: &Run, finer: &Run, smaller_step: &Run) 
                 &format!("largest change of a centre of mass with {what}, at the {when}"),
                 Kind::Reference,
                 run.difference(other, moment),
-                Bound::AtMost(SEED_DIFFERENCE),
+                Bound::AtMost(DIFFERENCE_OF_CODES),
                 "m",
-                "seed, table 1: the two codes differ by up to 0.32 mm",
+                "Horton 2007, table 1: the two codes differ by up to 0.32 mm",
             ));
         }
     }
 }
 
 fn columns(names: &[(&str, &str)]) -> Vec<Column> {
-    names.iter().map(|(name, unit)| Column { name: (*name).into(), unit: (*unit).into() }).collect()
+    names.iter().map(|(name, unit)| number(name, unit)).collect()
 }
 
-/// The seed's table 1 for this slice.
-fn centres_table(run: &Run) -> Table {
+/// Table 1 of Horton 2007 for this slice.
+fn centres_table(run: &SliceRun) -> Table {
     let mut rows = Vec::new();
     for (index, region) in run.case.problem.regions.iter().enumerate() {
         for (axis, name) in ["x", "y"].into_iter().enumerate() {
@@ -246,7 +240,7 @@ fn centres_table(run: &Run) -> Table {
     }
     let (release, end) = (run.moments[1].time, run.moments[2].time);
     Table {
-        title: "Centres of mass (seed, table 1)".into(),
+        title: "Centres of mass (Horton 2007, table 1)".into(),
         columns: columns(&[
             ("part", ""),
             ("direction", ""),
@@ -260,8 +254,8 @@ fn centres_table(run: &Run) -> Table {
     }
 }
 
-fn changes_table(run: &Run, finer: &Run, smaller_step: &Run) -> Table {
-    let row = |name: &str, other: &Run| {
+fn changes_table(run: &SliceRun, finer: &SliceRun, smaller_step: &SliceRun) -> Table {
+    let row = |name: &str, other: &SliceRun| {
         vec![
             Cell::Text(name.into()),
             Cell::Number(other.solved.prepared.discretisation.cloud.positions.len() as f64),
@@ -271,7 +265,7 @@ fn changes_table(run: &Run, finer: &Run, smaller_step: &Run) -> Table {
         ]
     };
     Table {
-        title: "How much the centres of mass change".into(),
+        title: "Changes of the centres of mass".into(),
         columns: columns(&[
             ("run", ""),
             ("nodes", ""),
@@ -287,8 +281,8 @@ fn changes_table(run: &Run, finer: &Run, smaller_step: &Run) -> Table {
     }
 }
 
-/// Outlines before and at a moment, with the skull and the pushed nodes.
-fn drawing(run: &Run, moment: usize, when: &str) -> Result<Drawing> {
+/// Outlines at the start and at a moment, with the skull and the pushed nodes.
+fn drawing(run: &SliceRun, moment: usize, when: &str) -> Result<Drawing> {
     let Dimension::PlaneStrain { z, .. } = run.case.problem.dimension else {
         anyhow::bail!("the slice is not plane");
     };
@@ -341,29 +335,29 @@ fn drawing(run: &Run, moment: usize, when: &str) -> Result<Drawing> {
     })
 }
 
-/// Where the nodes of the craniotomy are at a moment \[m\].
-fn pushed_nodes(run: &Run, moment: usize) -> Vec<[f64; 2]> {
+/// Positions of the nodes of the craniotomy at a moment \[m\].
+fn pushed_nodes(run: &SliceRun, moment: usize) -> Vec<[f64; 2]> {
     let model = &run.solved.prepared.model;
     let u = &run.moments[moment].displacement;
     let sets = model.constraints.active(0.0);
     let rows = sets.first().map_or(&[][..], |set| set.rows.as_slice());
-    let place = |node: usize| {
+    let position = |node: usize| {
         let X = model.positions[node];
         [X.x + u[model.components * node], X.y + u[model.components * node + 1]]
     };
-    rows.iter().map(|row| place(row.node as usize)).collect()
+    rows.iter().map(|row| position(row.node as usize)).collect()
 }
 
-/// Outlines carried along by the displacement field of a moment.
+/// Outlines displaced by the field of a moment.
 fn displaced(
-    run: &Run,
+    run: &SliceRun,
     lines: &[Vec<[f64; 2]>],
     moment: usize,
     z: f64,
 ) -> Result<Vec<Vec<[f64; 2]>>> {
     let prepared = &run.solved.prepared;
     let u = &run.moments[moment].displacement;
-    let carry = |line: &Vec<[f64; 2]>| -> Result<Vec<[f64; 2]>> {
+    let displace = |line: &Vec<[f64; 2]>| -> Result<Vec<[f64; 2]>> {
         let positions: Vec<Vector3> = line.iter().map(|p| Vector3::new(p[0], p[1], z)).collect();
         let rows = prepared.discretisation.rows_at(&positions)?;
         let moved = positions.iter().enumerate().map(|(i, position)| {
@@ -372,10 +366,10 @@ fn displaced(
         });
         Ok(moved.collect())
     };
-    lines.iter().map(carry).collect()
+    lines.iter().map(displace).collect()
 }
 
-/// Outlines pushed outward by `offset` \[m\] along the gradient of the distance.
+/// Outlines moved outward by `offset` \[m\] along the gradient of the distance.
 fn grown(lines: &[Vec<[f64; 2]>], shape: &Shape, offset: f64, z: f64) -> Vec<Vec<[f64; 2]>> {
     let push = |p: &[f64; 2]| {
         let normal = shape.gradient(&Vector3::new(p[0], p[1], z));

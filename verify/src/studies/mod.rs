@@ -1,4 +1,4 @@
-//! The studies: each poses cases, runs the solver and returns plain data.
+//! The studies: each solves cases and returns its checks, tables and figures as plain data.
 
 mod approximation;
 mod brain;
@@ -9,48 +9,52 @@ mod manufactured;
 mod meta;
 mod motion;
 mod patch;
+mod regression;
+mod single_parts;
 pub(crate) mod workbench;
 
 use mtled_checks::study::Study;
 use std::time::Instant;
 use workbench::Workbench;
 
-/// A study by name.
+/// A study and how to run it.
 pub struct Definition {
+    /// First part of the ids of its checks.
     pub id: &'static str,
+    /// Heading of its page.
     pub title: &'static str,
     claim: &'static str,
     body: fn(&Workbench, &mut Study) -> anyhow::Result<()>,
 }
 
-/// Every study, the longest first so that they share the processors well.
+/// Every study, the longest first so that all processors stay busy.
 pub const STUDIES: &[Definition] = &[
     Definition {
         id: "energy",
         title: "Energy and repeatability",
-        claim: "Undamped motion keeps its energy over tens of thousands of steps up to O(Δt²), the \
+        claim: "Undamped motion conserves its energy over tens of thousands of steps up to O(Δt²), the \
                 balance of all works closes, and any number of threads gives the same bits.",
         body: motion::energy::energy,
     },
     Definition {
         id: "hard_cases",
         title: "Hard cases",
-        claim: "Large strains, poor clouds, thin parts, hard contrasts, long undamped runs and \
-                extreme units end with a sound body, every J above zero, or with an error that \
-                says why; none ends in silence.",
+        claim: "Large strains, poor clouds, thin parts, strong contrasts, long undamped runs and \
+                extreme units end with a valid solution, every J above zero, or with an error that \
+                gives the reason; none fails silently.",
         body: hard::hard,
     },
     Definition {
         id: "brain",
         title: "Brain slice with a craniotomy",
-        claim: "The seed's experiment runs from a label map to displaced centres of mass: the brain \
-                stays in the skull, no point turns inside out, and the answers hold on a finer cloud.",
+        claim: "The experiment of Horton 2007 runs from a label map to displaced centres of mass: the \
+                brain stays in the skull, no point inverts, and a finer cloud changes little.",
         body: brain::brain,
     },
     Definition {
         id: "comparison",
         title: "Comparison with finite elements",
-        claim: "At the recipes of the cases the solver is within the stated limits of references from \
+        claim: "With the recipes of the cases the solver is within the stated limits of references from \
                 two finite-element codes, each limit widened by the reference's own error bar.",
         body: comparison::comparison,
     },
@@ -63,7 +67,7 @@ pub const STUDIES: &[Definition] = &[
     Definition {
         id: "manufactured",
         title: "Manufactured solutions",
-        claim: "Fields of finite strain are found back from their body forces and boundary values; \
+        claim: "Fields of finite strain are recovered from their body forces and boundary values; \
                 errors of displacement, gradient and pressure fall with the spacing on jittered \
                 clouds, with orders and their scatter as printed.",
         body: manufactured::manufactured,
@@ -71,23 +75,23 @@ pub const STUDIES: &[Definition] = &[
     Definition {
         id: "convergence",
         title: "Convergence in node spacing and grid density",
-        claim: "Errors fall as nodes and cells get closer; orders are fitted where the truth is \
-                known well enough.",
+        claim: "Errors fall as nodes and cells get closer; orders are fitted where the \
+                reference solution is known well enough.",
         body: comparison::convergence::convergence,
     },
     Definition {
         id: "closed_forms",
         title: "Closed forms",
-        claim: "Stretched, sheared, turned, twisted, standing and swinging bars meet their closed \
-                forms within 1 %.",
+        claim: "Stretched, sheared, rotated, twisted, standing and swinging bars agree with their \
+                closed forms within 1 %.",
         body: closed_forms::closed_forms,
     },
     Definition {
         id: "statics",
         title: "Static solutions",
-        claim: "Dynamic relaxation keeps the tolerance that it is asked for, measured against \
-                Newton's method on the same discretisation, and needs fewer steps with masses like \
-                the stiffness than with lumped ones.",
+        claim: "Dynamic relaxation meets the requested tolerance, measured against Newton's method on \
+                the same discretisation, and needs fewer steps with masses proportional to the \
+                stiffness than with lumped ones.",
         body: motion::statics::statics,
     },
     Definition {
@@ -102,7 +106,7 @@ pub const STUDIES: &[Definition] = &[
         id: "patch",
         title: "Affine patch test",
         claim: "An affine field is in equilibrium on any body, with jittered nodes and a grid that \
-                fits nothing, to round-off; a rigid motion makes no force, and internal forces and \
+                fits no face, to round-off; a rigid motion makes no force, and internal forces and \
                 moments sum to zero.",
         body: patch::patch,
     },
@@ -115,32 +119,30 @@ pub const STUDIES: &[Definition] = &[
     },
     Definition {
         id: "parts",
-        title: "Parts by themselves",
-        claim: "Stress is the derivative of the energy, vanishes at rest and turns with the body; \
-                lumped masses keep the body's mass and, by row sum, its centre; reactions balance \
-                loads in a slab; and what is no number ends a run.",
-        body: meta::parts::parts,
+        title: "Single parts",
+        claim: "Stress is the derivative of the energy, vanishes at rest and rotates with the \
+                body; lumped masses sum to the body's mass and, by row sum, have its centre; reactions \
+                balance loads in a slab; and NaN ends a run.",
+        body: single_parts::parts,
     },
     Definition {
         id: "set_up",
         title: "Set-up",
         claim: "Making the gradients consistent takes the same few iterations at any number of nodes \
-                and on any shape, and all that comes before the first step costs as much as some \
-                hundred steps.",
+                and on any shape, and the whole set-up costs as much as some hundred steps.",
         body: meta::set_up::set_up,
     },
     Definition {
         id: "work",
         title: "Work",
-        claim: "Carried cases take no more evaluations of the internal force, points, neighbours and \
-                bytes than they did: counts that do not depend on the machine.",
+        claim: "Bundled cases take no more evaluations of the internal force, points, neighbours and \
+                bytes than before: counts that do not depend on the machine.",
         body: meta::work::work,
     },
     Definition {
         id: "faults",
         title: "Deliberate faults",
-        claim: "Every fault that is put into the solver on purpose makes a check of the quick suite \
-                fail.",
+        claim: "Every deliberate fault in the solver makes a check of the quick suite fail.",
         body: meta::faults::faults,
     },
     Definition {
@@ -153,7 +155,7 @@ pub const STUDIES: &[Definition] = &[
 ];
 
 impl Definition {
-    /// Runs the study; what fails is reported, not lost.
+    /// Runs the study; an error becomes its `failure`.
     pub fn run(&self, bench: &Workbench) -> Study {
         let start = Instant::now();
         let mut study = Study {
@@ -166,7 +168,7 @@ impl Definition {
         if let Err(error) = (self.body)(bench, &mut study) {
             study.failure = Some(format!("{error:#}"));
         }
-        // What these say is not about a body.
+        // The checks of these two are not about a solution.
         if !["faults", "references"].contains(&self.id) {
             meta::smallest::attach(&mut study);
         }

@@ -1,46 +1,53 @@
-//! What studies work with: the suite, the clouds of a run, and the bundled cases.
+//! What every study is given: the suite, the family of clouds, the bundled cases and the stored
+//! bounds of regression checks.
 
 use crate::reference::{ReferenceError, ReferenceFile, read_reference};
-use crate::run::{Record, Solved, solve_case};
 use crate::scene::{Case, one_error, read_case};
-use anyhow::{Result, bail};
+use crate::studies::regression::StoredBounds;
+use anyhow::Result;
 use mtled::problem::{Cloud, Problem};
-use rayon::prelude::*;
+use mtled_checks::study::{Bound, Check, Kind};
 use std::path::{Path, PathBuf};
 
 /// How thorough the studies are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Suite {
+    /// A few minutes.
     Quick,
+    /// More clouds, finer ones, longer runs.
     Full,
 }
 
-/// Seeds of one run do not meet those of the next.
-const SEEDS_APART: u64 = 1000;
-/// Jitter of the lattices of carried cases with another seed \[spacing\].
+/// Distance between the random seeds of two families of clouds.
+const SEEDS_PER_FAMILY: u64 = 1000;
+/// Jitter of the lattices of bundled cases in other families \[spacing\].
 const VARIATION: f64 = 0.02;
 
-/// What the studies work with.
+/// What every study is given.
 #[derive(Debug)]
 pub struct Workbench {
+    /// How thorough the run is.
     pub suite: Suite,
-    /// Which family of clouds: 0 is the one that all stated figures belong to.
-    seed: u64,
+    /// Family of clouds; 0 is the one that all stated figures belong to.
+    family: u64,
     cases: PathBuf,
+    bounds: StoredBounds,
 }
 
 impl Workbench {
-    /// Unpacks the carried cases into the output folder.
-    pub fn new(suite: Suite, seed: u64, out: &Path) -> Result<Workbench> {
-        Ok(Workbench { suite, seed, cases: crate::bundled::unpack(out)? })
+    /// Unpacks the bundled cases into the output folder and reads the stored bounds.
+    pub fn new(suite: Suite, family: u64, out: &Path) -> Result<Workbench> {
+        let (cases, bounds) =
+            (crate::bundled::unpack(out)?, StoredBounds::read(suite == Suite::Full)?);
+        Ok(Workbench { suite, family, cases, bounds })
     }
 
-    /// The seed of a random cloud in this run, for one that is stated.
-    pub fn seed(&self, stated: u64) -> u64 {
-        stated + SEEDS_APART * self.seed
+    /// Random seed of a cloud in this family, from its seed in family 0.
+    pub fn seed(&self, seed: u64) -> u64 {
+        seed + SEEDS_PER_FAMILY * self.family
     }
 
-    /// Gives a jittered or graded cloud the seed of this run.
+    /// Replaces the random seed of a jittered or graded cloud by that of this family.
     pub fn reseed(&self, problem: &mut Problem) {
         if let Cloud::Jittered { seed, .. } | Cloud::Graded { seed, .. } = &mut problem.recipe.cloud
         {
@@ -48,34 +55,29 @@ impl Workbench {
         }
     }
 
-    /// A carried case; with another seed on a cloud that differs a little.
+    /// A bundled case; in another family than 0 its lattice is jittered by [`VARIATION`] of the
+    /// spacing, or its graded cloud reseeded.
     pub fn case(&self, name: &str) -> Result<Case> {
-        let mut case = self.stated_case(name)?;
-        if self.seed > 0 {
-            self.vary(&mut case.problem);
+        let mut case = self.unvaried_case(name)?;
+        if self.family > 0 {
+            if let Cloud::Regular { spacing } = case.problem.recipe.cloud {
+                let (jitter, seed) = (VARIATION, 0);
+                case.problem.recipe.cloud = Cloud::Jittered { spacing, jitter, seed };
+            }
+            self.reseed(&mut case.problem);
         }
         Ok(case)
     }
 
-    /// A lattice jittered by [`VARIATION`] of its spacing, a graded cloud moved in
-    /// its tree of lattices.
-    fn vary(&self, problem: &mut Problem) {
-        if let Cloud::Regular { spacing } = problem.recipe.cloud {
-            let (jitter, seed) = (VARIATION, 0);
-            problem.recipe.cloud = Cloud::Jittered { spacing, jitter, seed };
-        }
-        self.reseed(problem);
-    }
-
-    /// A carried case on the very cloud of its file.
-    pub fn stated_case(&self, name: &str) -> Result<Case> {
+    /// A bundled case on the cloud of its file, in every family.
+    pub fn unvaried_case(&self, name: &str) -> Result<Case> {
         read_case(&self.cases.join(format!("{name}.toml"))).map_err(one_error)
     }
 
-    /// The carried reference of a case.
+    /// The bundled reference of a case.
     pub fn reference(&self, case: &Case) -> Result<ReferenceFile, ReferenceError> {
         let absent = || ReferenceError::Absent { case: case.name.clone() };
-        let text = crate::bundled::carried_reference(&case.name).ok_or_else(absent)?;
+        let text = crate::bundled::bundled_reference(&case.name).ok_or_else(absent)?;
         read_reference(case, text)
     }
 
@@ -86,48 +88,49 @@ impl Workbench {
             Suite::Full => full,
         }
     }
-}
 
-/// |computed − truth|/|truth| \[–\].
-pub fn relative_error(computed: f64, truth: f64) -> f64 {
-    (computed - truth).abs() / truth.abs()
-}
-
-/// Node spacing \[m\] of a recipe; for a graded cloud the largest.
-pub fn spacing_of(problem: &Problem) -> Result<f64> {
-    match problem.recipe.cloud {
-        Cloud::Regular { spacing }
-        | Cloud::Jittered { spacing, .. }
-        | Cloud::Graded { spacing, .. } => Ok(spacing),
-        Cloud::Given { .. } => bail!("nodes that are given have no spacing to change"),
-    }
-}
-
-/// The same case with every length of its recipe scaled to another spacing \[m\].
-pub fn respaced(case: &Case, spacing: f64) -> Result<Case> {
-    let factor = spacing / spacing_of(&case.problem)?;
-    let mut case = case.clone();
-    let recipe = &mut case.problem.recipe;
-    match &mut recipe.cloud {
-        Cloud::Regular { spacing } | Cloud::Jittered { spacing, .. } => *spacing *= factor,
-        Cloud::Graded { spacing, refinements, .. } => {
-            *spacing *= factor;
-            refinements.iter_mut().for_each(|refinement| refinement.size *= factor);
+    /// A check of our own figure against its stored bound; `remark` is what else is known of it.
+    /// See [`StoredBounds`] for a check that has none yet.
+    pub fn regression(&self, id: &str, label: &str, value: f64, unit: &str, remark: &str) -> Check {
+        let (bound, mut source) = self.bounds.bound(id);
+        if !remark.is_empty() {
+            source = format!("{source}; {remark}");
         }
-        Cloud::Given { .. } => {}
+        Check::new(id, label, Kind::Regression, value, bound, unit, &source)
     }
-    let grid = &mut recipe.grid;
-    grid.cell *= factor;
-    grid.boundary_cell = grid.boundary_cell.map(|cell| cell * factor);
-    grid.refinements.iter_mut().for_each(|refinement| refinement.size *= factor);
-    Ok(case)
+
+    /// A check of a target of theory or of our own, in units of 1; where a bound is stored for
+    /// it, the target is known to be missed, and the check is a regression.
+    pub fn target(&self, id: &str, label: &str, value: f64, target: Bound, source: &str) -> Check {
+        if !self.bounds.contains(id) {
+            return Check::new(id, label, Kind::Exact, value, target, "1", source);
+        }
+        let target = match target {
+            Bound::AtMost(limit) => format!("at most {limit}"),
+            Bound::AtLeast(limit) => format!("at least {limit}"),
+            Bound::Between(low, high) => format!("{low} to {high}"),
+        };
+        self.regression(
+            id,
+            label,
+            value,
+            "1",
+            &format!("the target, {target}, is missed; {source}"),
+        )
+    }
 }
 
-/// A case solved at several spacings \[m\], side by side.
-pub fn solve_ladder(case: &Case, spacings: &[f64]) -> Result<Vec<(f64, Solved, Record)>> {
-    let run = |&spacing: &f64| {
-        let (solved, record) = solve_case(&respaced(case, spacing)?)?;
-        Ok((spacing, solved, record))
-    };
-    spacings.par_iter().map(run).collect()
+/// A check of an exact claim: `value` \[–\] is at most `bound`.
+pub fn exact(id: &str, label: &str, value: f64, bound: f64, source: &str) -> Check {
+    Check::new(id, label, Kind::Exact, value, Bound::AtMost(bound), "1", source)
+}
+
+/// |computed − exact|/|exact| \[–\].
+pub fn relative_error(computed: f64, exact: f64) -> f64 {
+    (computed - exact).abs() / exact.abs()
+}
+
+/// Smallest and largest of positive values; NaN is skipped.
+pub fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, 0.0), |(low, high), x| (low.min(x), high.max(x)))
 }

@@ -1,9 +1,8 @@
-//! Affine fields on each connected body: what the operator does not see.
+//! Affine fields on each connected body: the kernel of the operator.
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::moments::homogeneous;
-use crate::discretisation::rows::Rows;
 use nalgebra::{Matrix4, Matrix4x3, Vector4};
 
 /// Affine functions on each body, orthonormal over its nodes.
@@ -49,7 +48,7 @@ impl Affine<'_> {
         Affine { bodies, values: positions.iter().zip(bodies).map(value).collect(), count }
     }
 
-    /// Takes the affine part out of a nodal field.
+    /// Removes the affine part of a nodal field.
     pub fn project(&self, field: &mut [Vector3]) {
         let mut parts = vec![Matrix4x3::<f64>::zeros(); self.count];
         for ((value, p), body) in field.iter().zip(&self.values).zip(self.bodies) {
@@ -59,36 +58,4 @@ impl Affine<'_> {
             *value -= parts[*body as usize].tr_mul(p);
         }
     }
-}
-
-/// The connected body of each node: nodes that share a support are joined.
-pub fn connected_bodies(rows: &Rows, nodes: usize) -> Vec<u32> {
-    let mut parent: Vec<u32> = (0..nodes as u32).collect();
-    fn root(parent: &mut [u32], mut node: u32) -> u32 {
-        while parent[node as usize] != node {
-            parent[node as usize] = parent[parent[node as usize] as usize];
-            node = parent[node as usize];
-        }
-        node
-    }
-    for q in 0..rows.len() {
-        let row = rows.row(q);
-        let first = root(&mut parent, rows.nodes[row.start]);
-        for entry in row {
-            let other = root(&mut parent, rows.nodes[entry]);
-            parent[first.max(other) as usize] = first.min(other);
-        }
-    }
-    let mut number = vec![u32::MAX; nodes];
-    let mut count = 0;
-    (0..nodes as u32)
-        .map(|node| {
-            let root = root(&mut parent, node) as usize;
-            if number[root] == u32::MAX {
-                number[root] = count;
-                count += 1;
-            }
-            number[root]
-        })
-        .collect()
 }

@@ -1,7 +1,7 @@
 //! Nested lattices of quadratic B-splines over the box around the nodes.
 #![allow(non_snake_case)]
 
-use crate::algebra::tensor::{Vector3, box_around};
+use crate::algebra::tensor::{Vector3, bounding_box};
 
 /// Functions along one axis of a lattice.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,14 +10,14 @@ pub(super) enum Axis {
     Flat,
     /// 1 and s − ½ over the whole extent, s from 0 to 1.
     Affine,
-    /// Quadratic B-splines on this many cells; function i lives on the cells
-    /// i − 2 to i.
+    /// Quadratic B-splines on this many cells; function i is supported on the
+    /// cells i − 2 to i.
     Splines(usize),
 }
 
 /// Products of functions along the axes of the box around the nodes. An axis
-/// that has become short against the cells is left with affine functions, so
-/// that the long waves of slender bodies are seen.
+/// that cannot be halved further gets affine functions, so that the lattice
+/// represents the long waves of slender bodies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lattice {
     origin: Vector3,
@@ -27,7 +27,7 @@ pub(super) struct Lattice {
 }
 
 impl Axis {
-    /// Cells of about `edge`, as many as can be halved down to 1 or 3.
+    /// Cells of about `edge` whose number can be halved down to 1 or 3.
     fn new(extent: f64, edge: f64) -> Axis {
         let n = (extent / edge).ceil().max(1.0) as usize;
         let power = n.next_power_of_two();
@@ -87,7 +87,7 @@ impl Axis {
 
 impl Lattice {
     pub fn new(nodes: &[Vector3], edge: f64, components: usize) -> Lattice {
-        let (min, max) = box_around(nodes);
+        let (min, max) = bounding_box(nodes);
         let extent = max - min;
         let axes =
             [0, 1, 2].map(|k| if k < components { Axis::new(extent[k], edge) } else { Axis::Flat });
@@ -103,7 +103,7 @@ impl Lattice {
         Lattice { axes, counts: axes.map(Axis::count), ..*self }
     }
 
-    /// Whether only affine functions are left, which the operator ignores.
+    /// Whether only affine functions are left, the kernel of the operator.
     pub fn is_affine(&self) -> bool {
         !self.axes.iter().any(|axis| matches!(axis, Axis::Splines(_)))
     }

@@ -1,5 +1,5 @@
 //! Consistent gradients: Grad φ changed as little as possible until the
-//! divergence theorem holds for every node (method §3).
+//! divergence theorem holds for every node (method book, section 9).
 //!
 //! Find the smallest change dg, min Σ_q w_q Σ_a |dg_qa|²/W_qa, such that
 //!
@@ -13,11 +13,12 @@
 #![allow(non_snake_case)]
 
 mod affine;
+mod connected_bodies;
 mod lattice;
 mod multilevel;
 mod operator;
 
-pub use affine::connected_bodies;
+pub use connected_bodies::connected_bodies;
 pub use operator::Layout;
 
 use crate::algebra::tensor::Vector3;
@@ -27,13 +28,14 @@ use affine::Affine;
 use multilevel::Multilevel;
 use operator::Operator;
 
-/// How the correction went.
+/// Result of the correction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Correction {
+    /// Of the conjugate gradients.
     pub iterations: usize,
     /// Residual of condition 2 over that of the plain gradients \[–\].
     pub residual: f64,
-    /// The largest residual that was asked for, or that round-off allows \[–\].
+    /// The requested residual, or the smallest that round-off allows \[–\].
     pub tolerance: f64,
     /// The plain gradients' residual over the size of the targets \[–\].
     pub defect: f64,
@@ -41,13 +43,13 @@ pub struct Correction {
     pub bodies: usize,
 }
 
-/// Inconsistencies below this share of the targets are round-off \[–\].
+/// Inconsistencies below this fraction of the targets are round-off \[–\].
 const ROUND_OFF: f64 = 1e-12;
 
 impl Correction {
     /// Itself, unless the gradients are worse than plain ones: the critical step of
     /// such a discretisation may be so small that no run ends.
-    pub fn better_than_none(self) -> Result<Correction, Error> {
+    pub fn checked(self) -> Result<Correction, Error> {
         let Correction { iterations, residual, .. } = self;
         match residual <= 1.0 || residual * self.defect <= ROUND_OFF {
             true => Ok(self),
@@ -56,7 +58,7 @@ impl Correction {
     }
 }
 
-/// More iterations than this are not spent.
+/// Largest number of iterations.
 const MOST_ITERATIONS: usize = 500;
 
 /// Changes the gradients of `rows` until the residual of condition 2 has
@@ -122,9 +124,9 @@ fn solve(
         let mut next = preconditioner.apply(&residual);
         affine.project(&mut next);
         let after = dot(&residual, &next);
-        let share = ratio(&after, &energy);
+        let factor = ratio(&after, &energy);
         for (d, z) in direction.iter_mut().zip(&next) {
-            *d = z + share.component_mul(d);
+            *d = z + factor.component_mul(d);
         }
         energy = after;
         iterations += 1;
@@ -151,10 +153,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn gradients_that_the_correction_made_worse_are_refused_with_their_residual() {
+    fn gradients_worse_than_plain_ones_are_refused() {
         let with = |residual: f64, defect: f64| {
-            Correction { iterations: 500, residual, tolerance: 1e-3, defect, bodies: 1 }
-                .better_than_none()
+            Correction { iterations: 500, residual, tolerance: 1e-3, defect, bodies: 1 }.checked()
         };
         assert!(with(1.0, 0.1).is_ok());
         assert!(with(3.0, 1e-14).is_ok(), "round-off");

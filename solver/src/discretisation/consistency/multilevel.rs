@@ -1,14 +1,15 @@
 //! An additive multilevel preconditioner (Bramble, Pasciak, Xu 1990) on
 //! nested lattices of quadratic B-splines.
 //!
-//! B r = D₀⁻¹ r + Σ_l P_l D_l⁻¹ P_lᵀ r: P_l takes coefficients on lattice l to
-//! nodes, D_l estimates the diagonal of P_lᵀ K P_l. The number of iterations
-//! does not grow with the number of nodes (method §3).
+//! B r = D₀⁻¹ r + Σ_l P_l D_l⁻¹ P_lᵀ r: P_l evaluates coefficients of lattice l at
+//! the nodes, D_l estimates the diagonal of P_lᵀ K P_l (method book, eqs. 9.8 and
+//! 9.9). The number of iterations does not grow with the number of nodes.
 #![allow(non_snake_case)]
 
-use super::lattice::{Lattice, Reach};
-use super::operator::{Layout, Operator};
+use crate::algebra::random::xorshift;
 use crate::algebra::tensor::Vector3;
+use crate::discretisation::consistency::lattice::{Lattice, Reach};
+use crate::discretisation::consistency::operator::{Layout, Operator};
 use nalgebra::Vector4;
 use rayon::prelude::*;
 
@@ -18,13 +19,12 @@ const FINEST: f64 = 1.5;
 const SAMPLES: usize = 1000;
 /// More functions than this make the finest lattice coarser.
 const MOST_FUNCTIONS: usize = 4_000_000;
-/// Shares of the nodes that are taken to the finest lattice one beside the other,
-/// and the fewest nodes of one.
-const SHARES: (usize, usize) = (16, 2048);
-/// Samples that are taken one after the other.
-const SAMPLES_TOGETHER: usize = 50;
+/// Chunks of nodes whose moments are computed in parallel, and the fewest nodes of one.
+const CHUNKS: (usize, usize) = (16, 2048);
+/// Samples of one parallel task.
+const SAMPLES_PER_TASK: usize = 50;
 
-/// The preconditioner, ready to be applied.
+/// The preconditioner B.
 pub(super) struct Multilevel {
     /// Functions of the finest lattice at each node.
     reaches: Vec<Reach>,
@@ -45,8 +45,8 @@ impl Multilevel {
         let smallest = layout.spacing.iter().copied().fold(f64::INFINITY, f64::min);
         let mut edge = FINEST * smallest;
         let mut lattice = Lattice::new(layout.nodes, edge, layout.components);
-        let room = MOST_FUNCTIONS.min(8 * layout.nodes.len() + 64);
-        while lattice.len() > room {
+        let most = MOST_FUNCTIONS.min(8 * layout.nodes.len() + 64);
+        while lattice.len() > most {
             edge *= 1.2;
             lattice = Lattice::new(layout.nodes, edge, layout.components);
         }
@@ -98,7 +98,7 @@ impl Multilevel {
     /// Moments of a nodal field with the functions of the finest lattice.
     fn to_finest(&self, r: &[Vector3]) -> Vec<Vector3> {
         let lattice = &self.levels[0].lattice;
-        let share = r.len().div_ceil(SHARES.0).max(SHARES.1);
+        let chunk = r.len().div_ceil(CHUNKS.0).max(CHUNKS.1);
         let moments = |(reaches, values): (&[Reach], &[Vector3])| {
             let mut moments = vec![Vector3::zeros(); lattice.len()];
             for (reach, value) in reaches.iter().zip(values) {
@@ -106,11 +106,11 @@ impl Multilevel {
             }
             moments
         };
-        let shares = self.reaches.par_chunks(share).zip(r.par_chunks(share));
-        let shares: Vec<Vec<Vector3>> = shares.map(moments).collect();
+        let chunks = self.reaches.par_chunks(chunk).zip(r.par_chunks(chunk));
+        let parts: Vec<Vec<Vector3>> = chunks.map(moments).collect();
         let mut sum = vec![Vector3::zeros(); lattice.len()];
-        for share in shares {
-            sum.iter_mut().zip(share).for_each(|(sum, moment)| *sum += moment);
+        for part in parts {
+            sum.iter_mut().zip(part).for_each(|(sum, moment)| *sum += moment);
         }
         sum
     }
@@ -120,23 +120,16 @@ fn inverse(diagonal: f64) -> f64 {
     if diagonal > 0.0 { 1.0 / diagonal } else { 0.0 }
 }
 
-/// Points at random, the same each time: evenly strided ones would follow
-/// the grid.
+/// Random points, the same each time: evenly strided ones would follow the grid.
 fn sample(points: usize) -> Vec<usize> {
-    let mut state = 0x2545_f491_4f6c_dd1d_u64;
-    let draw = |_| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state % points as u64) as usize
-    };
-    (0..SAMPLES.min(4 * points)).map(draw).collect()
+    let mut next = xorshift(0x2545_f491_4f6c_dd1d);
+    (0..SAMPLES.min(4 * points)).map(|_| (next() % points as u64) as usize).collect()
 }
 
 /// The lattice with D_l = ρ_l Σ_a d_a bending_a over the nodes that a function
 /// reaches, scaled so that the trace is that of P_lᵀ K P_l on the sample. The
-/// values of the functions do not enter: at the rim of the body, where only
-/// their tails reach, they bend as much as elsewhere.
+/// values of the functions do not enter: near the boundary, where only their tails
+/// reach, they bend as much as elsewhere.
 fn level(
     operator: &Operator,
     layout: &Layout,
@@ -150,8 +143,8 @@ fn level(
         lattice.at(X).for_each(|i, b| lumped[i] += if b != 0.0 { d * bend } else { 0.0 });
     }
     let measure = |q: &usize| energies(operator, layout, &lattice, bending, *q);
-    let together = |samples: &[usize]| samples.iter().map(measure).fold(NOTHING, add);
-    let parts: Vec<Energies> = sample.par_chunks(SAMPLES_TOGETHER).map(together).collect();
+    let sum = |samples: &[usize]| samples.iter().map(measure).fold(NOTHING, add);
+    let parts: Vec<Energies> = sample.par_chunks(SAMPLES_PER_TASK).map(sum).collect();
     let sums = parts.into_iter().fold(NOTHING, add);
     let factor = |i: usize| {
         let (energy, plain) = sums[lattice.kind(lattice.index(i))];
@@ -162,8 +155,8 @@ fn level(
     Level { lattice, inverse_diagonal }
 }
 
-/// What a point adds to the traces of P_lᵀ K P_l and of its estimate, by the kinds of
-/// functions.
+/// Contributions of a point to the traces of P_lᵀ K P_l and of its estimate, by the
+/// kinds of functions.
 type Energies = [(f64, f64); 8];
 
 const NOTHING: Energies = [(0.0, 0.0); 8];
@@ -175,8 +168,8 @@ fn add(mut sums: Energies, others: Energies) -> Energies {
     sums
 }
 
-/// Sums over the support of a point for one function f: Σ W f², Σ W f p and what
-/// lumping makes of the first.
+/// Sums over the support of a point for one function f: Σ W f², Σ W f p and the
+/// lumped form of the first.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     whole: f64,
@@ -201,20 +194,19 @@ fn energies(
     for (entry, reach) in operator.row(q).zip(&reaches) {
         let p = operator.local(q, entry);
         let metric = operator.metric(entry);
-        let share = operator.diagonal_share(q, entry) * bending[operator.node(entry)];
+        let term = operator.diagonal_term(q, entry) * bending[operator.node(entry)];
         reach.within(low, size).for_each(|place, b| {
             let sum = &mut sums[place];
             sum.whole += metric * b * b;
             sum.moments += p * (metric * b);
-            sum.plain += if b != 0.0 { share } else { 0.0 };
+            sum.plain += if b != 0.0 { term } else { 0.0 };
         });
     }
     let mut energies = NOTHING;
     for (place, sum) in sums.iter().enumerate().filter(|(_, sum)| sum.plain > 0.0) {
         let at = [place % size[0], place / size[0] % size[1], place / (size[0] * size[1])];
         let (energy, plain) = &mut energies[lattice.kind([0, 1, 2].map(|k| low[k] + at[k]))];
-        let seen = (sum.whole - operator.square(q, &sum.moments)).max(0.0);
-        *energy += layout.weights[q] * seen;
+        *energy += layout.weights[q] * (sum.whole - operator.square(q, &sum.moments)).max(0.0);
         *plain += sum.plain;
     }
     energies

@@ -8,26 +8,27 @@ use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Added to |φ| in the metric so that no entry is out of reach \[–\]; 0.001 makes
+/// Added to |φ| in the metric so that every entry can change \[–\]; 0.001 makes
 /// bonded cubes 0.3 % stiffer.
 const METRIC_FLOOR: f64 = 0.03;
-/// Points of a part, the last one aside.
+/// Points per part; the last part may have fewer.
 const PART: usize = 1024;
 
-/// A node without a place in a part.
+/// A node that is not in a part yet.
 const NEW: u32 = u32::MAX;
 
-/// Where and with what weight the gradients stand.
+/// Nodes and points of the gradients.
 #[derive(Debug)]
 pub struct Layout<'a> {
-    /// \[node\] \[m\]
+    /// Reference positions \[node\] \[m\].
     pub nodes: &'a [Vector3],
-    /// \[node\] \[m\]
+    /// Local spacing \[node\] \[m\].
     pub spacing: &'a [f64],
-    /// \[point\] \[m\]
+    /// Quadrature points \[point\] \[m\].
     pub points: &'a [Vector3],
-    /// \[point\] \[m³\]
+    /// Quadrature weights \[point\] \[m³\].
     pub weights: &'a [f64],
+    /// Displacement components per node: 2 or 3.
     pub components: usize,
 }
 
@@ -68,7 +69,7 @@ type Quad = [f64; 4];
 type Affine = [Quad; 4];
 
 impl<'a> Operator<'a> {
-    /// The operator of rows, and their gradients, which it does not look at.
+    /// The operator of rows, and their gradients, which it does not read.
     pub fn new(rows: &'a mut Rows, layout: &'a Layout<'a>) -> (Operator<'a>, &'a mut [Vector3]) {
         let Rows { starts, nodes, phi, grad_phi } = rows;
         let (starts, nodes, phi) = (&starts[..], &nodes[..], &phi[..]);
@@ -220,20 +221,20 @@ impl<'a> Operator<'a> {
 
     /// The diagonal of K.
     pub fn diagonal(&self) -> Vec<f64> {
-        let shares = |part: &Part| -> Vec<f64> {
-            let point = |q: usize| self.row(q).map(move |entry| self.diagonal_share(q, entry));
+        let terms = |part: &Part| -> Vec<f64> {
+            let point = |q: usize| self.row(q).map(move |entry| self.diagonal_term(q, entry));
             part.points.clone().flat_map(point).collect()
         };
-        let shares: Vec<Vec<f64>> = self.parts.par_iter().map(shares).collect();
+        let terms: Vec<Vec<f64>> = self.parts.par_iter().map(terms).collect();
         let mut diagonal = vec![0.0; self.layout.nodes.len()];
-        for (&node, share) in self.nodes.iter().zip(shares.iter().flatten()) {
-            diagonal[node as usize] += share;
+        for (&node, term) in self.nodes.iter().zip(terms.iter().flatten()) {
+            diagonal[node as usize] += term;
         }
         diagonal
     }
 
-    /// What entry (q, a) adds to the diagonal of K: w_q W (1 − W pᵀ G⁻¹ p).
-    pub fn diagonal_share(&self, q: usize, entry: usize) -> f64 {
+    /// Contribution of entry (q, a) to the diagonal of K: w_q W (1 − W pᵀ G⁻¹ p).
+    pub fn diagonal_term(&self, q: usize, entry: usize) -> f64 {
         let W = self.metric(entry);
         self.layout.weights[q] * (W * (1.0 - W * self.square(q, &self.local(q, entry))))
     }

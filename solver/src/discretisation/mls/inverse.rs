@@ -1,9 +1,10 @@
-//! Small symmetric matrices.
+//! Inverses and norms of small matrices.
 #![allow(non_snake_case)]
 
 use nalgebra::SMatrix;
 
-/// The inverse by Cholesky, of the lower triangle; `None` unless positive definite.
+/// The inverse of a symmetric matrix by Cholesky, from its lower triangle; `None` unless
+/// positive definite.
 #[inline]
 pub(crate) fn inverse<const M: usize>(A: &SMatrix<f64, M, M>) -> Option<SMatrix<f64, M, M>> {
     let L = cholesky(A)?;

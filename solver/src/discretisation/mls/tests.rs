@@ -1,4 +1,8 @@
+#![allow(non_snake_case)]
+
 use super::*;
+use crate::algebra::tensor::Vector3;
+use crate::problem::{Basis, Dimension, WeightFunction};
 use proptest::prelude::*;
 
 const H: f64 = 0.1;
@@ -116,7 +120,7 @@ proptest! {
 }
 
 #[test]
-fn a_plane_cloud_cannot_carry_a_basis_in_space() {
+fn a_plane_cloud_does_not_support_a_basis_in_space() {
     let jitter = [0.0];
     let flat = approximation(
         PLANE,

@@ -1,19 +1,19 @@
 //! Nodes given one by one.
 #![allow(non_snake_case)]
 
-use super::{NodeCloud, refuse_too_many};
-use crate::algebra::tensor::{Vector3, box_around};
+use crate::algebra::tensor::{Vector3, bounding_box};
+use crate::discretisation::nodes::cloud::{NodeCloud, refuse_too_many};
 use crate::geometry::{GeometryError, PointHash, Shape};
 use crate::problem::Dimension;
 use rayon::prelude::*;
 
 /// A node this close to the boundary is on it \[spacing\].
 const ON_BOUNDARY: f64 = 0.25;
-/// A node this far outside the body is a mistake \[spacing\].
+/// A node farther outside the body is refused \[spacing\].
 const OUTSIDE: f64 = 0.5;
 
-/// Takes the positions as they are. The spacing is the mean distance to the
-/// nearest four nodes in a plane, six in space.
+/// The positions as given. The spacing is the mean distance to the nearest
+/// four nodes in a plane, six in space (method book, eq. 5.2).
 pub(super) fn given(
     body: &Shape,
     nodes: &[Vector3],
@@ -55,9 +55,9 @@ pub(super) fn given(
 }
 
 fn hashed(nodes: &[Vector3], dimension: &Dimension) -> PointHash {
-    let (lower, upper) = box_around(nodes);
+    let (lower, upper) = bounding_box(nodes);
     let largest = (upper - lower).max().max(f64::MIN_POSITIVE);
-    // The spacing if the nodes filled their bounding box, and less.
+    // About the spacing, if the nodes filled their bounding box.
     let across = (nodes.len() as f64).powf(1.0 / dimension.components() as f64);
     let mut hash = PointHash::new(0.5 * largest / across, 4.0 * largest / across);
     nodes.iter().for_each(|X| hash.insert(*X));

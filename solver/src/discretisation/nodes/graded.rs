@@ -1,16 +1,16 @@
 //! Clouds whose spacing varies.
 #![allow(non_snake_case)]
 
-use super::random::SplitMix64;
-use super::regular::in_dimension;
-use super::{MOST_NODES, NodeCloud};
+use crate::algebra::random::Random;
 use crate::algebra::tensor::Vector3;
+use crate::discretisation::nodes::cloud::{NodeCloud, refuse_too_many};
 use crate::geometry::{
-    GeometryError, PointHash, ScalarGrid, Seed, Shape, Sizes, boundary_points_sized, positive,
+    GeometryError, KnownDistance, PointHash, ScalarGrid, Shape, TargetSpacing, boundary_points,
+    indices, positive,
 };
 use crate::problem::{Dimension, Refinement};
 
-/// Most samples of the grid on which a cloud finds distances to the parts.
+/// Most samples of the grid of distances to the refined parts.
 const MOST_SAMPLES: f64 = 4e6;
 /// Nodes are at least this far apart \[spacing\]; with candidates everywhere
 /// this gives about one node per spacing².
@@ -18,37 +18,38 @@ const APART: f64 = 0.85;
 /// Distance of candidates \[spacing\].
 const CANDIDATE: f64 = 1.0 / 3.0;
 
-/// What sizes are wanted.
+/// Sizes that a graded cloud is to have.
 #[derive(Debug, Clone, Copy)]
-pub struct WantedSizes<'a> {
+pub struct RequestedSizes<'a> {
     /// Far from all refinements \[m\].
     pub spacing: f64,
+    /// Parts with smaller spacings.
     pub refinements: &'a [Refinement],
-    /// Of the spacing per length \[–\].
+    /// Largest growth of the spacing per length \[–\].
     pub growth: f64,
 }
 
-/// Wanted spacing h(X) = min(`spacing`, size + growth · distance to the part)
-/// \[m\] over all refinements.
+/// Target spacing h(X) = min(`spacing`, size + growth · distance to the part)
+/// \[m\] over all refinements (method book, eq. 5.1).
 #[derive(Debug)]
 pub struct SizeField<'a> {
-    wanted: WantedSizes<'a>,
+    requested: RequestedSizes<'a>,
     corner: Vector3,
     /// Distance to each part \[m\].
     distances: Vec<ScalarGrid>,
 }
 
 impl<'a> SizeField<'a> {
-    /// Distances are found on a grid of half the smallest size, or coarser where that
-    /// takes more than `most_samples`. A part without a sample is an error.
+    /// Distances are computed on a grid of half the smallest size, or on a coarser one
+    /// where that needs more than `most_samples`. A part without a sample is an error.
     pub fn new(
         body: &Shape,
-        wanted: WantedSizes<'a>,
+        requested: RequestedSizes<'a>,
         dimension: &Dimension,
         most_samples: f64,
     ) -> Result<Self, GeometryError> {
         let (lower, upper) = body.finite_bounds(dimension)?;
-        let smallest = wanted.smallest();
+        let smallest = requested.smallest();
         let length = (upper - lower).rows(0, dimension.components()).clone_owned();
         let most = (length.product() / most_samples).powf(1.0 / dimension.components() as f64);
         let step = (0.5 * smallest).max(most);
@@ -56,15 +57,15 @@ impl<'a> SizeField<'a> {
             .map(|k| if k < length.len() { (length[k] / step).ceil() as usize + 1 } else { 1 });
         let blank = ScalarGrid { size, step: Vector3::repeat(step), values: Vec::new() };
         let mut distances = Vec::new();
-        for (n, refinement) in wanted.refinements.iter().enumerate() {
+        for (n, refinement) in requested.refinements.iter().enumerate() {
             let mut inside = false;
-            let mut seeds = Vec::new();
+            let mut known = Vec::new();
             for at in 0..size.iter().product() {
                 let foot = blank.local(at);
                 let X = lower + foot;
                 if refinement.part.contains(&X) {
                     inside |= body.signed_distance(&X) < step;
-                    seeds.push(Seed { at, distance: 0.0, foot });
+                    known.push(KnownDistance { at, distance: 0.0, foot });
                 }
             }
             if !inside {
@@ -73,14 +74,14 @@ impl<'a> SizeField<'a> {
                     size: refinement.size,
                 });
             }
-            distances.push(blank.distance_to_seeds(seeds));
+            distances.push(blank.propagate(known));
         }
-        Ok(SizeField { wanted, corner: lower, distances })
+        Ok(SizeField { requested, corner: lower, distances })
     }
 
     /// h(X) \[m\].
     pub fn at(&self, X: &Vector3) -> f64 {
-        let WantedSizes { spacing, refinements, growth } = self.wanted;
+        let RequestedSizes { spacing, refinements, growth } = self.requested;
         let mut size = spacing;
         for (refinement, distance) in refinements.iter().zip(&self.distances) {
             let away = if refinement.part.contains(X) {
@@ -94,15 +95,15 @@ impl<'a> SizeField<'a> {
     }
 }
 
-/// Boundary points first, then candidates of a tree of lattices, each taken
+/// Boundary points first, then candidates of a tree of lattices, each chosen
 /// if no node is nearer than 0.85 of its spacing.
 pub(super) fn graded(
     body: &Shape,
-    wanted: WantedSizes,
+    requested: RequestedSizes,
     seed: u64,
     dimension: &Dimension,
 ) -> Result<NodeCloud, GeometryError> {
-    let WantedSizes { spacing, refinements, growth } = wanted;
+    let RequestedSizes { spacing, refinements, growth } = requested;
     positive("the nodal spacing", spacing)?;
     for refinement in refinements {
         positive("the size of a refinement", refinement.size)?;
@@ -113,11 +114,11 @@ pub(super) fn graded(
             value: growth,
         });
     }
-    let field = SizeField::new(body, wanted, dimension, MOST_SAMPLES)?;
+    let field = SizeField::new(body, requested, dimension, MOST_SAMPLES)?;
     let size_at = |X: &Vector3| field.at(X);
-    let smallest = wanted.smallest();
-    let sizes = Sizes { at: &size_at, smallest, largest: spacing };
-    let boundary = boundary_points_sized(body, &sizes, dimension)?;
+    let smallest = requested.smallest();
+    let target = TargetSpacing { at: &size_at, smallest, largest: spacing };
+    let boundary = boundary_points(body, &target, dimension)?;
     let mut hash = PointHash::new(APART * smallest, APART * spacing);
     boundary.points.iter().for_each(|X| hash.insert(*X));
     let count = boundary.points.len();
@@ -126,7 +127,7 @@ pub(super) fn graded(
     if seed > 0 {
         // The lattices are centred in this box: moved by up to half a spacing, and
         // as much larger, it still covers the body.
-        let by = 0.5 * spacing * in_dimension(SplitMix64(seed).vector(), dimension);
+        let by = 0.5 * spacing * dimension.in_plane(Random(seed).vector(3));
         (lower, upper) = (lower + by - by.abs(), upper + by + by.abs());
     }
     candidates(body, &field, lower, upper, dimension, &mut |X, size| {
@@ -134,21 +135,15 @@ pub(super) fn graded(
             hash.insert(X);
             positions.push(X);
         }
-        if (positions.len() as f64) < MOST_NODES {
-            return Ok(());
-        }
-        let count = positions.len() as f64;
-        Err(GeometryError::TooMany { what: "nodes", count, limit: MOST_NODES })
+        refuse_too_many(positions.len() as f64)
     })?;
-    let spacing = positions.iter().map(|X| field.at(X)).collect();
-    let on_boundary = (0..positions.len()).map(|n| n < count).collect();
-    Ok(NodeCloud { positions, spacing, on_boundary })
+    Ok(NodeCloud::boundary_first(positions, count, size_at))
 }
 
 type Visit<'a> = &'a mut dyn FnMut(Vector3, f64) -> Result<(), GeometryError>;
 
 /// Visits the centres of cubes that are halved until they are as small as the
-/// candidates should be apart, if they are clear of the boundary.
+/// candidates should be apart, unless they are too near the boundary.
 fn candidates(
     body: &Shape,
     field: &SizeField,
@@ -158,23 +153,18 @@ fn candidates(
     visit: Visit,
 ) -> Result<(), GeometryError> {
     let axes = dimension.components();
-    let edge = field.wanted.spacing;
+    let edge = field.requested.spacing;
     let count = [0, 1, 2]
         .map(|k| if k < axes { ((upper[k] - lower[k]) / edge).ceil().max(1.0) } else { 1.0 });
-    super::refuse_too_many(count.iter().product())?;
+    refuse_too_many(count.iter().product())?;
     let count = count.map(|n| n as usize);
     let middle = 0.5 * (lower + upper);
-    for k in 0..count[2] {
-        for j in 0..count[1] {
-            for i in 0..count[0] {
-                let at = [i, j, k];
-                let centre = Vector3::from_fn(|axis, _| {
-                    let steps = at[axis] as f64 + 0.5 - 0.5 * count[axis] as f64;
-                    middle[axis] + if axis < axes { steps * edge } else { 0.0 }
-                });
-                halve(body, field, centre, edge, axes, visit)?;
-            }
-        }
+    for at in indices(count) {
+        let centre = Vector3::from_fn(|axis, _| {
+            let steps = at[axis] as f64 + 0.5 - 0.5 * count[axis] as f64;
+            middle[axis] + if axis < axes { steps * edge } else { 0.0 }
+        });
+        halve(body, field, centre, edge, axes, visit)?;
     }
     Ok(())
 }
@@ -193,9 +183,9 @@ fn halve(
     }
     let size = field.at(&centre);
     // The spacing inside a large cube may be smaller than at its centre.
-    let least = (size - 0.5 * field.wanted.growth * edge).max(0.25 * size);
-    if edge > CANDIDATE * least.max(1e-3 * field.wanted.spacing)
-        && edge > CANDIDATE * field.wanted.smallest()
+    let least = (size - 0.5 * field.requested.growth * edge).max(0.25 * size);
+    if edge > CANDIDATE * least.max(1e-3 * field.requested.spacing)
+        && edge > CANDIDATE * field.requested.smallest()
     {
         for child in 0..1 << axes {
             let offset = Vector3::from_fn(|axis, _| match axis < axes {
@@ -210,7 +200,7 @@ fn halve(
     if distance < -0.5 * size { visit(centre, size) } else { Ok(()) }
 }
 
-impl WantedSizes<'_> {
+impl RequestedSizes<'_> {
     fn smallest(&self) -> f64 {
         self.refinements.iter().map(|r| r.size).fold(self.spacing, f64::min)
     }

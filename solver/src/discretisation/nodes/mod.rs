@@ -1,30 +1,15 @@
-//! Node clouds: where the nodes are and how far apart.
-#![allow(non_snake_case)]
+//! Node clouds: positions and spacings (method book, section 5).
 
+mod cloud;
 mod given;
 mod graded;
-mod random;
 mod regular;
 
-pub use graded::{SizeField, WantedSizes};
+pub use cloud::NodeCloud;
+pub use graded::{RequestedSizes, SizeField};
 
-use crate::algebra::tensor::Vector3;
 use crate::geometry::{GeometryError, Shape, positive};
 use crate::problem::{Cloud, Dimension};
-
-/// Nodes in the reference configuration.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NodeCloud {
-    /// \[node\], \[m\]
-    pub positions: Vec<Vector3>,
-    /// Local nodal spacing \[node\], \[m\].
-    pub spacing: Vec<f64>,
-    /// Whether a node lies on the boundary of the body \[node\].
-    pub on_boundary: Vec<bool>,
-}
-
-/// More nodes than this are refused.
-const MOST_NODES: f64 = 2e7;
 
 /// Fills the body with nodes; in a plane, its cross-section. The same input
 /// gives the same cloud, bit for bit.
@@ -35,41 +20,28 @@ pub fn node_cloud(
 ) -> Result<NodeCloud, GeometryError> {
     body.validate_body()?;
     let section = body.section(dimension)?;
+    let lattice = |spacing: f64, jitter: Option<(f64, u64)>| {
+        positive("the nodal spacing", spacing)?;
+        if let Some((jitter, _)) = jitter
+            && !(0.0..0.5).contains(&jitter)
+        {
+            return Err(GeometryError::Jitter { jitter });
+        }
+        match body {
+            Shape::Box { min, max } => regular::in_box(min, max, spacing, jitter, dimension),
+            _ => regular::in_solid(&section, spacing, jitter, dimension),
+        }
+    };
     let nodes = match cloud {
-        Cloud::Regular { spacing } => {
-            positive("the nodal spacing", *spacing)?;
-            match body {
-                Shape::Box { min, max } => regular::in_box(min, max, *spacing, None, dimension)?,
-                _ => regular::in_solid(&section, *spacing, None, dimension)?,
-            }
-        }
-        Cloud::Jittered { spacing, jitter, seed } => {
-            positive("the nodal spacing", *spacing)?;
-            if !(0.0..0.5).contains(jitter) {
-                return Err(GeometryError::Jitter { jitter: *jitter });
-            }
-            let random = Some((*jitter, *seed));
-            match body {
-                Shape::Box { min, max } => regular::in_box(min, max, *spacing, random, dimension)?,
-                _ => regular::in_solid(&section, *spacing, random, dimension)?,
-            }
-        }
+        Cloud::Regular { spacing } => lattice(*spacing, None)?,
+        Cloud::Jittered { spacing, jitter, seed } => lattice(*spacing, Some((*jitter, *seed)))?,
         Cloud::Graded { spacing, refinements, growth, seed } => {
-            let wanted = WantedSizes { spacing: *spacing, refinements, growth: *growth };
-            graded::graded(&section, wanted, *seed, dimension)?
+            let requested = RequestedSizes { spacing: *spacing, refinements, growth: *growth };
+            graded::graded(&section, requested, *seed, dimension)?
         }
         Cloud::Given { nodes } => given::given(&section, nodes, dimension)?,
     };
     if nodes.positions.is_empty() { Err(GeometryError::NoNodes) } else { Ok(nodes) }
-}
-
-/// Refuses a cloud before it is made.
-fn refuse_too_many(count: f64) -> Result<(), GeometryError> {
-    if count <= MOST_NODES {
-        Ok(())
-    } else {
-        Err(GeometryError::TooMany { what: "nodes", count, limit: MOST_NODES })
-    }
 }
 
 #[cfg(test)]

@@ -1,17 +1,18 @@
 //! Lattices, straight and jittered.
 #![allow(non_snake_case)]
 
-use super::random::SplitMix64;
-use super::{NodeCloud, refuse_too_many};
+use crate::algebra::random::Random;
 use crate::algebra::tensor::Vector3;
+use crate::discretisation::nodes::cloud::{NodeCloud, refuse_too_many};
 use crate::geometry::{
-    BoundaryPoints, GeometryError, Shape, Sizes, boundary_points_sized, lattice_cells, project,
+    BoundaryPoints, GeometryError, Shape, TargetSpacing, boundary_points, indices, lattice_cells,
+    project,
 };
 use crate::problem::Dimension;
 
-/// Lattice nodes this far inside stay clear of the boundary nodes \[spacing\].
+/// Lattice nodes keep this distance from the boundary \[spacing\].
 const CLEARANCE: f64 = 0.5;
-/// A jittered node may come this close to the boundary \[spacing\].
+/// Smallest distance of jittered nodes from the boundary \[spacing\].
 const JITTER_CLEARANCE: f64 = 0.25;
 
 /// Cells per direction and their edges \[m\]; none along z in a plane.
@@ -44,24 +45,17 @@ pub(super) fn in_box(
         (lower.z, upper.z) = (*z, *z);
     }
     let (cells, step) = lattice(&lower, &upper, spacing, dimension)?;
-    let mut random = jitter.map(|(size, seed)| (size, SplitMix64(seed)));
+    let mut random = jitter.map(|(size, seed)| (size, Random(seed)));
     let (mut positions, mut on_boundary) = (Vec::new(), Vec::new());
-    for k in 0..=cells[2] {
-        for j in 0..=cells[1] {
-            for i in 0..=cells[0] {
-                let at = [i, j, k];
-                let face = |axis: usize| at[axis] == 0 || at[axis] == cells[axis];
-                let move_by = random.as_mut().map(|(size, random)| *size * random.vector());
-                positions.push(Vector3::from_fn(|axis, _| match (at[axis], move_by) {
-                    (0, _) => lower[axis],
-                    (n, _) if n == cells[axis] => upper[axis],
-                    (n, by) => {
-                        lower[axis] + (n as f64 + by.map_or(0.0, |by| by[axis])) * step[axis]
-                    }
-                }));
-                on_boundary.push((0..dimension.components()).any(face));
-            }
-        }
+    for at in indices(cells.map(|n| n + 1)) {
+        let face = |axis: usize| at[axis] == 0 || at[axis] == cells[axis];
+        let shift = random.as_mut().map(|(size, random)| *size * random.vector(3));
+        positions.push(Vector3::from_fn(|axis, _| match (at[axis], shift) {
+            (0, _) => lower[axis],
+            (n, _) if n == cells[axis] => upper[axis],
+            (n, by) => lower[axis] + (n as f64 + by.map_or(0.0, |by| by[axis])) * step[axis],
+        }));
+        on_boundary.push((0..dimension.components()).any(face));
     }
     let spacing = vec![step.max(); positions.len()];
     Ok(NodeCloud { positions, spacing, on_boundary })
@@ -76,24 +70,18 @@ pub(super) fn in_solid(
 ) -> Result<NodeCloud, GeometryError> {
     let (lower, upper) = body.finite_bounds(dimension)?;
     let (cells, step) = lattice(&lower, &upper, spacing, dimension)?;
-    let sizes = Sizes { at: &|_| spacing, smallest: spacing, largest: spacing };
-    let mut boundary = boundary_points_sized(body, &sizes, dimension)?;
-    let mut inner = Vec::new();
-    for k in 0..=cells[2] {
-        for j in 0..=cells[1] {
-            for i in 0..=cells[0] {
-                let X = lower + Vector3::new(i as f64, j as f64, k as f64).component_mul(&step);
-                if body.signed_distance(&X) < -CLEARANCE * spacing {
-                    inner.push(X);
-                }
-            }
-        }
-    }
+    let target = TargetSpacing { at: &|_| spacing, smallest: spacing, largest: spacing };
+    let mut boundary = boundary_points(body, &target, dimension)?;
+    let at = |ijk: [usize; 3]| lower + Vector3::from(ijk.map(|n| n as f64)).component_mul(&step);
+    let mut inner: Vec<Vector3> = indices(cells.map(|n| n + 1))
+        .map(at)
+        .filter(|X| body.signed_distance(X) < -CLEARANCE * spacing)
+        .collect();
     if let Some((size, seed)) = jitter {
-        let mut random = SplitMix64(seed);
+        let mut random = Random(seed);
         slide(body, &mut boundary, size * spacing, &mut random, dimension);
         for X in &mut inner {
-            let moved = *X + size * spacing * in_dimension(random.vector(), dimension);
+            let moved = *X + size * spacing * dimension.in_plane(random.vector(3));
             if body.signed_distance(&moved) < -JITTER_CLEARANCE * spacing {
                 *X = moved;
             }
@@ -102,16 +90,7 @@ pub(super) fn in_solid(
     let count = boundary.points.len();
     let mut positions = boundary.points;
     positions.append(&mut inner);
-    let on_boundary = (0..positions.len()).map(|n| n < count).collect();
-    let spacing = vec![spacing; positions.len()];
-    Ok(NodeCloud { positions, spacing, on_boundary })
-}
-
-pub(super) fn in_dimension(mut v: Vector3, dimension: &Dimension) -> Vector3 {
-    if let Dimension::PlaneStrain { .. } = dimension {
-        v.z = 0.0;
-    }
-    v
+    Ok(NodeCloud::boundary_first(positions, count, |_| spacing))
 }
 
 /// Moves boundary nodes along the boundary by up to `reach` \[m\] per
@@ -120,14 +99,14 @@ fn slide(
     body: &Shape,
     boundary: &mut BoundaryPoints,
     reach: f64,
-    random: &mut SplitMix64,
+    random: &mut Random,
     dimension: &Dimension,
 ) {
     let corners: Vec<Vector3> = boundary.points[..boundary.fixed].to_vec();
     for X in &mut boundary.points[boundary.fixed..] {
         let normal = body.gradient(X);
-        let wish = reach * in_dimension(random.vector(), dimension);
-        let moved = project(body, &(*X + wish - wish.dot(&normal) * normal));
+        let shift = reach * dimension.in_plane(random.vector(3));
+        let moved = project(body, &(*X + shift - shift.dot(&normal) * normal));
         let turned = body.gradient(&moved).dot(&normal) < 0.8;
         let clear = |corner: &Vector3| (corner - moved).norm() > reach.min((corner - *X).norm());
         if !turned && body.signed_distance(&moved).abs() < 1e-6 * reach && corners.iter().all(clear)

@@ -1,5 +1,8 @@
+#![allow(non_snake_case)]
+
 use super::*;
-use crate::geometry::selection::Selector;
+use crate::algebra::tensor::Vector3;
+use crate::geometry::Selector;
 use crate::problem::Refinement;
 
 const PLANE: Dimension = Dimension::PlaneStrain { thickness: 0.5, z: 0.05 };
@@ -133,7 +136,7 @@ fn jitter_moves_nodes_as_the_seed_says_and_keeps_corners_and_boundary() {
 }
 
 #[test]
-fn a_graded_cloud_follows_the_wanted_size() {
+fn a_graded_cloud_follows_the_target_size() {
     let part = Selector::Inside {
         shape: Shape::Sphere { centre: Vector3::new(0.0, 0.0, 0.05), radius: 0.2 },
         tolerance: 0.0,
@@ -144,8 +147,8 @@ fn a_graded_cloud_follows_the_wanted_size() {
         let cloud = node_cloud(&l_shape(), &graded, &dimension).unwrap();
         for (X, spacing) in cloud.positions.iter().zip(&cloud.spacing) {
             let away = ((X - Vector3::new(0.0, 0.0, 0.05)).norm() - 0.2).max(0.0);
-            let wanted = (0.03 + 0.3 * away).min(0.1);
-            assert!((spacing - wanted).abs() < 0.012, "{spacing} instead of {wanted} at {X:?}");
+            let target = (0.03 + 0.3 * away).min(0.1);
+            assert!((spacing - target).abs() < 0.012, "{spacing} instead of {target} at {X:?}");
         }
         let near = nearest(&cloud);
         let mean = near.iter().sum::<f64>() / near.len() as f64;
@@ -156,7 +159,7 @@ fn a_graded_cloud_follows_the_wanted_size() {
 }
 
 #[test]
-fn given_nodes_are_taken_as_they_are() {
+fn given_nodes_keep_their_positions() {
     let lattice =
         node_cloud(&brick(), &Cloud::Regular { spacing: 0.125 }, &Dimension::Three).unwrap();
     let given =
@@ -185,7 +188,7 @@ fn given_nodes_are_taken_as_they_are() {
 }
 
 #[test]
-fn clouds_that_are_none_are_refused() {
+fn invalid_clouds_are_refused() {
     let refused = |cloud: Cloud| node_cloud(&ball(), &cloud, &Dimension::Three).unwrap_err();
     for spacing in [0.0, -1.0, f64::NAN] {
         let error = refused(Cloud::Regular { spacing });

@@ -1,10 +1,11 @@
-//! What a half-space leaves of the unit cube or square.
+//! The part of the unit cube or square in a half-space.
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
 
 /// Volume of {x in [−½, ½]³ with level + slope·x ≤ 0} and its centroid, exact but
-/// for round-off; the centre where the volume is 0. A square has no slope along z.
+/// for round-off; the centre where the volume is 0. A square has no slope along z
+/// (method book, eq. 7.3).
 pub(super) fn cut(level: f64, slope: &Vector3) -> (f64, Vector3) {
     let mut axes = [0, 1, 2];
     axes.sort_by(|&a, &b| slope[b].abs().total_cmp(&slope[a].abs()));
@@ -30,7 +31,7 @@ type Moments = [f64; 4];
 
 /// Of {n·x ≤ alpha}, over layers of constant z.
 fn cube(n: [f64; 3], alpha: f64) -> Moments {
-    let kink = |shares: f64| place(alpha - shares, n[2]);
+    let kink = |offset: f64| place(alpha - offset, n[2]);
     let kinks = [0.0, n[0], n[1], n[0] + n[1]].map(kink);
     integral(kinks, |z| {
         let [area, x, y, _] = square(n, alpha - n[2] * z);
@@ -75,7 +76,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Share and centroid of n³ sample points.
+    /// Fraction and centroid of n³ sample points.
     fn counted(level: f64, slope: &Vector3) -> (f64, Vector3) {
         let n = 60;
         let at = |i: usize| (i as f64 + 0.5) / n as f64 - 0.5;
@@ -93,9 +94,9 @@ mod tests {
         ) {
             let slope = Vector3::from(slope);
             let (volume, centroid) = cut(level, &slope);
-            let (share, middle) = counted(level, &slope);
-            prop_assert!((volume - share).abs() < 0.02, "{volume} against {share}");
-            prop_assert!((centroid * volume - middle * share).norm() < 0.02);
+            let (fraction, middle) = counted(level, &slope);
+            prop_assert!((volume - fraction).abs() < 0.02, "{volume} against {fraction}");
+            prop_assert!((centroid * volume - middle * fraction).norm() < 0.02);
         }
 
         #[test]
@@ -114,7 +115,7 @@ mod tests {
     fn a_corner_cut_off_is_a_tetrahedron() {
         let (volume, centroid) = cut(1.0, &Vector3::new(1.0, -1.0, 1.0));
         assert!((volume - 1.0 / 48.0).abs() < 1e-15, "{volume}");
-        let wanted = Vector3::new(-0.375, 0.375, -0.375);
-        assert!((centroid - wanted).norm() < 1e-14, "{centroid}");
+        let expected = Vector3::new(-0.375, 0.375, -0.375);
+        assert!((centroid - expected).norm() < 1e-14, "{centroid}");
     }
 }

@@ -1,22 +1,16 @@
+#![allow(non_snake_case)]
+
+use super::gauss::gauss_legendre;
 use super::*;
-use crate::geometry::selection::Selector;
+use crate::algebra::tensor::Vector3;
+use crate::geometry::{Selector, Shape};
 use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
-use crate::problem::Refinement;
+use crate::problem::{BackgroundGrid, Dimension, InsideRule, Refinement, Region};
 
 fn region(name: &str, part: Selector) -> Region {
     let constants = ElasticConstants::from_young_poisson(1e3, 0.3).unwrap();
     let law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
     Region { name: name.into(), part, material: Material { density: 1e3, law } }
-}
-
-fn grid(cell: f64) -> BackgroundGrid {
-    BackgroundGrid {
-        cell,
-        boundary_cell: None,
-        refinements: Vec::new(),
-        gauss_points: 1,
-        inside: InsideRule::VolumeFraction,
-    }
 }
 
 fn ball() -> Shape {
@@ -41,8 +35,13 @@ fn gauss_rules_integrate_the_powers_that_they_should() {
 
 #[test]
 fn volume_fractions_measure_a_sphere_and_its_centroid() {
-    let q = quadrature(&ball(), &[region("all", Selector::All)], &grid(0.011), &Dimension::Three)
-        .unwrap();
+    let q = quadrature(
+        &ball(),
+        &[region("all", Selector::All)],
+        &BackgroundGrid::with_cell(0.011),
+        &Dimension::Three,
+    )
+    .unwrap();
     let volume: f64 = q.weights.iter().sum();
     let exact = 4.0 / 3.0 * std::f64::consts::PI * 0.04f64.powi(3);
     assert!((volume / exact - 1.0).abs() < 2e-3, "{}", volume / exact);
@@ -55,15 +54,20 @@ fn volume_fractions_are_exact_for_a_box_off_the_grid() {
     let min = Vector3::new(0.01, 0.02, 0.0);
     let max = Vector3::new(0.113, 0.087, 0.05);
     let body = Shape::Box { min, max };
-    let q =
-        quadrature(&body, &[region("all", Selector::All)], &grid(0.02), &Dimension::Three).unwrap();
+    let q = quadrature(
+        &body,
+        &[region("all", Selector::All)],
+        &BackgroundGrid::with_cell(0.02),
+        &Dimension::Three,
+    )
+    .unwrap();
     let volume: f64 = q.weights.iter().sum();
     assert!((volume / (max - min).product() - 1.0).abs() < 1e-3);
 }
 
 #[test]
 fn the_centre_rule_keeps_whole_cells_only() {
-    let mut grid = grid(0.01);
+    let mut grid = BackgroundGrid::with_cell(0.01);
     grid.inside = InsideRule::Centre;
     let q = quadrature(&ball(), &[region("all", Selector::All)], &grid, &Dimension::Three).unwrap();
     assert!(q.weights.iter().all(|w| (w - 1e-6).abs() < 1e-18));
@@ -72,7 +76,7 @@ fn the_centre_rule_keeps_whole_cells_only() {
 
 #[test]
 fn cells_are_halved_near_the_boundary_and_in_chosen_parts() {
-    let mut grid = grid(0.02);
+    let mut grid = BackgroundGrid::with_cell(0.02);
     grid.inside = InsideRule::Centre;
     grid.boundary_cell = Some(0.01);
     let core = Shape::Sphere { centre: Vector3::new(0.3, 0.1, -0.2), radius: 0.012 };
@@ -85,14 +89,15 @@ fn cells_are_halved_near_the_boundary_and_in_chosen_parts() {
 }
 
 #[test]
-fn a_cell_on_a_border_gives_each_region_its_share() {
+fn a_cell_on_a_border_is_divided_among_its_regions() {
     let body = Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(0.1) };
     let left = Shape::HalfSpace { point: Vector3::new(0.033, 0.0, 0.0), normal: Vector3::x() };
     let regions = [
         region("left", Selector::Inside { shape: left, tolerance: 0.0 }),
         region("right", Selector::All),
     ];
-    let q = quadrature(&body, &regions, &grid(0.02), &Dimension::Three).unwrap();
+    let q =
+        quadrature(&body, &regions, &BackgroundGrid::with_cell(0.02), &Dimension::Three).unwrap();
     let volume: f64 =
         q.weights.iter().zip(&q.regions).filter(|(_, r)| **r == 0).map(|(w, _)| w).sum();
     assert!((volume / (0.033 * 0.01) - 1.0).abs() < 0.02, "{volume}");
@@ -103,7 +108,13 @@ fn a_plane_slice_has_the_volume_of_its_slab() {
     let body =
         Shape::Cylinder { base: Vector3::zeros(), axis: Vector3::z(), radius: 0.05, height: 0.02 };
     let plane = Dimension::PlaneStrain { thickness: 0.005, z: 0.01 };
-    let q = quadrature(&body, &[region("all", Selector::All)], &grid(0.011), &plane).unwrap();
+    let q = quadrature(
+        &body,
+        &[region("all", Selector::All)],
+        &BackgroundGrid::with_cell(0.011),
+        &plane,
+    )
+    .unwrap();
     let volume: f64 = q.weights.iter().sum();
     let exact = std::f64::consts::PI * 0.05f64.powi(2) * 0.005;
     assert!((volume / exact - 1.0).abs() < 2e-3, "{}", volume / exact);

@@ -1,27 +1,29 @@
-//! The two forms whose quotient tells what the quadrature sees.
+//! The matrix pencil whose quotient is the captured fraction of a strain energy.
 #![allow(non_snake_case)]
 
-use super::LARGEST_COUNT;
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::Discretisation;
 use crate::discretisation::quadrature::quadrature;
 use crate::discretisation::rows::Rows;
 use crate::error::Error;
 use crate::model::Model;
-use crate::model::essential::ConstraintForces;
+use crate::model::essential::{ConstraintForces, ConstraintSet};
 use crate::problem::{BackgroundGrid, Enforcement, Problem};
 use faer::{Mat, Side};
 use nalgebra::DMatrix;
 
-/// The finer rule has at least this many times more points than the model …
-const FINER: f64 = 3.0;
-/// … and than nodes: enough to see every motion.
+/// Points of the finer rule over those of the model, at least …
+const POINTS_PER_POINT: f64 = 3.0;
+/// … and over nodes, enough to capture every motion.
 const POINTS_PER_NODE: f64 = 5.0;
 
 /// δ L² \[–\]: far below the energy of any strained motion, far above round-off.
 const ANCHOR: f64 = 1e-4;
 
-/// vᵀ(K + δM)v and vᵀ(K̂ + δM)v under the conditions of the start.
+/// Up to this many unknowns and constraints the modes are counted.
+const LARGEST_COUNTED: usize = 4500;
+
+/// K + δM and K̂ + δM under the conditions at t = 0.
 pub(super) struct Pencil<'a> {
     pub model: &'a Model,
     discretisation: &'a Discretisation,
@@ -29,7 +31,7 @@ pub(super) struct Pencil<'a> {
     finer_weights: Vec<f64>,
     /// δM per component of node.
     anchor: Vec<f64>,
-    /// Constrained components: rows of φ, and which component they hold.
+    /// Constrained components with the rows of φ that constrain them.
     constraints: Vec<(usize, Rows)>,
 }
 
@@ -45,10 +47,10 @@ impl<'a> Pencil<'a> {
         let mut anchor = vec![0.0; model.size()];
         for (q, weight) in discretisation.quadrature.weights.iter().enumerate() {
             let row = supports.row(q);
-            let share = ANCHOR * weight / row.len() as f64 / model.extent.powi(2);
+            let part = ANCHOR * weight / row.len() as f64 / model.extent.powi(2);
             for &node in &supports.nodes[row] {
                 for k in 0..d {
-                    anchor[d * node as usize + k] += share;
+                    anchor[d * node as usize + k] += part;
                 }
             }
         }
@@ -61,13 +63,13 @@ impl<'a> Pencil<'a> {
     }
 
     /// (K + δM)v.
-    pub fn seen(&self, v: &[f64]) -> Vec<f64> {
+    pub fn model_product(&self, v: &[f64]) -> Vec<f64> {
         let weights = &self.discretisation.quadrature.weights;
         self.product(&self.discretisation.supports, weights, v)
     }
 
     /// (K̂ + δM)v.
-    pub fn whole(&self, v: &[f64]) -> Vec<f64> {
+    pub fn finer_product(&self, v: &[f64]) -> Vec<f64> {
         self.product(&self.finer, &self.finer_weights, v)
     }
 
@@ -87,29 +89,29 @@ impl<'a> Pencil<'a> {
         out
     }
 
-    /// Removes from `v` what the conditions forbid.
+    /// Projects `v` onto the motions that the conditions allow.
     pub fn project(&self, v: &mut [f64]) {
         let mut forces = ConstraintForces::default();
         self.model.constraints.project(0.0, &self.model.lumped_mass, v, &mut forces);
     }
 
-    /// Number of motions of which less than the share `seen` is seen, by the
-    /// inertia of K − seen K̂ + (1 − seen) δM bordered with the constraints C
-    /// (Sylvester: their number is that of the negative pivots less that of
-    /// the rows of C); `None` where that is too large.
-    pub fn count_below(&self, seen: f64) -> Option<usize> {
+    /// Number of motions with a captured fraction below `fraction` (η), by the
+    /// inertia of K − η K̂ + (1 − η) δM bordered with the constraints C (Sylvester's
+    /// law: the number of negative pivots less that of the rows of C); `None` where
+    /// that matrix is too large.
+    pub fn count_below(&self, fraction: f64) -> Option<usize> {
         let n = self.model.size();
-        let held: usize = self.constraints.iter().map(|(_, rows)| rows.len()).sum();
-        if n + held > LARGEST_COUNT {
+        let constrained: usize = self.constraints.iter().map(|(_, rows)| rows.len()).sum();
+        if n + constrained > LARGEST_COUNTED {
             return None;
         }
-        let mut matrix = Mat::<f64>::zeros(n + held, n + held);
+        let mut matrix = Mat::<f64>::zeros(n + constrained, n + constrained);
         let weights = &self.discretisation.quadrature.weights;
         self.add(&mut matrix, &self.discretisation.supports, weights, 1.0);
-        self.add(&mut matrix, &self.finer, &self.finer_weights, -seen);
+        self.add(&mut matrix, &self.finer, &self.finer_weights, -fraction);
         let size = (0..n).map(|i| matrix[(i, i)].abs()).sum::<f64>() / n as f64;
         for i in 0..n {
-            matrix[(i, i)] += (1.0 - seen) * self.anchor[i];
+            matrix[(i, i)] += (1.0 - fraction) * self.anchor[i];
         }
         let mut next = n;
         for (component, rows) in &self.constraints {
@@ -121,10 +123,10 @@ impl<'a> Pencil<'a> {
                 next += 1;
             }
         }
-        Some(negative_pivots(&matrix).saturating_sub(held))
+        Some(negative_pivots(&matrix).saturating_sub(constrained))
     }
 
-    /// matrix += factor · K of these points, lower triangle.
+    /// matrix += factor · K of these points, in the lower triangle.
     fn add(&self, matrix: &mut Mat<f64>, rows: &Rows, weights: &[f64], factor: f64) {
         let d = self.model.components;
         for (q, weight) in weights.iter().enumerate() {
@@ -146,18 +148,20 @@ impl<'a> Pencil<'a> {
         }
     }
 
-    /// Rigid motions that the constraints leave free: the dimension of the
-    /// kernel of the constraints on them.
+    /// Number of rigid motions that the constraints leave free: the dimension of
+    /// their kernel in the rigid motions.
     pub fn free_rigid_motions(&self) -> usize {
         let d = self.model.components;
         let motions = rigid_motions(d, self.model.extent);
         let mut products = DMatrix::<f64>::zeros(motions.len(), motions.len());
         let mut rows = 0.0;
-        for (component, held) in &self.constraints {
-            for i in 0..held.len() {
-                let X: Vector3 = held
+        for (component, constrained) in &self.constraints {
+            for i in 0..constrained.len() {
+                let X: Vector3 = constrained
                     .row(i)
-                    .map(|e| self.model.positions[held.nodes[e] as usize] * held.phi[e])
+                    .map(|e| {
+                        self.model.positions[constrained.nodes[e] as usize] * constrained.phi[e]
+                    })
                     .sum::<Vector3>()
                     - self.model.positions[0];
                 let values = motions.iter().map(|motion| motion(&X)[*component]);
@@ -173,7 +177,8 @@ impl<'a> Pencil<'a> {
 
 type Motion = Box<dyn Fn(&Vector3) -> Vector3>;
 
-/// Translations and rotations about the origin, of size one over the extent.
+/// Translations and rotations about the origin with displacements of size 1 over the
+/// extent.
 fn rigid_motions(d: usize, extent: f64) -> Vec<Motion> {
     let unit = |k: usize| Vector3::ith(k, 1.0);
     let mut motions: Vec<Motion> = Vec::new();
@@ -186,13 +191,13 @@ fn rigid_motions(d: usize, extent: f64) -> Vec<Motion> {
     motions
 }
 
-/// Points of smaller cells with the plain gradients of the same functions.
+/// Rows and weights of smaller cells, with plain gradients of the same functions.
 fn finer_rule(
     problem: &Problem,
     discretisation: &Discretisation,
 ) -> Result<(Rows, Vec<f64>), Error> {
     let (points, nodes) = (discretisation.supports.len(), discretisation.cloud.positions.len());
-    let more = f64::max(FINER, POINTS_PER_NODE * nodes as f64 / points as f64);
+    let more = f64::max(POINTS_PER_POINT, POINTS_PER_NODE * nodes as f64 / points as f64);
     let factor = more.powf(-1.0 / problem.dimension.components() as f64);
     let mut grid: BackgroundGrid = problem.recipe.grid.clone();
     grid.cell *= factor;
@@ -203,12 +208,13 @@ fn finer_rule(
     Ok((discretisation.rows_at(&rule.positions)?, rule.weights))
 }
 
+/// The rows of φ of each constrained component at t = 0.
 fn constraints(
     problem: &Problem,
     discretisation: &Discretisation,
     model: &Model,
 ) -> Result<Vec<(usize, Rows)>, Error> {
-    let rows = |set: &crate::model::essential::ConstraintSet| {
+    let rows = |set: &ConstraintSet| {
         let rows = match problem.recipe.enforcement {
             Enforcement::Collocation => {
                 let at = set.rows.iter().map(|row| model.positions[row.node as usize]);
@@ -233,7 +239,7 @@ fn negative_pivots(matrix: &Mat<f64>) -> usize {
     let (n, mut i, mut negative) = (matrix.nrows(), 0, 0);
     while i < n {
         if i + 1 < n && below[i] != 0.0 {
-            // A block of two: by its determinant and trace.
+            // A 2×2 block: by its determinant and trace.
             let (a, b, c) = (diagonal[i], diagonal[i + 1], below[i]);
             negative += match a * b - c * c < 0.0 {
                 true => 1,

@@ -1,28 +1,26 @@
 //! Which values count as the same, and why.
 
 use super::student::two_sided_quantile;
-use crate::study::{Band, BandSource, Bound, Check, Kind, Scale, Spread};
+use crate::study::{Band, BandSource, Bound, Check, Kind, Scale, Scatter};
 
 /// Chance that a run of unchanged code over other clouds fails \[–\]; it is
-/// shared evenly by the checks that scatter (Bonferroni 1936).
+/// divided evenly among the checks that scatter (Bonferroni 1936).
 pub const FALSE_ALARMS: f64 = 0.01;
 
-/// Half the digits: what is left of a figure whose computation loses no more
-/// than that to round-off. √ε \[–\].
+/// √ε \[–\]: half of the digits are lost to round-off.
 pub const HALF_THE_DIGITS: f64 = 1.490_116_119_384_765_6e-8;
 
-/// Bounds as narrow as this leave room for arithmetic, differences of functions
-/// and tolerances of iterations, and for no error of a discretisation. ∛ε \[–\].
+/// ∛ε \[–\]: bounds up to this allow for round-off, finite differences and tolerances of
+/// iterations, but not for an error of a discretisation.
 const ARITHMETIC: f64 = 6.055_454_452_393_343e-6;
 
-/// The chance left to each of `count` checks.
+/// Probability of a false alarm for each of `count` checks \[–\].
 pub fn tail(count: usize) -> f64 {
     FALSE_ALARMS / count.max(1) as f64
 }
 
-/// The band of a check that no cloud moves, and of any check before its scatter
-/// is known.
-pub fn still(check: &Check) -> Band {
+/// The band of a check without scatter, or whose scatter is not known.
+pub fn without_scatter(check: &Check) -> Band {
     if let Some(band) = arithmetic(check) {
         return band;
     }
@@ -31,7 +29,7 @@ pub fn still(check: &Check) -> Band {
     within_bound(widened(band, check), check.bound)
 }
 
-/// All that the bound of a theorem allows, where it allows for arithmetic alone.
+/// The whole range of the bound of a theorem, where it allows for round-off only.
 fn arithmetic(check: &Check) -> Option<Band> {
     if check.kind != Kind::Exact || check.unit != "1" {
         return None;
@@ -47,15 +45,15 @@ fn arithmetic(check: &Check) -> Option<Band> {
     }
 }
 
-/// Round-off of a figure. What has no unit is relative to something of order
-/// one, except for counts, which are whole.
+/// Round-off of a figure. Pure numbers are relative to one, except for counts, which
+/// are whole.
 pub fn round_off(value: f64, unit: &str) -> f64 {
     let relative = unit == "1" && value.fract() != 0.0;
     HALF_THE_DIGITS * if relative { value.abs().max(1.0) } else { value.abs() }
 }
 
 fn theory(low: f64, high: f64) -> Band {
-    Band { low, high, source: BandSource::Theory, spread: None }
+    Band { low, high, source: BandSource::Theory, scatter: None }
 }
 
 /// At least the error bar of the reference to either side.
@@ -69,7 +67,7 @@ fn widened(band: Band, check: &Check) -> Band {
     Band { low, high, source: BandSource::Reference, ..band }
 }
 
-/// No further than the bound: what breaks it fails, whatever the clouds say.
+/// No further than the bound.
 fn within_bound(band: Band, bound: Bound) -> Band {
     let (low, high) = match bound {
         Bound::AtMost(limit) => (band.low, band.high.min(limit)),
@@ -79,9 +77,9 @@ fn within_bound(band: Band, bound: Bound) -> Band {
     Band { low, high, ..band }
 }
 
-/// Mean and spread of the figures of other clouds, on the scale on which they
-/// are less skewed. None where no cloud moves the figure.
-pub fn spread(samples: &[f64], unit: &str) -> Option<(f64, Spread)> {
+/// Mean and scatter of figures of several clouds, on the scale on which they are less
+/// skewed. None where the figure is the same on every cloud.
+pub fn mean_and_scatter(samples: &[f64], unit: &str) -> Option<(f64, Scatter)> {
     if samples.len() < 2 || samples.iter().any(|value| !value.is_finite()) {
         return None;
     }
@@ -96,11 +94,11 @@ pub fn spread(samples: &[f64], unit: &str) -> Option<(f64, Spread)> {
     let mean = moved.iter().sum::<f64>() / count;
     let squares: f64 = moved.iter().map(|value| (value - mean).powi(2)).sum();
     let deviation = (squares / (count - 1.0)).sqrt();
-    Some((mean, Spread { scale, deviation, samples: samples.len() }))
+    Some((mean, Scatter { scale, deviation, samples: samples.len() }))
 }
 
-/// Errors that are products of factors are skewed, and their logarithms are
-/// not; sizes of differences that pass through zero are the other way round.
+/// Errors that are products of factors are skewed and their logarithms are not; for
+/// magnitudes of differences that pass through zero it is the other way round.
 fn scale_of(samples: &[f64]) -> Scale {
     if samples.iter().any(|value| *value <= 0.0) {
         return Scale::Linear;
@@ -121,35 +119,35 @@ fn skewness(samples: &[f64]) -> f64 {
     moment(3) / moment(2).powf(1.5)
 }
 
-/// Where one more run falls, but for a chance of `tail`:
+/// Prediction interval of one more run, left with probability `tail`:
 /// x̄ ± t(n − 1, tail) s √(1 + 1/n).
-pub fn around_mean(check: &Check, mean: f64, spread: Spread, tail: f64) -> Band {
-    let n = spread.samples as f64;
-    scattered(check, mean, spread, tail, (1.0 + 1.0 / n).sqrt())
+pub fn around_mean(check: &Check, mean: f64, scatter: Scatter, tail: f64) -> Band {
+    let n = scatter.samples as f64;
+    scattered(check, mean, scatter, tail, (1.0 + 1.0 / n).sqrt())
 }
 
-/// How far apart two runs fall, but for a chance of `tail`, where only one of
-/// them is known: x ± t(n − 1, tail) s √2.
-pub fn around_value(check: &Check, spread: Spread, tail: f64) -> Band {
-    match spread.scale {
-        Scale::Logarithmic if check.value <= 0.0 => still(check),
-        scale => scattered(check, on(scale, check.value), spread, tail, std::f64::consts::SQRT_2),
+/// Prediction interval around one known run, left with probability `tail`:
+/// x ± t(n − 1, tail) s √2.
+pub fn around_value(check: &Check, scatter: Scatter, tail: f64) -> Band {
+    match scatter.scale {
+        Scale::Logarithmic if check.value <= 0.0 => without_scatter(check),
+        scale => scattered(check, on(scale, check.value), scatter, tail, std::f64::consts::SQRT_2),
     }
 }
 
-fn scattered(check: &Check, centre: f64, spread: Spread, tail: f64, factor: f64) -> Band {
+fn scattered(check: &Check, centre: f64, scatter: Scatter, tail: f64, factor: f64) -> Band {
     if let Some(band) = arithmetic(check) {
         return band;
     }
-    let width = two_sided_quantile(tail, spread.samples - 1) * spread.deviation * factor;
-    let back = |value: f64| match spread.scale {
+    let width = two_sided_quantile(tail, scatter.samples - 1) * scatter.deviation * factor;
+    let back = |value: f64| match scatter.scale {
         Scale::Linear => value,
         Scale::Logarithmic => value.exp(),
     };
-    // The run that the baseline is made of is no alarm.
+    // The run that the baseline is made of is inside.
     let low = back(centre - width).min(check.value);
     let high = back(centre + width).max(check.value);
-    let band = Band { low, high, source: BandSource::Scatter, spread: Some(spread) };
+    let band = Band { low, high, source: BandSource::Scatter, scatter: Some(scatter) };
     within_bound(widened(band, check), check.bound)
 }
 
@@ -170,19 +168,19 @@ mod tests {
 
     #[test]
     fn a_theorem_met_to_round_off_may_use_all_of_its_bound() {
-        let band = still(&check(Kind::Exact, 3e-16, Bound::AtMost(1e-12)));
+        let band = without_scatter(&check(Kind::Exact, 3e-16, Bound::AtMost(1e-12)));
         assert_eq!((band.low, band.high, band.source), (0.0, 1e-12, BandSource::Theory));
     }
 
     #[test]
-    fn a_discretisation_error_may_not_use_its_bound_even_where_the_truth_is_exact() {
-        let band = still(&check(Kind::Exact, 1e-3, Bound::AtMost(1e-2)));
+    fn a_discretisation_error_may_not_use_its_bound_even_where_the_solution_is_exact() {
+        let band = without_scatter(&check(Kind::Exact, 1e-3, Bound::AtMost(1e-2)));
         assert!(band.high < 1.000_02e-3 && band.high > 1e-3, "{band:?}");
     }
 
     #[test]
-    fn a_count_that_no_cloud_moves_may_not_change_by_one() {
-        let band = still(&check(Kind::Regression, 651.0, Bound::AtMost(665.0)));
+    fn a_count_without_scatter_may_not_change_by_one() {
+        let band = without_scatter(&check(Kind::Regression, 651.0, Bound::AtMost(665.0)));
         assert!(band.low > 650.0 && band.high < 652.0, "{band:?}");
     }
 
@@ -190,22 +188,22 @@ mod tests {
     fn a_difference_is_not_judged_below_the_error_bar_of_its_reference() {
         let mut difference = check(Kind::Reference, 0.0078125, Bound::AtMost(0.03));
         difference.reference_error = Some(0.015625);
-        let band = still(&difference);
+        let band = without_scatter(&difference);
         assert_eq!(
             (band.low, band.high, band.source),
             (-0.0078125, 0.0234375, BandSource::Reference)
         );
-        let spread = Spread { scale: Scale::Logarithmic, deviation: 1e-3, samples: 20 };
-        assert_eq!(around_value(&difference, spread, 0.01).source, BandSource::Reference);
+        let scatter = Scatter { scale: Scale::Logarithmic, deviation: 1e-3, samples: 20 };
+        assert_eq!(around_value(&difference, scatter, 0.01).source, BandSource::Reference);
     }
 
     #[test]
     fn the_prediction_interval_is_that_of_the_textbook() {
         // x̄ = 0, s = √2.5, n = 5, t(4, 5 %) = 2.776.
-        let (mean, spread) = spread(&[-2.0, -1.0, 0.0, 1.0, 2.0], "1").unwrap();
-        assert_eq!((mean, spread.scale, spread.samples), (0.0, Scale::Linear, 5));
+        let (mean, scatter) = mean_and_scatter(&[-2.0, -1.0, 0.0, 1.0, 2.0], "1").unwrap();
+        assert_eq!((mean, scatter.scale, scatter.samples), (0.0, Scale::Linear, 5));
         let one = check(Kind::Regression, 0.5, Bound::Between(-9.0, 9.0));
-        let band = around_mean(&one, mean, spread, 0.05);
+        let band = around_mean(&one, mean, scatter, 0.05);
         let half_width = 2.776_445 * 2.5f64.sqrt() * 1.2f64.sqrt();
         assert!((band.high - half_width).abs() < 1e-5 && band.low == -band.high, "{band:?}");
     }
@@ -213,23 +211,23 @@ mod tests {
     #[test]
     fn the_scale_is_the_one_on_which_figures_are_less_skewed() {
         let products: Vec<f64> = (-10..=10).map(|i| (0.3 * f64::from(i)).exp()).collect();
-        assert_eq!(spread(&products, "1").unwrap().1.scale, Scale::Logarithmic);
+        assert_eq!(mean_and_scatter(&products, "1").unwrap().1.scale, Scale::Logarithmic);
         let differences: Vec<f64> = (-10..=10).map(|i| (0.1 * f64::from(i) + 0.03).abs()).collect();
-        assert_eq!(spread(&differences, "1").unwrap().1.scale, Scale::Linear);
+        assert_eq!(mean_and_scatter(&differences, "1").unwrap().1.scale, Scale::Linear);
     }
 
     #[test]
     fn a_band_ends_at_the_bound() {
-        let spread = Spread { scale: Scale::Logarithmic, deviation: 1.0, samples: 20 };
-        let band = around_value(&check(Kind::Regression, 0.01, Bound::AtMost(0.05)), spread, 0.01);
+        let scatter = Scatter { scale: Scale::Logarithmic, deviation: 1.0, samples: 20 };
+        let band = around_value(&check(Kind::Regression, 0.01, Bound::AtMost(0.05)), scatter, 0.01);
         assert_eq!(band.high, 0.05);
         assert!(band.low < 0.01);
     }
 
     #[test]
     fn figures_that_are_the_same_on_every_cloud_have_no_scatter() {
-        assert!(spread(&[14.0; 20], "1").is_none());
-        assert!(spread(&[0.3, 0.3 + 1e-12, 0.3], "1").is_none());
-        assert!(spread(&[14.0, 15.0, 14.0], "1").is_some());
+        assert!(mean_and_scatter(&[14.0; 20], "1").is_none());
+        assert!(mean_and_scatter(&[0.3, 0.3 + 1e-12, 0.3], "1").is_none());
+        assert!(mean_and_scatter(&[14.0, 15.0, 14.0], "1").is_some());
     }
 }

@@ -8,10 +8,12 @@ use thiserror::Error;
 /// Version of the file that this program writes and reads.
 pub const SCHEMA_VERSION: u32 = 1;
 
-/// What the figures were when somebody last said why they may be so.
+/// Accepted figures, with the reasons for accepting them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Baseline {
+    /// Version of the file format.
     pub schema_version: u32,
+    /// Name of the set of studies.
     pub suite: String,
     /// Chance that a run of unchanged code over other clouds fails \[–\].
     pub false_alarms: f64,
@@ -24,26 +26,38 @@ pub struct Baseline {
 /// Why the baseline was written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
+    /// Of the run.
     pub date: String,
+    /// Of the sources.
     pub commit: String,
+    /// Name of the processor.
     pub processor: String,
+    /// Why the figures may change.
     pub reason: String,
-    /// In words, such as `3 worse, 1 new`.
+    /// Counts such as `3 worse, 1 new`.
     pub changes: String,
 }
 
+/// The accepted figure of one check.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stored {
+    /// Of the check.
     pub id: String,
+    /// In `unit`.
     pub value: f64,
+    /// SI, or `1` for a pure number.
     pub unit: String,
+    /// Where the bound comes from.
     pub kind: Kind,
+    /// What the value must satisfy.
     pub bound: Bound,
+    /// Values that count as the same.
     pub band: Band,
 }
 
-/// What keeps the gate from judging.
+/// Why a run cannot be compared or accepted.
 #[derive(Debug, Error)]
+#[allow(missing_docs)] // The messages say it.
 pub enum GateError {
     #[error(
         "there is no baseline {}: write one with `mtled verify --update-baseline --reason …`", path.display()
@@ -51,7 +65,7 @@ pub enum GateError {
     Absent { path: PathBuf },
     #[error("cannot read the baseline {}: {source}", path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
-    #[error("{} is no baseline: {source}", path.display())]
+    #[error("{} is not a baseline: {source}", path.display())]
     Malformed { path: PathBuf, source: serde_json::Error },
     #[error(
         "the baseline {} has schema version {found}, this program reads {SCHEMA_VERSION}: write it anew \
@@ -94,12 +108,13 @@ pub fn read_baseline(path: &Path) -> Result<Baseline, GateError> {
 }
 
 impl Baseline {
+    /// The accepted figure of a check.
     pub fn check(&self, id: &str) -> Option<&Stored> {
         let found = self.checks.binary_search_by(|stored| stored.id.as_str().cmp(id)).ok()?;
         Some(&self.checks[found])
     }
 
-    /// The file's text: an entry of the history and a check per line.
+    /// Text of the file, with an entry of the history or a check per line.
     pub fn to_json(&self) -> String {
         let suite = line(&self.suite);
         let history: Vec<String> = self.history.iter().map(line).collect();

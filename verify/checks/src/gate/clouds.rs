@@ -1,9 +1,9 @@
-//! What the same code finds on other clouds.
+//! Figures of the same code on other clouds.
 
-use super::band::{around_mean, spread, tail};
+use super::band::{around_mean, mean_and_scatter, tail};
 use super::baseline::GateError;
 use super::judge::verdict;
-use crate::study::{Band, Check, Report, Spread, Verdict};
+use crate::study::{Band, Check, Report, Scatter, Verdict};
 use std::collections::BTreeMap;
 
 /// The figures of every check over other clouds; may be empty.
@@ -13,11 +13,12 @@ pub struct Clouds<'a> {
     runs: &'a [Report],
 }
 
-/// What is wrong with a run of another cloud.
+/// Checks of one run that need attention.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Suspect {
     /// Place of the run in the list.
     pub run: usize,
+    /// Ids.
     pub checks: Vec<String>,
 }
 
@@ -34,24 +35,26 @@ impl<'a> Clouds<'a> {
         Ok(Clouds { samples, runs })
     }
 
+    /// Whether there are no other clouds.
     pub fn is_empty(&self) -> bool {
         self.runs.is_empty()
     }
 
+    /// Number of other clouds.
     pub fn runs(&self) -> usize {
         self.runs.len()
     }
 
-    /// Mean and spread of a check over the other clouds and its own; None
-    /// where no cloud moves it.
-    pub fn spread(&self, check: &Check) -> Option<(f64, Spread)> {
+    /// Mean and scatter of a check over the other clouds and its own; None
+    /// where it is the same on every cloud.
+    pub fn mean_and_scatter(&self, check: &Check) -> Option<(f64, Scatter)> {
         let mut samples = self.samples.get(check.id.as_str())?.clone();
         samples.push(check.value);
-        spread(&samples, &check.unit)
+        mean_and_scatter(&samples, &check.unit)
     }
 
-    /// Runs that break bounds: code that fails on other clouds is not healthy,
-    /// or its bounds were made for one cloud.
+    /// Runs that break bounds: the code fails on other clouds, or its bounds are too
+    /// tight for them.
     pub fn failing(&self) -> Vec<Suspect> {
         suspects(self.runs.iter().map(|run| {
             let failed = run.checks().filter(|check| !check.pass);
@@ -59,10 +62,10 @@ impl<'a> Clouds<'a> {
         }))
     }
 
-    /// Leaves out one run after the other and judges what keeps its bound by
-    /// the rest: the bands hold what they promise if nearly none is worse.
+    /// Cross-validation: judges each run by bands from all the others; the bands are
+    /// sound if nearly nothing is worse.
     pub fn left_out(&self, report: &Report) -> Vec<Suspect> {
-        let moved = report.checks().filter(|check| self.spread(check).is_some()).count();
+        let moved = report.checks().filter(|check| self.mean_and_scatter(check).is_some()).count();
         suspects(self.runs.iter().enumerate().map(|(run, left)| {
             let worse = left.checks().filter(|check| {
                 let rest = self.without(check, run, tail(moved));
@@ -79,10 +82,10 @@ impl<'a> Clouds<'a> {
             report.checks().find(|other| other.id == check.id).map(|other| other.value)
         });
         let values: Vec<f64> = values.collect();
-        let (mean, spread) = spread(&values, &check.unit)?;
-        // Its own value must not widen the band that it is judged by.
+        let (mean, scatter) = mean_and_scatter(&values, &check.unit)?;
+        // The value of the left-out run must not widen the band that judges it.
         let other = Check { value: values[0], ..check.clone() };
-        Some(around_mean(&other, mean, spread, tail))
+        Some(around_mean(&other, mean, scatter, tail))
     }
 }
 

@@ -1,13 +1,13 @@
-//! A run beside a baseline or beside another run.
+//! Comparison of a run with a baseline or with another run.
 
-use super::band::{HALF_THE_DIGITS, still};
+use super::band::{HALF_THE_DIGITS, without_scatter};
 use super::baseline::{Baseline, GateError, Stored};
 use crate::study::{Band, Bound, Change, Check, Comparison, Report, Verdict};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Judges every check of the studies that were run; `whole` if those were all
-/// studies of the suite, so that what is not there is missing.
+/// studies of the suite, so that absent checks count as missing.
 pub fn compare(report: &Report, baseline: &Baseline, whole: bool) -> Result<Comparison, GateError> {
     if baseline.suite != report.suite {
         let (baseline, run) = (baseline.suite.clone(), report.suite.clone());
@@ -20,26 +20,27 @@ pub fn compare(report: &Report, baseline: &Baseline, whole: bool) -> Result<Comp
     Ok(Comparison { with, changes: changes(report, &baseline.checks, whole) })
 }
 
-/// Judges the run `now` by the figures of `before`, which need no baseline:
-/// without one nothing is known of the scatter over clouds, and what is beyond
-/// round-off and the error bars of references is called a change.
+/// Judges the run `now` by the figures of `before`, without a baseline: the scatter
+/// over clouds is not known, so that everything beyond round-off and the error bars
+/// of references is a change.
 pub fn compare_runs(before: &Report, now: &Report) -> Comparison {
     let mut stored: Vec<Stored> =
-        before.checks().map(|check| stored(check, loose(check))).collect();
+        before.checks().map(|check| stored(check, run_band(check))).collect();
     stored.sort_by(|a, b| a.id.cmp(&b.id));
     let p = &before.provenance;
     let with = format!("the {} run of {} (commit {})", before.suite, p.date, p.commit);
     Comparison { with, changes: changes(now, &stored, false) }
 }
 
-/// Inside its two bounds a figure is neither better nor worse than another.
-fn loose(check: &Check) -> Band {
+/// Between two limits no figure is better than another.
+fn run_band(check: &Check) -> Band {
     match check.bound {
-        Bound::Between(low, high) if check.pass => Band { low, high, ..still(check) },
-        _ => still(check),
+        Bound::Between(low, high) if check.pass => Band { low, high, ..without_scatter(check) },
+        _ => without_scatter(check),
     }
 }
 
+/// The line of a baseline for a check.
 pub fn stored(check: &Check, band: Band) -> Stored {
     Stored {
         id: check.id.clone(),
@@ -55,21 +56,21 @@ fn changes(report: &Report, stored: &[Stored], whole: bool) -> Vec<Change> {
     let checks: BTreeMap<&str, &Check> = report.checks().map(|c| (c.id.as_str(), c)).collect();
     let known: BTreeMap<&str, &Stored> = stored.iter().map(|s| (s.id.as_str(), s)).collect();
     let run: BTreeSet<&str> = report.studies.iter().map(|study| study.id.as_str()).collect();
-    // Of a run of a few studies nothing can be said about the others.
+    // A run of a few studies says nothing about the others.
     let missing = known.values().filter(|stored| {
         let study = stored.id.split('/').next().unwrap_or(&stored.id);
         !checks.contains_key(stored.id.as_str()) && (whole || run.contains(study))
     });
-    let mut changes: Vec<Change> = missing.map(|stored| gone(stored)).collect();
+    let mut changes: Vec<Change> = missing.map(|stored| missing_change(stored)).collect();
     changes.extend(report.checks().map(|check| match known.get(check.id.as_str()) {
         Some(stored) => judged(check, stored),
-        None => new(check),
+        None => new_change(check),
     }));
     changes.sort_by(order);
     changes
 }
 
-fn gone(stored: &Stored) -> Change {
+fn missing_change(stored: &Stored) -> Change {
     Change {
         id: stored.id.clone(),
         quantity: String::new(),
@@ -82,7 +83,7 @@ fn gone(stored: &Stored) -> Change {
     }
 }
 
-fn new(check: &Check) -> Change {
+fn new_change(check: &Check) -> Change {
     Change {
         id: check.id.clone(),
         quantity: check.quantity.clone(),
@@ -104,16 +105,12 @@ fn judged(check: &Check, stored: &Stored) -> Change {
         verdict = Verdict::Worse;
         remark = Some("its bound was loosened".to_string());
     }
-    let mut change = new(check);
-    change.verdict = verdict;
-    change.before = stored.value;
-    change.band = Some(stored.band);
-    change.remark = remark;
-    change
+    let (before, band) = (stored.value, Some(stored.band));
+    Change { verdict, before, band, remark, ..new_change(check) }
 }
 
-/// On which side of its band a figure lies. Leaving a target between two bounds
-/// is for the worse in either direction.
+/// On which side of its band a figure lies. Leaving a band between two limits
+/// is worse in either direction.
 pub fn verdict(check: &Check, band: &Band) -> Verdict {
     let now = check.value;
     if now >= band.low && now <= band.high {
@@ -126,10 +123,10 @@ pub fn verdict(check: &Check, band: &Band) -> Verdict {
     }
 }
 
-/// Whether a bound holds for more values than it did; another relation cannot
-/// be compared and counts as loosened.
+/// Whether a bound allows more values than before; a different relation counts as
+/// loosened.
 pub fn loosened(before: Bound, now: Bound) -> bool {
-    // Bounds that are computed may differ by round-off.
+    // Computed bounds may differ by round-off.
     let above = |now: f64, before: f64| now > before + HALF_THE_DIGITS * before.abs();
     match (before, now) {
         (Bound::AtMost(before), Bound::AtMost(now)) => above(now, before),
@@ -141,15 +138,15 @@ pub fn loosened(before: Bound, now: Bound) -> bool {
     }
 }
 
-/// The worst first: by verdict, by how many half-widths beyond the band, by id.
+/// By verdict, then by distance from the band, then by id.
 fn order(a: &Change, b: &Change) -> Ordering {
     let excess = |change: &Change| beyond(change).unwrap_or(f64::INFINITY);
     let by_excess = || excess(b).total_cmp(&excess(a));
     a.verdict.cmp(&b.verdict).then_with(by_excess).then_with(|| a.id.cmp(&b.id))
 }
 
-/// How far a figure is from the middle of its band, in half-widths; None for
-/// what is not a number.
+/// Distance of a figure from the middle of its band, in half-widths; None where it is
+/// not finite.
 pub fn beyond(change: &Change) -> Option<f64> {
     let Band { low, high, .. } = change.band?;
     let (middle, half_width) = (0.5 * (low + high), 0.5 * (high - low));

@@ -1,6 +1,7 @@
-//! The gate: a run beside a committed baseline. What counts as the same comes
-//! from theory, from the reference's error bar or from measured scatter over
-//! clouds ([`band`]); [`judge`] compares, [`mod@update`] writes the baseline anew.
+//! The gate compares a run with a committed baseline. What counts as the same follows
+//! from theory, from the error bar of a reference or from the measured scatter over
+//! clouds, which are runs of the same code on other random inputs ([`band`]); [`judge`]
+//! compares, [`mod@update`] writes a new baseline.
 
 pub mod band;
 pub mod baseline;

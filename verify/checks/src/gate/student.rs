@@ -4,7 +4,7 @@
 /// `freedom` ≥ 1 degrees of freedom, by bisection in atan(t/√ν).
 pub fn two_sided_quantile(tail: f64, freedom: usize) -> f64 {
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
-    // Each step wins a bit, and a number has 53.
+    // Each step gains a bit of 53.
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if within(middle, freedom) < 1.0 - tail {
@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn tails_of_many_checks_at_once_are_not_lost_to_round_off() {
+    fn tails_of_many_checks_at_once_survive_round_off() {
         // For ν = 2 the quantile has a closed form.
         let tail: f64 = 1e-2 / 455.0;
         let inside = 1.0 - tail;

@@ -1,10 +1,10 @@
-//! Writes a baseline anew, with the reason for it.
+//! A new baseline, with the reason for it.
 
-use super::band::{FALSE_ALARMS, around_mean, around_value, still, tail};
+use super::band::{FALSE_ALARMS, around_mean, around_value, tail, without_scatter};
 use super::baseline::{Baseline, Entry, GateError, SCHEMA_VERSION, Stored};
 use super::clouds::Clouds;
 use super::judge::{compare, stored};
-use crate::study::{Band, Check, Comparison, Report, Spread, Verdict};
+use crate::study::{Band, Check, Comparison, Report, Scatter, Verdict};
 use std::collections::BTreeMap;
 
 /// Why a baseline is written; never empty.
@@ -12,15 +12,16 @@ use std::collections::BTreeMap;
 pub struct Reason(String);
 
 impl Reason {
+    /// The reason as one line.
     pub fn new(text: &str) -> Result<Reason, GateError> {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         if text.is_empty() { Err(GateError::NoReason) } else { Ok(Reason(text)) }
     }
 }
 
-/// The baseline after this run. What is the same keeps its line, so that many
-/// small steps for the worse cannot add up unseen; with `clouds` every line of
-/// the run is written anew. `whole` as in [`compare`].
+/// The baseline after this run. A figure inside its band keeps its line, so that many
+/// small deteriorations cannot add up unnoticed; with `clouds` every line of the run is
+/// replaced. `whole` as in [`compare`].
 pub fn update(
     report: &Report,
     old: Option<&Baseline>,
@@ -34,8 +35,8 @@ pub fn update(
     let verdict = |id: &str| comparison.changes.iter().find(|c| c.id == id).map(|c| c.verdict);
     let kept = before.checks.into_iter().filter(|s| verdict(&s.id) != Some(Verdict::Missing));
     let mut lines: BTreeMap<String, Stored> = kept.map(|s| (s.id.clone(), s)).collect();
-    let moved = report.checks().filter(|check| clouds.spread(check).is_some()).count();
-    let known = lines.values().filter(|line| line.band.spread.is_some()).count();
+    let moved = report.checks().filter(|check| clouds.mean_and_scatter(check).is_some()).count();
+    let known = lines.values().filter(|line| line.band.scatter.is_some()).count();
     let tail = tail(moved.max(known));
     for check in report.checks() {
         let line = lines.get(&check.id);
@@ -44,7 +45,7 @@ pub fn update(
         if same && bound && clouds.is_empty() {
             continue;
         }
-        let known = line.and_then(|line| line.band.spread);
+        let known = line.and_then(|line| line.band.scatter);
         let line = stored(check, band_of(check, clouds, known, tail));
         lines.insert(check.id.clone(), line);
     }
@@ -55,7 +56,7 @@ pub fn update(
         commit: p.commit.clone(),
         processor: p.processor.clone(),
         reason: reason.0.clone(),
-        changes: in_words(&comparison, clouds),
+        changes: summary(&comparison, clouds),
     });
     Ok(Baseline { history, checks: lines.into_values().collect(), ..empty(report) })
 }
@@ -79,18 +80,19 @@ fn empty(report: &Report) -> Baseline {
     }
 }
 
-/// From other clouds, else from what was known of its scatter, else from theory.
-fn band_of(check: &Check, clouds: &Clouds, known: Option<Spread>, tail: f64) -> Band {
+/// From other clouds, else from its known scatter, else from theory.
+fn band_of(check: &Check, clouds: &Clouds, known: Option<Scatter>, tail: f64) -> Band {
     if clouds.is_empty() {
-        return known.map_or_else(|| still(check), |spread| around_value(check, spread, tail));
+        return known
+            .map_or_else(|| without_scatter(check), |scatter| around_value(check, scatter, tail));
     }
-    match clouds.spread(check) {
-        Some((mean, spread)) => around_mean(check, mean, spread, tail),
-        None => still(check),
+    match clouds.mean_and_scatter(check) {
+        Some((mean, scatter)) => around_mean(check, mean, scatter, tail),
+        None => without_scatter(check),
     }
 }
 
-fn in_words(comparison: &Comparison, clouds: &Clouds) -> String {
+fn summary(comparison: &Comparison, clouds: &Clouds) -> String {
     let named = [
         (Verdict::Worse, "worse"),
         (Verdict::Missing, "missing"),
@@ -99,20 +101,19 @@ fn in_words(comparison: &Comparison, clouds: &Clouds) -> String {
         (Verdict::Same, "the same"),
     ];
     let counts = named.map(|(verdict, word)| (comparison.count(verdict), word));
-    let told = counts.iter().filter(|(count, _)| *count > 0);
-    let mut words: Vec<String> = told.map(|(count, word)| format!("{count} {word}")).collect();
+    let present = counts.iter().filter(|(count, _)| *count > 0);
+    let mut parts: Vec<String> = present.map(|(count, word)| format!("{count} {word}")).collect();
     if !clouds.is_empty() {
-        words.push(format!("bands of {} other clouds", clouds.runs()));
+        parts.push(format!("bands of {} other clouds", clouds.runs()));
     }
-    words.join(", ")
+    parts.join(", ")
 }
 
-/// What a reader of the diff wants to know: a line per check that was added,
-/// taken away or written anew.
+/// A line per check that was added, removed or changed.
 pub fn difference(old: Option<&Baseline>, new: &Baseline) -> Vec<String> {
     let before = |id: &str| old.and_then(|old| old.check(id));
-    let gone = old.iter().flat_map(|old| &old.checks).filter(|s| new.check(&s.id).is_none());
-    let mut lines: Vec<String> = gone.map(|s| format!("- {} ({})", s.id, s.value)).collect();
+    let removed = old.iter().flat_map(|old| &old.checks).filter(|s| new.check(&s.id).is_none());
+    let mut lines: Vec<String> = removed.map(|s| format!("- {} ({})", s.id, s.value)).collect();
     for now in &new.checks {
         match before(&now.id) {
             None => lines.push(format!("+ {} {}{}", now.id, now.value, within(&now.band))),
@@ -135,6 +136,6 @@ pub fn difference(old: Option<&Baseline>, new: &Baseline) -> Vec<String> {
 
 fn within(band: &Band) -> String {
     let source = format!("{:?}", band.source).to_lowercase();
-    let samples = band.spread.map_or(String::new(), |s| format!(" of {} clouds", s.samples));
+    let samples = band.scatter.map_or(String::new(), |s| format!(" of {} clouds", s.samples));
     format!(" in {:.6e} … {:.6e} ({source}{samples})", band.low, band.high)
 }

@@ -1,32 +1,20 @@
-//! How a comparison reads, in every kind of report.
+//! Texts and values of a comparison that all kinds of report share.
 
+use super::labels::{unit_suffix, unit_text};
 use super::number::four_digits;
 use super::svg::escape;
-use super::words::unit_text;
 use crate::study::{Band, BandSource, Change, Comparison, Verdict};
 use minijinja::{Value, context};
 
-pub(super) fn verdict_name(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Worse => "worse",
-        Verdict::Missing => "missing",
-        Verdict::New => "new",
-        Verdict::Improved => "improved",
-        Verdict::Same => "same",
-    }
-}
-
-/// `1 worse, 3 improved, 451 the same`.
-pub(super) fn gate_words(comparison: &Comparison) -> String {
-    let verdicts =
-        [Verdict::Worse, Verdict::Missing, Verdict::New, Verdict::Improved, Verdict::Same];
-    let told = verdicts.into_iter().filter_map(|verdict| {
+/// Number of checks by verdict: `1 worse, 3 improved, 451 the same`.
+pub(super) fn verdict_counts(comparison: &Comparison) -> String {
+    let counts = Verdict::ALL.into_iter().filter_map(|verdict| {
         let count = comparison.count(verdict);
-        let word = if verdict == Verdict::Same { "the same" } else { verdict_name(verdict) };
-        (count > 0).then(|| format!("{count} {word}"))
+        let name = if verdict == Verdict::Same { "the same" } else { verdict.name() };
+        (count > 0).then(|| format!("{count} {name}"))
     });
-    let words = told.collect::<Vec<_>>().join(", ");
-    if words.is_empty() { "nothing to compare".to_string() } else { words }
+    let text = counts.collect::<Vec<_>>().join(", ");
+    if text.is_empty() { "nothing to compare".to_string() } else { text }
 }
 
 /// A figure, or a dash where there is none.
@@ -36,40 +24,43 @@ pub(super) fn figure_text(value: f64) -> String {
 
 /// `0.0101 mm → 0.0312 mm`.
 pub(super) fn change_text(change: &Change) -> String {
-    let unit = match unit_text(&change.unit) {
-        "–" => String::new(),
-        unit => format!(" {unit}"),
-    };
-    let written = |value: f64| match value.is_nan() {
+    let unit = unit_suffix(&change.unit);
+    let figure = |value: f64| match value.is_nan() {
         true => "nothing".to_string(),
         false => format!("{}{unit}", four_digits(value)),
     };
-    format!("{} → {}", written(change.before), written(change.now))
+    format!("{} → {}", figure(change.before), figure(change.now))
 }
 
-/// Now over before; NaN where that says nothing.
+/// Now over before; NaN where it is not finite.
 pub(super) fn ratio(before: f64, now: f64) -> f64 {
     let ratio = now / before;
     if ratio.is_finite() { ratio } else { f64::NAN }
 }
 
+/// A further reason for the verdict behind a semicolon, if there is one.
+pub(super) fn remark_text(change: &Change) -> String {
+    change.remark.as_ref().map_or(String::new(), |remark| format!("; {remark}"))
+}
+
 /// What counts as the same, and why.
 pub(super) fn band_text(band: &Option<Band>) -> String {
-    let Some(Band { low, high, source, spread }) = band else { return "–".to_string() };
-    let source = match (source, spread) {
+    let Some(Band { low, high, source, scatter }) = band else { return "–".to_string() };
+    let source = match (source, scatter) {
         (BandSource::Theory, _) => "theory".to_string(),
         (BandSource::Reference, _) => "error bar of the reference".to_string(),
-        (BandSource::Scatter, Some(spread)) => format!("scatter of {} clouds", spread.samples),
+        (BandSource::Scatter, Some(scatter)) => format!("scatter of {} clouds", scatter.samples),
         (BandSource::Scatter, None) => "scatter".to_string(),
     };
     format!("{} … {}: {source}", four_digits(*low), four_digits(*high))
 }
 
-/// An id that may be broken at its slashes.
+/// An id with line breaks allowed at its slashes.
 pub(super) fn breakable(id: &str) -> Value {
     Value::from_safe_string(escape(id).replace('/', "/<wbr>"))
 }
 
+/// Changes as values of a template.
 pub(super) fn change_values(changes: &[&Change]) -> Vec<Value> {
     changes.iter().map(|change| change_value(change)).collect()
 }
@@ -80,7 +71,7 @@ fn change_value(change: &Change) -> Value {
         id => change.id.as_str(),
         breakable_id => breakable(&change.id),
         quantity => change.quantity.as_str(),
-        verdict => verdict_name(change.verdict),
+        verdict => change.verdict.name(),
         bad => matches!(change.verdict, Verdict::Worse | Verdict::Missing),
         before => figure_text(change.before),
         before_key => change.before.to_string(),

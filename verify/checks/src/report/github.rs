@@ -1,16 +1,15 @@
-//! What a job of GitHub Actions shows: annotations and a step summary.
+//! Annotations and step summary of a job of GitHub Actions.
 
-use super::change::{band_text, change_text, verdict_name};
-use super::number::{bound_text, four_digits};
-use super::words::unit_text;
+use super::change::{band_text, change_text, remark_text};
+use super::labels::failure_text;
 use crate::study::{Check, Report, Verdict};
 use std::path::Path;
 
-/// Bytes that a step summary may hold.
+/// Largest size of a step summary \[bytes\].
 pub const SUMMARY_LIMIT: usize = 1 << 20;
 
 /// A workflow command per failed, worse or missing check, then per improved
-/// one; `folder` is where the report lies.
+/// one; `folder` is that of the report.
 pub fn annotations(report: &Report, folder: &Path) -> Vec<String> {
     let mut lines = Vec::new();
     for study in &report.studies {
@@ -28,10 +27,10 @@ pub fn annotations(report: &Report, folder: &Path) -> Vec<String> {
             let title = match verdict {
                 Verdict::Improved => format!("{} improved", change.id),
                 Verdict::Missing => format!("{} is missing", change.id),
-                _ => format!("{} got {}", change.id, verdict_name(verdict)),
+                _ => format!("{} got {}", change.id, verdict.name()),
             };
-            let remark = change.remark.as_ref().map_or(String::new(), |r| format!("; {r}"));
             let (text, band) = (change_text(change), band_text(&change.band));
+            let remark = remark_text(change);
             let message = format!("{text}; counts as the same: {band}{remark}");
             lines.push(command(kind, &title, &message));
         }
@@ -39,14 +38,9 @@ pub fn annotations(report: &Report, folder: &Path) -> Vec<String> {
     lines
 }
 
-/// The property that broke, by how much, and the case that shows it.
+/// The check that failed, by how much, and the case that reproduces it.
 fn failure(report: &Report, check: &Check, folder: &Path) -> String {
-    let unit = match unit_text(&check.unit) {
-        "–" => String::new(),
-        unit => format!(" {unit}"),
-    };
-    let (value, bound) = (four_digits(check.value), bound_text(&check.bound));
-    let mut text = format!("{} is {value}{unit}, must be {bound}{unit}", check.quantity);
+    let mut text = failure_text(check);
     let study = report.studies.iter().find(|study| study.id == check.study);
     if let Some(study) = study.filter(|study| !study.claim.is_empty()) {
         text += &format!("\nbroken: {}", study.claim);
@@ -57,34 +51,34 @@ fn failure(report: &Report, check: &Check, folder: &Path) -> String {
     text
 }
 
-/// Escapes as the runner unescapes: first the sign of escapes itself.
+/// A workflow command; the percent sign is escaped first because it starts an escape.
 fn command(kind: &str, title: &str, message: &str) -> String {
     let data = |text: &str| text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
     let property = |text: &str| data(text).replace(':', "%3A").replace(',', "%2C");
     format!("::{kind} title={}::{}", property(title), data(message))
 }
 
-/// The summary in `room` bytes: whole, else without the folded list of all
+/// The summary in at most `limit` bytes: whole, else without the folded list of all
 /// checks, else its first lines.
-pub fn step_summary(report: &Report, room: usize) -> String {
+pub fn step_summary(report: &Report, limit: usize) -> String {
     let whole = super::markdown::to_markdown(report);
-    if whole.len() <= room {
+    if whole.len() <= limit {
         return whole;
     }
     let short = super::markdown::without_details(&whole);
-    if short.len() <= room {
+    if short.len() <= limit {
         return short;
     }
     const CUT: &str = "\n(cut: the rest is in summary.md of the report)\n";
     let mut text = String::new();
     for line in short.lines() {
-        if text.len() + line.len() + 1 + CUT.len() > room {
+        if text.len() + line.len() + 1 + CUT.len() > limit {
             break;
         }
         text.push_str(line);
         text.push('\n');
     }
-    if text.len() + CUT.len() <= room { text + CUT } else { String::new() }
+    if text.len() + CUT.len() <= limit { text + CUT } else { String::new() }
 }
 
 #[cfg(test)]

@@ -1,29 +1,27 @@
-//! One page for people: offline, printable, for phones and desks.
+//! One page for people that works offline, in print and on small screens.
 
-use super::change::{breakable, change_values, gate_words};
+use super::change::{breakable, change_values, verdict_counts};
+use super::labels::{counts, duration, plural, result_line, study_counts, unit_text};
 use super::number::{bound_text, four_digits};
 use super::svg;
-use super::words::{
-    counts, duration, kind_name, plural, study_counts, study_passed, unit_text, verdict,
-};
 use crate::study::{
     Bound, Cell, Change, Check, Comparison, Figure, Kind, Provenance, Report, Study, Table, Verdict,
 };
 use minijinja::{Environment, Value, context};
 
-/// Texts with more letters get a column that is wide enough to read.
+/// Texts with more bytes get a wide column.
 const LONG: usize = 24;
 
-/// The study whose drawings stand on top of the page.
+/// The study whose drawings are at the top of the page.
 const DRAWN: &str = "brain";
-/// Studies whose first plot does: error against cost.
+/// Studies whose first plot is, of error against cost.
 const PARETO: [&str; 2] = ["race", "tune"];
 
 /// Style and script of every page.
 pub(super) const STYLE: &str = include_str!("page/page.css");
 pub(super) const SCRIPT: &str = include_str!("page/page.js");
 
-/// The pages by name, with what they share.
+/// The templates of all pages.
 pub(super) fn pages() -> anyhow::Result<Environment<'static>> {
     let mut pages = Environment::new();
     pages.add_template("shared.html", include_str!("page/shared.html"))?;
@@ -32,7 +30,7 @@ pub(super) fn pages() -> anyhow::Result<Environment<'static>> {
     Ok(pages)
 }
 
-/// The page as one file without any link to the outside.
+/// The page as one file without links to other files.
 pub fn to_html(report: &Report) -> anyhow::Result<String> {
     let studies: Vec<Value> = report.studies.iter().map(study_value).collect();
     let failures: Vec<Value> =
@@ -43,8 +41,8 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
         suite => report.suite.as_str(),
         passed => report.passed(),
         failed => !report.bounds_hold(),
-        compared => report.comparison.as_ref().map(compared_value),
-        verdict => verdict(report),
+        compared => report.comparison.as_ref().map(comparison_value),
+        verdict => result_line(report),
         judged => report.checks().next().is_some(),
         kinds => kind_values(report),
         failures => failures,
@@ -70,7 +68,7 @@ fn study_value(study: &Study) -> Value {
         claim => study.claim.as_str(),
         command => study.command.as_str(),
         failure => study.failure.as_deref(),
-        pass => study_passed(study),
+        pass => study.passed(),
         counts => if all == 0 { "figures only".into() } else { format!("{passed} of {all}") },
         checks => study.checks.iter().map(check_value).collect::<Vec<_>>(),
         tables => study.tables.iter().map(table_value).collect::<Vec<_>>(),
@@ -91,7 +89,7 @@ fn check_value(check: &Check) -> Value {
         breakable_id => breakable(&check.id),
         study => check.study.as_str(),
         quantity => check.quantity.as_str(),
-        kind => kind_name(check.kind),
+        kind => check.kind.name(),
         value => four_digits(check.value),
         value_key => check.value.to_string(),
         bound => bound_text(&check.bound),
@@ -103,12 +101,12 @@ fn check_value(check: &Check) -> Value {
     }
 }
 
-fn compared_value(comparison: &Comparison) -> Value {
+fn comparison_value(comparison: &Comparison) -> Value {
     let (same, changes): (Vec<&Change>, Vec<&Change>) =
         comparison.changes.iter().partition(|change| change.verdict == Verdict::Same);
     context! {
         with => comparison.with.as_str(),
-        summary => gate_words(comparison),
+        summary => verdict_counts(comparison),
         holds => comparison.holds(),
         changes => change_values(&changes),
         same => change_values(&same),
@@ -137,7 +135,7 @@ fn table_value(table: &Table) -> Value {
 
 fn cell_value(cell: &Cell) -> Value {
     match cell {
-        // An order that nobody claims is no mistake: it reads as a dash.
+        // NaN in a table stands for a figure that does not exist.
         Cell::Number(number) if number.is_nan() => {
             context! { text => "–", key => "NaN", number => true }
         }
@@ -170,8 +168,7 @@ fn hero_values<'a>(report: &'a Report) -> Vec<Value> {
     heroes.into_iter().map(figure_value).collect()
 }
 
-/// What costs least for an error, and heavy drawings, stand once on the page,
-/// on top.
+/// Whether a figure is shown at the top of the page only.
 fn is_hero(study: &Study, figure: &Figure) -> bool {
     match figure {
         Figure::Drawing(_) => study.id == DRAWN,
@@ -182,7 +179,7 @@ fn is_hero(study: &Study, figure: &Figure) -> bool {
     }
 }
 
-/// How many checks of each kind hold, with what the kind means.
+/// Passed and all checks of each kind, with what the kind means.
 fn kind_values(report: &Report) -> Vec<Value> {
     let kinds = [
         (Kind::Exact, "closed forms and theorems"),
@@ -195,7 +192,7 @@ fn kind_values(report: &Report) -> Vec<Value> {
         .map(|(kind, meaning)| {
             let of_kind = report.checks().filter(|check| check.kind == kind);
             let (passed, all) = counts(of_kind.map(|check| check.pass));
-            context! { name => kind_name(kind), meaning, passed, all, pass => passed == all }
+            context! { name => kind.name(), meaning, passed, all, pass => passed == all }
         })
         .collect()
 }

@@ -1,15 +1,15 @@
 //! The table for the terminal.
 
-use super::change::{band_text, change_text, gate_words, verdict_name};
+use super::change::{band_text, change_text, remark_text, verdict_counts};
+use super::labels::{duration, result_line, unit_text};
 use super::number::{bound_text, four_digits};
-use super::words::{duration, kind_name, unit_text, verdict};
 use crate::study::{Check, Comparison, Report, Study, Verdict};
 use comfy_table::{
     Attribute, Cell, CellAlignment, Color, ContentArrangement, LineStyle, Table, presets,
 };
 use std::fmt::Write;
 
-/// All checks grouped by study and the verdict; coloured only when asked.
+/// All checks grouped by study, then failures, changes and the result.
 pub fn to_table(report: &Report, colour: bool) -> String {
     render(report, colour, None)
 }
@@ -31,12 +31,11 @@ fn render(report: &Report, colour: bool, width: Option<u16>) -> String {
     }
     text += &attention(report, colour);
     let code = if report.passed() { "1;32" } else { "1;31" };
-    let _ = writeln!(text, "{}", paint(&verdict(report), colour.then_some(code)));
+    let _ = writeln!(text, "{}", paint(&result_line(report), colour.then_some(code)));
     text
 }
 
-/// What a reader must not miss in a long list: failures with their cases, and
-/// what changed.
+/// Failures with their cases, and changes, repeated below the tables.
 fn attention(report: &Report, colour: bool) -> String {
     let mut text = String::new();
     for check in report.checks().filter(|check| !check.pass) {
@@ -55,10 +54,10 @@ fn attention(report: &Report, colour: bool) -> String {
 
 /// `beside the baseline of …: 1 worse, 454 the same`.
 pub fn compared_with(comparison: &Comparison) -> String {
-    format!("beside {}: {}", comparison.with, gate_words(comparison))
+    format!("beside {}: {}", comparison.with, verdict_counts(comparison))
 }
 
-/// A line per check that is not the same, the worst first.
+/// A line per check that is not the same, the most urgent first.
 pub fn changed_lines(comparison: &Comparison, colour: bool) -> String {
     let mut text = String::new();
     for change in comparison.changes.iter().filter(|c| c.verdict != Verdict::Same) {
@@ -67,10 +66,10 @@ pub fn changed_lines(comparison: &Comparison, colour: bool) -> String {
             Verdict::Improved => "32",
             _ => "2",
         };
-        let remark = change.remark.as_ref().map_or(String::new(), |r| format!("; {r}"));
-        let name = verdict_name(change.verdict);
+        let name = change.verdict.name();
         let (values, band) = (change_text(change), band_text(&change.band));
-        let line = format!("{name:8} {}: {values} (same: {band}){remark}", change.id);
+        let (id, remark) = (&change.id, remark_text(change));
+        let line = format!("{name:8} {id}: {values} (same: {band}){remark}");
         let _ = writeln!(text, "{}", paint(&line, colour.then_some(code)));
     }
     text
@@ -106,7 +105,7 @@ fn row(check: &Check, colour: bool) -> Vec<Cell> {
     vec![
         Cell::new(&check.id),
         Cell::new(&check.quantity),
-        Cell::new(kind_name(check.kind)),
+        Cell::new(check.kind.name()),
         Cell::new(four_digits(check.value)),
         Cell::new(bound_text(&check.bound)),
         Cell::new(unit_text(&check.unit)),
@@ -146,11 +145,11 @@ mod tests {
     #[test]
     fn failures_and_what_got_worse_are_repeated_below_the_tables() {
         let plain = render(&sample::compared(), false, Some(200));
-        let at = |words: &str| plain.find(words).unwrap_or_else(|| panic!("{words}: {plain}"));
+        let at = |part: &str| plain.find(part).unwrap_or_else(|| panic!("{part}: {plain}"));
         assert!(
             at("failures/brain-tumour-shift.toml") < at("worse    brain/tumour/shift: 0.01010 mm")
         );
-        assert!(at("worse    ") < at("missing  brain/lost"));
+        assert!(at("worse    ") < at("missing  brain/none"));
         assert!(!plain.contains("\nsame     "));
     }
 

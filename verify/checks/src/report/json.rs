@@ -1,12 +1,12 @@
-//! results.json: everything that was found, one check and one study per line.
+//! results.json: the whole report, one check and one study per line.
 
 use crate::study::{Comparison, Figure, Report, Study, Table};
 use serde::Serialize;
 
-/// Version of the file, which every [`Report`] carries.
+/// Version of the file, stored in every [`Report`].
 pub const SCHEMA_VERSION: u32 = 1;
 
-/// A study without its checks, which stand in a list of their own.
+/// A study without its checks, which have a list of their own.
 #[derive(Serialize)]
 struct StudyLine<'a> {
     id: &'a str,
@@ -54,7 +54,7 @@ fn line(study: &Study) -> StudyLine<'_> {
         title: &study.title,
         claim: &study.claim,
         command: &study.command,
-        passed: super::words::study_passed(study),
+        passed: study.passed(),
         failure: &study.failure,
         wall_seconds: study.wall_seconds,
         notes: &study.notes,
@@ -83,15 +83,15 @@ mod tests {
     use serde_json::Value;
 
     #[test]
-    fn the_file_parses_and_a_lost_value_is_null() {
+    fn the_file_parses_and_nan_is_null() {
         let text = to_json(&sample::report());
         assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
         let parsed: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(parsed["schema_version"], 1);
         assert_eq!(parsed["passed"], false);
         assert_eq!(parsed["checks"].as_array().unwrap().len(), 11);
-        let lost = parsed["checks"].as_array().unwrap().iter().find(|c| c["value"].is_null());
-        assert_eq!(lost.unwrap()["pass"], false);
+        let none = parsed["checks"].as_array().unwrap().iter().find(|c| c["value"].is_null());
+        assert_eq!(none.unwrap()["pass"], false);
         assert_eq!(parsed["checks"][0]["bound"]["at_most"], 1e-12);
         assert_eq!(parsed["checks"][0]["kind"], "exact");
         assert!(parsed["studies"][0].get("checks").is_none());

@@ -1,20 +1,20 @@
-//! A summary in Markdown, made for the step summary of a CI job.
+//! A summary in Markdown, for the step summary of a CI job.
 
-use super::change::gate_words;
+use super::change::verdict_counts;
+use super::labels::{duration, failure_text, result_line, study_counts, unit_text};
+use super::markdown_table::{cell, change_table};
 use super::number::{bound_text, four_digits};
-use super::versus::change_table;
-use super::words::{duration, kind_name, study_counts, study_passed, unit_text, verdict};
 use crate::study::{Cell, Check, Comparison, Provenance, Report, Study, Verdict};
 use std::fmt::Write;
 
 const DETAILS: &str = "<details>";
 const DETAILS_END: &str = "</details>";
 
-/// Verdict, failures, what got worse, one line per study, and all checks folded away.
+/// Result, failures, changes, one line per study, and all checks in a folded block.
 pub fn to_markdown(report: &Report) -> String {
     let mut text = String::new();
     let mark = mark(report.passed());
-    let _ = writeln!(text, "## {mark} mtled {}: {}\n", report.suite, verdict(report));
+    let _ = writeln!(text, "## {mark} mtled {}: {}\n", report.suite, result_line(report));
     failures(&mut text, report);
     if let Some(comparison) = &report.comparison {
         compared(&mut text, comparison);
@@ -40,18 +40,18 @@ pub fn to_markdown(report: &Report) -> String {
     text
 }
 
-/// A summary without what is folded away.
+/// A summary without its folded block.
 pub(super) fn without_details(text: &str) -> String {
     let Some((before, rest)) = text.split_once(DETAILS) else { return text.to_string() };
     let after = rest.split_once(DETAILS_END).map_or("", |(_, after)| after.trim_start());
     format!("{before}{after}")
 }
 
-/// What changed beside a baseline, the worst first.
+/// Changes compared with a baseline, the most urgent first.
 fn compared(text: &mut String, comparison: &Comparison) {
     let mark = mark(comparison.holds());
-    let (with, words) = (&comparison.with, gate_words(comparison));
-    let _ = writeln!(text, "### {mark} Beside {with}: {words}\n");
+    let (with, counts) = (&comparison.with, verdict_counts(comparison));
+    let _ = writeln!(text, "### {mark} Beside {with}: {counts}\n");
     let changes = || comparison.changes.iter().filter(|c| c.verdict != Verdict::Same);
     if changes().next().is_some() {
         change_table(text, changes());
@@ -66,14 +66,7 @@ fn failures(text: &mut String, report: &Report) {
         }
     }
     for check in report.checks().filter(|check| !check.pass) {
-        let (value, bound) = (four_digits(check.value), bound_text(&check.bound));
-        let unit = if check.unit == "1" { String::new() } else { format!(" {}", check.unit) };
-        let quantity = cell(&check.quantity);
-        let _ = writeln!(
-            text,
-            "- ❌ `{}`: {quantity} is {value}{unit}, must be {bound}{unit}",
-            check.id
-        );
+        let _ = writeln!(text, "- ❌ `{}`: {}", check.id, cell(&failure_text(check)));
         if let Some(file) = check.failure_file() {
             let _ = writeln!(text, "  The smallest case that shows it: [`{file}`]({file})");
         }
@@ -90,7 +83,7 @@ fn studies(text: &mut String, report: &Report) {
         let _ = writeln!(
             text,
             "| {} | {} | {passed} of {all} | {} |",
-            mark(study_passed(study)),
+            mark(study.passed()),
             cell(&study.title),
             duration(study.wall_seconds)
         );
@@ -108,7 +101,7 @@ fn checks<'a>(text: &mut String, checks: impl Iterator<Item = &'a Check>) {
             mark(check.pass),
             check.id,
             cell(&check.quantity),
-            kind_name(check.kind),
+            check.kind.name(),
             four_digits(check.value),
             bound_text(&check.bound),
             cell(unit_text(&check.unit)),
@@ -135,7 +128,7 @@ pub fn markdown_tables(study: &Study, provenance: &Provenance) -> String {
             let cells = row.iter().map(|content| match content {
                 Cell::Number(number) if number.is_nan() => "–".to_string(),
                 Cell::Number(number) => four_digits(*number),
-                Cell::Text(words) => cell(words),
+                Cell::Text(text) => cell(text),
             });
             let _ = writeln!(text, "| {} |", cells.collect::<Vec<_>>().join(" | "));
         }
@@ -149,18 +142,13 @@ pub fn markdown_tables(study: &Study, provenance: &Provenance) -> String {
     text
 }
 
-/// Keeps a text inside its cell.
-pub(super) fn cell(text: &str) -> String {
-    text.replace('|', "\\|").replace('<', "&lt;").replace(['\r', '\n'], " ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::report::sample;
 
     #[test]
-    fn the_summary_leads_with_the_verdict_and_lists_what_failed() {
+    fn the_summary_starts_with_the_result_and_lists_failures() {
         let text = to_markdown(&sample::report());
         assert!(text.starts_with("## ❌ mtled quick: 9 of 11 checks passed"), "{text}");
         assert!(text.contains("- ❌ **cook** could not run"), "{text}");
@@ -168,9 +156,9 @@ mod tests {
     }
 
     #[test]
-    fn what_got_worse_stands_before_the_studies() {
+    fn changes_come_before_the_studies() {
         let text = to_markdown(&sample::compared());
-        let at = |words: &str| text.find(words).unwrap_or_else(|| panic!("{words}: {text}"));
+        let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
         assert!(at("[`failures/brain-tumour-shift.toml`]") < at("### ❌ Beside the baseline"));
         assert!(at("| worse (its bound was loosened) |") < at("| missing |"));
         assert!(at("| improved |") < at("| | Study |"));

@@ -1,5 +1,5 @@
-//! Reports built from study results alone: JSON, JUnit, HTML with inline SVG,
-//! Markdown, a table for the terminal; and VTU for fields.
+//! Reports built from the results of studies: JSON, JUnit, HTML with inline SVG,
+//! Markdown, annotations of a CI job, and a table for the terminal.
 
 mod change;
 pub mod github;
@@ -7,14 +7,15 @@ pub mod html;
 pub mod human;
 pub mod json;
 pub mod junit;
+mod labels;
 pub mod markdown;
+mod markdown_table;
 mod number;
 pub mod read;
 #[cfg(test)]
 mod sample;
 pub mod svg;
-pub mod versus;
-mod words;
+pub mod two_runs;
 pub mod write;
 
 pub use markdown::markdown_tables;

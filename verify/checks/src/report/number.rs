@@ -6,22 +6,22 @@ use crate::study::Bound;
 /// (`12.34×10⁻⁶`) and of ten where no prefix is in use (`3.210×10⁻¹⁴`); counts
 /// below 10⁷ stay whole.
 pub fn four_digits(value: f64) -> String {
-    written(value, false)
+    significant(value, false)
 }
 
 /// A bound with its relation, such as `≤ 0.02`.
 pub fn bound_text(bound: &Bound) -> String {
     match *bound {
-        Bound::AtMost(limit) => format!("≤ {}", written(limit, true)),
-        Bound::AtLeast(limit) => format!("≥ {}", written(limit, true)),
+        Bound::AtMost(limit) => format!("≤ {}", significant(limit, true)),
+        Bound::AtLeast(limit) => format!("≥ {}", significant(limit, true)),
         Bound::Between(low, high) => {
-            format!("{} … {}", written(low, true), written(high, true))
+            format!("{} … {}", significant(low, true), significant(high, true))
         }
     }
 }
 
-/// `trimmed` drops the zeros behind the point, for limits that somebody chose.
-fn written(value: f64, trimmed: bool) -> String {
+/// `trimmed` drops zeros after the decimal point, for limits that somebody chose.
+fn significant(value: f64, trimmed: bool) -> String {
     if value.is_nan() {
         return "not a number".to_string();
     }
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_lose_their_idle_zeros() {
+    fn bounds_have_no_trailing_zeros() {
         assert_eq!(bound_text(&Bound::AtMost(0.02)), "≤ 0.02");
         assert_eq!(bound_text(&Bound::AtMost(1e-12)), "≤ 10⁻¹²");
         assert_eq!(bound_text(&Bound::AtMost(1e-5)), "≤ 10⁻⁵");

@@ -1,13 +1,14 @@
 //! Reads results.json back.
 
 use super::json::SCHEMA_VERSION;
-use crate::study::{Check, Comparison, Figure, Provenance, Report, Study, Table};
+use crate::study::{Check, Comparison, Provenance, Report, Study};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Why there is no report to read.
 #[derive(Debug, Error)]
+#[allow(missing_docs)] // The messages say it.
 pub enum ReportError {
     #[error("there is no {}: name the folder of a report, or its results.json", path.display())]
     Absent { path: PathBuf },
@@ -36,20 +37,7 @@ struct File {
     wall_seconds: f64,
     comparison: Option<Comparison>,
     checks: Vec<Check>,
-    studies: Vec<StudyLine>,
-}
-
-#[derive(Deserialize)]
-struct StudyLine {
-    id: String,
-    title: String,
-    claim: String,
-    command: String,
-    failure: Option<String>,
-    wall_seconds: f64,
-    notes: Vec<String>,
-    tables: Vec<Table>,
-    figures: Vec<Figure>,
+    studies: Vec<Study>,
 }
 
 /// The report in a folder, or in the results.json that is named.
@@ -73,10 +61,9 @@ pub fn from_json(text: &str, path: &Path) -> Result<Report, ReportError> {
     if head.schema_version != u64::from(SCHEMA_VERSION) {
         return Err(ReportError::Version { path: at(), found: head.schema_version });
     }
-    let file: File = serde_json::from_str(text).map_err(malformed)?;
-    let mut studies: Vec<Study> = file.studies.into_iter().map(study).collect();
+    let mut file: File = serde_json::from_str(text).map_err(malformed)?;
     for check in file.checks {
-        match studies.iter_mut().find(|study| study.id == check.study) {
+        match file.studies.iter_mut().find(|study| study.id == check.study) {
             Some(study) => study.checks.push(check),
             None => {
                 let Check { id: check, study, .. } = check;
@@ -88,25 +75,10 @@ pub fn from_json(text: &str, path: &Path) -> Result<Report, ReportError> {
         schema_version: SCHEMA_VERSION,
         suite: file.suite,
         provenance: file.provenance,
-        studies,
+        studies: file.studies,
         wall_seconds: file.wall_seconds,
         comparison: file.comparison,
     })
-}
-
-fn study(line: StudyLine) -> Study {
-    Study {
-        id: line.id,
-        title: line.title,
-        claim: line.claim,
-        command: line.command,
-        checks: Vec::new(),
-        tables: line.tables,
-        figures: line.figures,
-        notes: line.notes,
-        failure: line.failure,
-        wall_seconds: line.wall_seconds,
-    }
 }
 
 #[cfg(test)]
@@ -127,14 +99,14 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_value_comes_back_as_lost() {
+    fn a_null_value_is_read_as_nan() {
         let report = read(&to_json(&sample::report())).unwrap();
-        let lost = report.checks().find(|check| check.id == "convergence/lost").unwrap();
-        assert!(lost.value.is_nan() && !lost.pass);
+        let none = report.checks().find(|check| check.id == "convergence/none").unwrap();
+        assert!(none.value.is_nan() && !none.pass);
     }
 
     #[test]
-    fn what_is_no_report_is_refused_with_the_reason() {
+    fn files_that_are_not_reports_are_refused_with_the_reason() {
         let old =
             to_json(&sample::empty()).replace("\"schema_version\": 1", "\"schema_version\": 7");
         let stray =
@@ -145,9 +117,9 @@ mod tests {
             ("[]", "is not the results.json of a report"),
             (&stray, "of study heart, and no such study"),
         ];
-        for (text, words) in cases {
+        for (text, message) in cases {
             let error = read(text).unwrap_err().to_string();
-            assert!(error.contains(words), "{error}");
+            assert!(error.contains(message), "{error}");
         }
         let error = read_report(Path::new("nowhere")).unwrap_err().to_string();
         assert!(error.starts_with("there is no nowhere"), "{error}");

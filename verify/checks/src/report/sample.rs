@@ -1,9 +1,9 @@
 //! A made-up report that uses every feature, for the tests of this folder.
 
 use crate::study::{
-    Axis, Band, BandSource, Bound, Cell, Change, Check, Column, Comparison, Drawing, Figure, Kind,
-    Layer, LayerStyle, Plot, Provenance, Report, Scale, Series, SeriesStyle, Spread, Study, Table,
-    Verdict,
+    Band, BandSource, Bound, Cell, Change, Check, Comparison, Drawing, Figure, Kind, Layer,
+    LayerStyle, Plot, Provenance, Report, Scale, Scatter, Series, SeriesStyle, Study, Table,
+    Verdict, axis, curve, number, styled, text,
 };
 use std::f64::consts::TAU;
 
@@ -21,7 +21,7 @@ pub(crate) fn report() -> Report {
     Report { studies, ..empty() }
 }
 
-/// The same beside a baseline: one check of each verdict.
+/// The same compared with a baseline: one check of each verdict.
 pub(crate) fn compared() -> Report {
     let change = |id: &str, verdict: Verdict, before: f64, now: f64| Change {
         id: id.into(),
@@ -34,14 +34,14 @@ pub(crate) fn compared() -> Report {
             low: 0.5 * before,
             high: 2.0 * before,
             source: BandSource::Scatter,
-            spread: Some(Spread { scale: Scale::Logarithmic, deviation: 0.1, samples: 20 }),
+            scatter: Some(Scatter { scale: Scale::Logarithmic, deviation: 0.1, samples: 20 }),
         })
         .filter(|band| band.low.is_finite()),
         remark: (verdict == Verdict::Worse).then(|| "its bound was loosened".to_string()),
     };
     let changes = vec![
         change("brain/tumour/shift", Verdict::Worse, 0.0101, 0.0312),
-        change("brain/lost", Verdict::Missing, 0.02, f64::NAN),
+        change("brain/none", Verdict::Missing, 0.02, f64::NAN),
         change("patch/cube/moment", Verdict::New, f64::NAN, 4.4e-15),
         change("brain/ventricle/shift", Verdict::Improved, 0.05, 0.0101),
         change("brain/step", Verdict::Same, 1.2e-5, 1.234e-5),
@@ -108,17 +108,15 @@ fn convergence() -> Study {
     let sizes = [0.1, 0.05, 0.025, 0.0125, 0.00625];
     let power = |a: f64, p: f64| sizes.iter().map(|&h: &f64| (h, a * h.powf(p))).collect();
     let series = |name: &str, points: Vec<(f64, f64)>| Series {
-        name: name.into(),
         error_bars: points.iter().map(|p| 0.2 * p.1).collect(),
-        points,
-        style: SeriesStyle::LineAndPoints,
+        ..curve(name, points)
     };
     let figure = Plot {
         title: "Error over spacing".into(),
-        caption: "Relative error in displacement and stress, median of five clouds; bars: spread."
+        caption: "Relative error in displacement and stress, median of five clouds; bars: scatter."
             .into(),
-        x: Axis { label: "nodal spacing".into(), unit: "m".into(), log: true },
-        y: Axis { label: "relative L2 error".into(), unit: "1".into(), log: true },
+        x: axis("nodal spacing", "m", true),
+        y: axis("relative L2 error", "1", true),
         series: vec![
             series("displacement, h < 1 & more", power(2.0, 2.4)),
             series("displacement, linear basis", power(1.0, 1.9)),
@@ -126,7 +124,6 @@ fn convergence() -> Study {
         ],
         slopes: vec![2.0, 1.0],
     };
-    let column = |name: &str, unit: &str| Column { name: name.into(), unit: unit.into() };
     let row = |basis: &str, h: f64, nodes: f64, e: f64, p: f64| {
         vec![
             Cell::Text(basis.into()),
@@ -159,7 +156,7 @@ fn convergence() -> Study {
                 "1",
             ),
             check(
-                "convergence/lost",
+                "convergence/none",
                 "order of the energy",
                 Kind::Exact,
                 f64::NAN,
@@ -170,11 +167,11 @@ fn convergence() -> Study {
         tables: vec![Table {
             title: "Refinement".into(),
             columns: vec![
-                column("basis", ""),
-                column("spacing", "m"),
-                column("nodes", "1"),
-                column("error", "1"),
-                column("order", "1"),
+                text("basis"),
+                number("spacing", "m"),
+                number("nodes", "1"),
+                number("error", "1"),
+                number("order", "1"),
             ],
             rows: vec![
                 row("linear", 0.1, 1331.0, 1.26e-2, f64::NAN),
@@ -195,22 +192,16 @@ fn cantilever() -> Study {
             .map(|t| (t, -0.0636 - 0.0652 * (TAU * 1.0995 * t + phase).cos()))
             .collect::<Vec<_>>()
     };
-    let series = |name: &str, points: Vec<(f64, f64)>, style: SeriesStyle| Series {
-        name: name.into(),
-        points,
-        error_bars: vec![],
-        style,
-    };
     let few = swing(0.0).into_iter().step_by(25).collect();
     let history = Plot {
         title: "Tip of the flag".into(),
         caption: "Vertical displacement of the tip over time.".into(),
-        x: Axis { label: "time".into(), unit: "s".into(), log: false },
-        y: Axis { label: "displacement".into(), unit: "m".into(), log: false },
+        x: axis("time", "s", false),
+        y: axis("displacement", "m", false),
         series: vec![
-            series("reference", few, SeriesStyle::Points),
-            series("mtled, h = 5 mm", swing(0.1), SeriesStyle::Line),
-            series("mtled, h = 2.5 mm", swing(0.02), SeriesStyle::Line),
+            styled("reference", few, SeriesStyle::Points),
+            styled("mtled, h = 5 mm", swing(0.1), SeriesStyle::Line),
+            styled("mtled, h = 2.5 mm", swing(0.02), SeriesStyle::Line),
         ],
         slopes: vec![],
     };
@@ -218,9 +209,9 @@ fn cantilever() -> Study {
     let energy = Plot {
         title: "Strain energy".into(),
         caption: "Grows with the square of the load.".into(),
-        x: Axis { label: "load".into(), unit: "N".into(), log: false },
-        y: Axis { label: "strain energy".into(), unit: "J".into(), log: false },
-        series: vec![series("", strain.collect(), SeriesStyle::LineAndPoints)],
+        x: axis("load", "N", false),
+        y: axis("strain energy", "J", false),
+        series: vec![styled("", strain.collect(), SeriesStyle::LineAndPoints)],
         slopes: vec![],
     };
     let tip = |id: &str, name: &str, value: f64, low: f64, high: f64| {
@@ -322,7 +313,7 @@ fn brain() -> Study {
             ),
         ],
         figures: vec![Figure::Drawing(drawing), Figure::Drawing(contour)],
-        notes: vec!["The seed reports 1.8 to 9.6 % of the displacement.".into()],
+        notes: vec!["Horton 2007 reports 1.8 to 9.6 % of the displacement.".into()],
         wall_seconds: 37.0,
         ..Study::default()
     }

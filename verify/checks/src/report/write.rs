@@ -1,4 +1,4 @@
-//! Files that are either whole or absent.
+//! The files of a report, written atomically.
 
 use super::{html, json, junit, markdown, svg};
 use crate::study::{Report, Table};
@@ -12,7 +12,7 @@ pub fn write_report(report: &Report, dir: &Path) -> Result<()> {
     debug_assert!(report.studies.iter().flat_map(|study| &study.tables).all(is_rectangular));
     let files = [
         ("results.json", json::to_json(report)),
-        ("junit.xml", junit::to_junit(report)?),
+        ("junit.xml", junit::to_junit(report)),
         ("index.html", html::to_html(report)?),
         ("summary.md", markdown::to_markdown(report)),
     ];
@@ -28,8 +28,8 @@ fn is_rectangular(table: &Table) -> bool {
     table.rows.iter().all(|row| row.len() == table.columns.len())
 }
 
-/// The case files that show the failures; those of an earlier run that pass
-/// now are taken away.
+/// The input files that reproduce failures; those of checks that pass now are
+/// removed.
 fn write_failures(report: &Report, dir: &Path) -> Result<()> {
     for check in report.checks() {
         match (check.failure_file(), &check.reproduce) {
@@ -46,7 +46,7 @@ fn write_failures(report: &Report, dir: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Every figure as a picture of its own, `<study>-<number>.svg`.
+/// Every figure as a file of its own, `<study>-<number>.svg`.
 fn write_figures(report: &Report, dir: &Path) -> Result<()> {
     for study in &report.studies {
         for (number, figure) in study.figures.iter().enumerate() {
@@ -67,7 +67,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     let temporary = path.with_file_name(hidden);
     let written = write_then_rename(&temporary, path, bytes);
     if written.is_err() {
-        // Best effort: the reason to report is the first one.
+        // Best effort: the first error is the one to report.
         let _ = std::fs::remove_file(&temporary);
     }
     written.with_context(|| format!("cannot write {}", path.display()))
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
     use crate::report::sample;
 
-    /// Set MTLED_SAMPLE_REPORT to a folder to look at the pages.
+    /// Set MTLED_SAMPLE_REPORT to a folder to see the pages.
     #[test]
     fn a_report_is_four_files_and_folders_of_figures_and_failing_cases() {
         let scratch = tempfile::tempdir().unwrap();

@@ -1,21 +1,33 @@
-//! What an inspection says, to people and to programs.
+//! An inspection as text and as JSON.
 
-use crate::cli::inspect::{Inspection, LARGEST_SEARCH, Place};
+use super::inspection::{Inspection, LARGEST_SEARCH, Place};
 use crate::machine::peak_memory;
-use crate::run::Footprint;
 use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::Footprint;
 use mtled::discretisation::Warning;
-use mtled::model::zero_energy::{SEEN, SoftMotion, ZeroEnergyModes};
+use mtled::model::zero_energy::{CapturedMotion, ZERO_ENERGY_FRACTION, ZeroEnergyModes};
 use mtled::problem::{Dimension, Motion};
 use mtled_checks::report::four_digits;
 use serde_json::{Value, json};
 
-/// Beyond this share of the largest accepted condition a support is called poor.
+/// A support is called poor above this fraction of the largest accepted condition number \[–\].
 const POOR: f64 = 0.1;
-/// A step that is set where the spacing is below this share of the largest is worth a word.
+/// Nodes with less than this fraction of the largest spacing that limit the time step are
+/// reported \[–\].
 const FINE: f64 = 0.5;
 
+/// The inspection on one screen.
 pub fn to_text(inspection: &Inspection) -> String {
+    let mut lines = discretisation_text(inspection);
+    lines.extend(step_text(inspection));
+    lines.extend(memory_text(inspection));
+    lines.extend(modes_text(inspection.modes.as_ref()));
+    lines.push("advice".into());
+    lines.extend(advice(inspection).into_iter().map(|line| format!("  {line}")));
+    lines.join("\n") + "\n"
+}
+
+fn discretisation_text(inspection: &Inspection) -> Vec<String> {
     let Inspection { case, prepared, .. } = inspection;
     let (discretisation, model) = (&prepared.discretisation, &prepared.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
@@ -48,33 +60,37 @@ pub fn to_text(inspection: &Inspection) -> String {
     }));
     if let Some(correction) = discretisation.correction {
         lines.push(format!(
-            "gradients           consistent to {:.1e} of {:.1e} wanted, {} iterations; plain ones miss \
-             by {:.1e}",
+            "gradients           consistent to {:.1e}, tolerance {:.1e}, {} iterations; error of plain \
+             ones {:.1e}",
             correction.residual, correction.tolerance, correction.iterations, correction.defect
         ));
     }
-    lines.push(format!(
-        "critical step       {} s at rest, {} times the per-point bound of {} s; weakest about node \
-         {} ({})",
-        four_digits(inspection.critical.time_step),
-        four_digits(inspection.critical.time_step / model.bound),
-        four_digits(model.bound),
-        inspection.weakest.index,
-        show(&inspection.weakest.position)
-    ));
-    lines.push(format!(
-        "memory              {} MB are read in each step, {:.0} bytes per point",
-        four_digits(model.bytes_per_step() as f64 / 1e6),
-        model.bytes_per_step() as f64 / points as f64
-    ));
-    lines.extend(memory_text(inspection));
-    lines.extend(modes_text(inspection.modes.as_ref()));
-    lines.push("advice".into());
-    lines.extend(advice(inspection).into_iter().map(|line| format!("  {line}")));
-    lines.join("\n") + "\n"
+    lines
 }
 
-/// Memory of the set-up at its peak, and what was estimated before.
+/// The critical time step and the memory that a step reads.
+fn step_text(inspection: &Inspection) -> [String; 2] {
+    let model = &inspection.prepared.model;
+    let bytes = model.bytes_per_step() as f64;
+    [
+        format!(
+            "critical step       {} s at rest, {} times the per-point bound of {} s; limited near node \
+         {} ({})",
+            four_digits(inspection.critical.time_step),
+            four_digits(inspection.critical.time_step / model.per_point_bound),
+            four_digits(model.per_point_bound),
+            inspection.weakest.index,
+            show(&inspection.weakest.position)
+        ),
+        format!(
+            "memory              {} MB are read in each step, {:.0} bytes per point",
+            four_digits(bytes / 1e6),
+            bytes / model.point_positions.len() as f64
+        ),
+    ]
+}
+
+/// Peak of the memory during the set-up, and its estimate.
 fn memory_text(inspection: &Inspection) -> Option<String> {
     let (peak, model) = (peak_memory()? as f64, &inspection.prepared.model);
     let (nodes, points) = (model.positions.len() as f64, model.point_positions.len() as f64);
@@ -92,48 +108,48 @@ fn memory_text(inspection: &Inspection) -> Option<String> {
 fn modes_text(modes: Option<&ZeroEnergyModes>) -> Vec<String> {
     let Some(modes) = modes else {
         return vec![format!(
-            "zero-energy modes   not looked for above {LARGEST_SEARCH} nodes or with --modes never; \
-             --modes always looks"
+            "zero-energy modes   not searched for above {LARGEST_SEARCH} nodes or with --modes never; \
+             use --modes always"
         )];
     };
     let number = match modes.count {
         Some(count) => count.to_string(),
-        None => format!("at least {} (too large a body to count all)", modes.at_least()),
+        None => format!("at least {} (the body is too large to count all)", modes.at_least()),
     };
     let mut lines = vec![
-        format!("rigid motions       {} left free by the conditions of the start", modes.rigid),
+        format!("rigid motions       {} not constrained at the start", modes.rigid),
         format!(
-            "zero-energy modes   {number} beyond the rigid ones: motions of which less than {SEEN} of the \
-             strain energy is seen, compared with {} points",
+            "zero-energy modes   {number} beyond the rigid motions: the quadrature captures less than {ZERO_ENERGY_FRACTION} \
+             of their strain energy, compared with {} points",
             modes.finer_points
         ),
     ];
-    lines.extend(modes.softest.iter().take(3).map(|motion| {
-        let SoftMotion { share, node, position } = motion;
+    lines.extend(modes.least_captured.iter().take(3).map(|motion| {
+        let CapturedMotion { fraction, node, position } = motion;
         format!(
-            "                    {share:.4} is seen, largest at node {node} ({})",
+            "                    {fraction:.4} is captured, largest at node {node} ({})",
             show(position)
         )
     }));
     lines
 }
 
-/// What should be done, in plain sentences.
+/// What the user should change, in sentences.
 pub fn advice(inspection: &Inspection) -> Vec<String> {
     let (discretisation, problem) = (&inspection.prepared.discretisation, &inspection.case.problem);
     let mut advice: Vec<String> = Vec::new();
     if let Some(modes) = &inspection.modes {
         if modes.at_least() > 0 {
             advice.push(
-                "There are motions that cost no energy and will grow without a word: use smaller cells. \
-                 discretisation.grid.cells_per_spacing = 1.26 gives two points per node in space."
+                "There are motions without strain energy, which grow without any warning: use smaller cells. \
+                 discretisation.grid.cells_per_spacing = 1.26 gives two points per node in 3-D."
                     .into(),
             );
         }
         if modes.rigid > 0 && matches!(problem.motion, Motion::Static(_)) {
             advice.push(format!(
-                "The conditions leave {} rigid motions free: a static answer is settled only if the loads \
-                 balance; hold the body, or run it as time.method = \"dynamic\".",
+                "{} rigid motions are not constrained: a static solution exists only if the loads balance; \
+                 constrain the body, or use time.method = \"dynamic\".",
                 modes.rigid
             ));
         }
@@ -155,13 +171,13 @@ pub fn advice(inspection: &Inspection) -> Vec<String> {
     let [_, largest] = inspection.spacings;
     if inspection.weakest.value < FINE * largest.value {
         advice.push(format!(
-            "The step is set by the fine nodes about ({}): a coarser spacing there makes every step \
-             longer.",
+            "The time step is limited by the fine nodes near ({}): a coarser spacing there makes every \
+             step longer.",
             show(&inspection.weakest.position)
         ));
     }
     if advice.is_empty() {
-        advice.push("Nothing stands against running this case.".into());
+        advice.push("No reason against running this case was found.".into());
     }
     advice
 }
@@ -201,7 +217,7 @@ pub fn to_json(inspection: &Inspection) -> Value {
             "bodies": c.bodies,
         })),
         "critical_time_step_s": inspection.critical.time_step,
-        "per_point_bound_s": model.bound,
+        "per_point_bound_s": model.per_point_bound,
         "weakest": {
             "node": inspection.weakest.index,
             "position_m": array(&inspection.weakest.position),
@@ -212,11 +228,11 @@ pub fn to_json(inspection: &Inspection) -> Value {
         "zero_energy_modes": inspection.modes.as_ref().map(|modes| json!({
             "count": modes.count,
             "at_least": modes.at_least(),
-            "threshold": SEEN,
+            "threshold": ZERO_ENERGY_FRACTION,
             "free_rigid_motions": modes.rigid,
             "finer_points": modes.finer_points,
-            "softest": modes.softest.iter().map(|motion| json!({
-                "share": motion.share,
+            "softest": modes.least_captured.iter().map(|motion| json!({
+                "share": motion.fraction,
                 "node": motion.node,
                 "position_m": array(&motion.position),
             })).collect::<Vec<_>>(),

@@ -1,13 +1,13 @@
 //! `mtled reference solve`: runs the Python side.
 
-use crate::cli::python::{Python, python_for};
-use crate::cli::reference::case_names;
-use crate::cli::solve::progress_bar;
-use crate::cli::{Common, STOPPED, print_data};
-use crate::reference::compare::{SAME, compare};
+use super::stored::case_names;
+use crate::cli::common::{Common, STOPPED, print_data};
+use crate::cli::progress::progress_bar;
+use crate::cli::python::{Python, checkout, python_for};
+use crate::reference::compare::{TOLERANCE, compare};
 use crate::reference::{CODES, ReferenceFile, read_reference};
 use crate::run::interrupted;
-use crate::scene::read_case;
+use crate::scene::{one_error, read_case};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use indicatif::ProgressBar;
@@ -22,26 +22,27 @@ use std::time::Duration;
 pub struct SolveReferenceArgs {
     /// Names of cases [default: all].
     cases: Vec<String>,
-    /// The code to solve with; both if left out.
+    /// The code to solve with [default: both].
     #[arg(long, value_parser = CODES)]
     code: Option<String>,
-    /// Solve this mesh only, 0 the coarsest; may be repeated. The solution is
-    /// written to OUT/CASE.CODE.json and not merged.
+    /// Solve this mesh only, 0 being the coarsest; may be repeated. The solution is written to
+    /// OUT/CASE.CODE.json and not merged.
     #[arg(long = "mesh", value_name = "N", value_parser = clap::value_parser!(u8).range(0..=2))]
     meshes: Vec<u8>,
-    /// Folder of the references [default: data in the folder `reference`].
+    /// Folder of the references [default: `data` in the folder `reference`].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write nothing: compare with what is stored, the coarsest mesh if none is
-    /// named. Exit code 1 where a number has moved by more than 1e-6.
+    /// Write nothing and compare with the stored values, by default on the coarsest mesh. Exit
+    /// code 1 if a number has changed by more than 1e-6.
     #[arg(long)]
     compare: bool,
-    /// The folder `reference` of a checkout [default: found upward from here].
+    /// The folder `reference` of a checkout [default: searched from the working directory
+    /// upward].
     #[arg(long, value_name = "DIR")]
     reference: Option<PathBuf>,
 }
 
-/// A line of progress from Python.
+/// A line of progress that Python writes.
 #[derive(Debug, Deserialize)]
 struct Progress {
     progress: f64,
@@ -67,36 +68,21 @@ pub fn solve(arguments: &SolveReferenceArgs, common: &Common) -> Result<u8> {
     let cases = if arguments.cases.is_empty() { known } else { arguments.cases.clone() };
     let partial = !arguments.meshes.is_empty();
     if partial && !arguments.compare && arguments.out.is_none() {
-        bail!("--mesh needs --out DIR or --compare: some meshes alone are no reference");
+        bail!("--mesh needs --out DIR or --compare, since single meshes are not a reference");
     }
-    let say = |text: &str| {
-        if !common.quiet {
-            eprintln!("{text}");
-        }
-    };
     let mut code = 0;
     for name in CODES.iter().filter(|c| arguments.code.as_deref().is_none_or(|code| code == **c)) {
-        let python = python_for(name, &reference, &say)?;
+        let python = python_for(name, &reference, &|text| common.say(text))?;
         for case in &cases {
             let job =
                 Job { arguments, common, reference: &reference, python: &python, case, code: name };
             match job.run()? {
                 None => return Ok(STOPPED),
-                Some(worse) => code = code.max(worse),
+                Some(other) => code = code.max(other),
             }
         }
     }
     Ok(code)
-}
-
-/// The folder `reference` of the checkout around the working directory.
-pub fn checkout() -> Result<PathBuf> {
-    let here = std::env::current_dir()?;
-    let found = here.ancestors().map(|folder| folder.join("reference"));
-    let found = found.into_iter().find(|folder| folder.join("pyproject.toml").is_file());
-    found.ok_or_else(|| {
-        anyhow!("no folder `reference` with the Python package was found; work in a checkout or name it with --reference DIR")
-    })
 }
 
 /// One case with one code.
@@ -110,7 +96,7 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// The exit code, none if the user stopped it.
+    /// The exit code; none if the user stopped it.
     fn run(&self) -> Result<Option<u8>> {
         let scratch = tempfile::tempdir()?;
         let solution = scratch.path().join("solution.json");
@@ -128,17 +114,17 @@ impl Job<'_> {
         if self.arguments.meshes.is_empty() {
             let mut merge = self.python.module(self.reference);
             merge.arg("merge").arg(self.case_file()).arg("--data").arg(&out).arg(&solution);
-            run(merge, &mut |_| {}).with_context(|| self.words())?;
+            run(merge, &mut |_| {}).with_context(|| self.label())?;
         } else {
             std::fs::copy(&solution, out.join(format!("{}.{}.json", self.case, self.code)))?;
         }
         if !self.common.quiet {
-            print_data(&format!("{}: written to {}\n", self.words(), out.display()))?;
+            print_data(&format!("{}: written to {}\n", self.label(), out.display()))?;
         }
         Ok(Some(0))
     }
 
-    fn words(&self) -> String {
+    fn label(&self) -> String {
         format!("{} with {}", self.case, self.code)
     }
 
@@ -155,21 +141,19 @@ impl Job<'_> {
             command.args(["--mesh", &mesh.to_string()]);
         }
         command.arg("--out").arg(solution);
-        bar.set_message(self.words());
+        bar.set_message(self.label());
         let mut show = |line: &str| {
             if let Ok(report) = serde_json::from_str::<Progress>(line) {
                 bar.set_position((1000.0 * report.progress) as u64);
-                bar.set_message(format!("{}: {}", self.words(), report.message));
+                bar.set_message(format!("{}: {}", self.label(), report.message));
             }
         };
-        run(command, &mut show).with_context(|| self.words())
+        run(command, &mut show).with_context(|| self.label())
     }
 
-    /// Compares a solution with what is stored: 0 if it is the same, else 1.
+    /// Compares a solution with the stored one; the exit code is 0 if they are the same, else 1.
     fn compared(&self, solution: &Path) -> Result<u8> {
-        let case = read_case(&self.case_file()).map_err(|mistakes| {
-            anyhow!(mistakes.iter().map(|m| m.to_string()).collect::<Vec<_>>().join("\n"))
-        })?;
+        let case = read_case(&self.case_file()).map_err(one_error)?;
         let data = self.arguments.out.clone().unwrap_or_else(|| self.reference.join("data"));
         let path = data.join(format!("{}.json", self.case));
         let text = std::fs::read_to_string(&path)
@@ -184,19 +168,19 @@ impl Job<'_> {
         let again: ReferenceFile = serde_json::from_str(&std::fs::read_to_string(solution)?)?;
         let mut code = 0;
         for change in compare(&case, &stored, &again).map_err(|reason| anyhow!(reason))? {
-            let words = format!(
+            let text = format!(
                 "{}, {} elements: largest change {:.1e}, in {}",
-                self.words(),
+                self.label(),
                 change.elements,
                 change.relative,
                 change.quantity
             );
-            if change.relative <= SAME {
+            if change.relative <= TOLERANCE {
                 if !self.common.quiet {
-                    print_data(&format!("{words}\n"))?;
+                    print_data(&format!("{text}\n"))?;
                 }
             } else {
-                eprintln!("{words}; more than {SAME:.0e}");
+                eprintln!("{text}; more than {TOLERANCE:.0e}");
                 code = 1;
             }
         }
@@ -204,9 +188,9 @@ impl Job<'_> {
     }
 }
 
-/// Runs a command to its end and hands every line of its output to `see`;
-/// kills it, with its children, when the user stops the program.
-fn run(mut command: Command, see: &mut dyn FnMut(&str)) -> Result<Ended> {
+/// Runs a command to its end and passes every line of its output to `read_line`; ends it with
+/// its children when the user stops the program.
+fn run(mut command: Command, read_line: &mut dyn FnMut(&str)) -> Result<Ended> {
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
     let command = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -221,10 +205,10 @@ fn run(mut command: Command, see: &mut dyn FnMut(&str)) -> Result<Ended> {
             }
         }
     });
-    let complaint = std::thread::spawn(move || {
+    let message = std::thread::spawn(move || {
         let mut bytes = Vec::new();
         if let Some(mut stream) = stderr {
-            // What was read before a failure is still worth telling.
+            // What was read before a failure is still useful.
             let _ = stream.read_to_end(&mut bytes);
         }
         String::from_utf8_lossy(&bytes).trim().to_string()
@@ -235,15 +219,15 @@ fn run(mut command: Command, see: &mut dyn FnMut(&str)) -> Result<Ended> {
             return Ok(Ended::Stopped);
         }
         match receiver.recv_timeout(Duration::from_millis(100)) {
-            Ok(line) => see(&line),
+            Ok(line) => read_line(&line),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
         }
     }
     let status: ExitStatus = child.wait()?;
     if !status.success() {
-        let complaint = complaint.join().unwrap_or_default();
-        bail!("Python ended with {status}\n{complaint}");
+        let message = message.join().unwrap_or_default();
+        bail!("Python ended with {status}\n{message}");
     }
     Ok(Ended::Well)
 }

@@ -1,6 +1,6 @@
 //! References as tables and as JSON.
 
-use crate::cli::reference::{Outcome, Referred};
+use super::stored::{Referenced, StoredReference};
 use crate::reference::{Agreement, Basis};
 use comfy_table::{ContentArrangement, LineStyle, Table, presets};
 use mtled_checks::report::four_digits;
@@ -16,7 +16,7 @@ fn table(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
 }
 
 /// A row per case.
-pub fn check_table(outcomes: &[Outcome]) -> Table {
+pub fn check_table(stored: &[StoredReference]) -> Table {
     let header = [
         "case",
         "quantities",
@@ -27,38 +27,38 @@ pub fn check_table(outcomes: &[Outcome]) -> Table {
         "memory MB",
         "verdict",
     ];
-    table(&header, outcomes.iter().map(check_row))
+    table(&header, stored.iter().map(check_row))
 }
 
-fn check_row(outcome: &Outcome) -> Vec<String> {
-    let Ok(referred) = &outcome.referred else {
-        let mut row = vec![outcome.case.clone()];
+fn check_row(stored: &StoredReference) -> Vec<String> {
+    let Ok(reference) = &stored.reference else {
+        let mut row = vec![stored.case.clone()];
         row.extend(std::iter::repeat_n(String::new(), 6));
         row.push("refused".into());
         return row;
     };
-    let agreements = &referred.agreements;
+    let agreements = &reference.agreements;
     let worst = agreements.iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()));
     let estimates = || agreements.iter().flat_map(|a| &a.estimates);
     let lacking = estimates().filter(|e| matches!(e.basis, Basis::NoOrder(_))).count();
-    let meshes = || referred.file.solutions.iter().flat_map(|solution| &solution.meshes);
+    let meshes = || reference.file.solutions.iter().flat_map(|solution| &solution.meshes);
     let memory = meshes().map(|mesh| mesh.peak_memory_bytes).max().unwrap_or(0);
     vec![
-        outcome.case.clone(),
+        stored.case.clone(),
         agreements.len().to_string(),
         worst.map_or(String::new(), |a| four_digits(a.ratio())),
         worst.map_or(String::new(), |a| a.quantity.name.clone()),
         format!("{lacking} of {}", estimates().count()),
         four_digits(meshes().map(|mesh| mesh.cpu_s).sum()),
         format!("{:.0}", memory as f64 / 1e6),
-        if outcome.complaint().is_none() { "agree" } else { "DIFFER" }.into(),
+        if stored.mistake().is_none() { "agree" } else { "DIFFER" }.into(),
     ]
 }
 
 /// Everything about one case.
-pub fn show_text(referred: &Referred) -> String {
-    let mut text = format!("{}: {}\n", referred.case.name, referred.case.title);
-    for solution in &referred.file.solutions {
+pub fn show_text(reference: &Referenced) -> String {
+    let mut text = format!("{}: {}\n", reference.case.name, reference.case.title);
+    for solution in &reference.file.solutions {
         let packages: Vec<String> =
             solution.packages.iter().map(|(name, version)| format!("{name} {version}")).collect();
         text += &format!(
@@ -74,11 +74,11 @@ pub fn show_text(referred: &Referred) -> String {
             packages.join(", ")
         );
     }
-    let codes: Vec<&str> = referred.file.solutions.iter().map(|s| s.code.as_str()).collect();
+    let codes: Vec<&str> = reference.file.solutions.iter().map(|s| s.code.as_str()).collect();
     let header = ["quantity", "unit", codes[0], "order", codes[1], "order", "difference", "ratio"];
     text += "\nLengths of vectors, root mean squares over points and instants, ± error bars\n";
-    text += &format!("{}\n\n", table(&header, referred.agreements.iter().map(quantity_row)));
-    text += &format!("{}\n", meshes_table(referred));
+    text += &format!("{}\n\n", table(&header, reference.agreements.iter().map(quantity_row)));
+    text += &format!("{}\n", meshes_table(reference));
     text
 }
 
@@ -94,9 +94,9 @@ fn quantity_row(agreement: &Agreement) -> Vec<String> {
     row
 }
 
-fn meshes_table(referred: &Referred) -> Table {
+fn meshes_table(reference: &Referenced) -> Table {
     let header = ["code", "size m", "elements", "unknowns", "step s", "CPU s", "memory MB"];
-    let rows = referred.file.solutions.iter().flat_map(|solution| {
+    let rows = reference.file.solutions.iter().flat_map(|solution| {
         solution.meshes.iter().map(|mesh| {
             vec![
                 solution.code.clone(),
@@ -113,22 +113,22 @@ fn meshes_table(referred: &Referred) -> Table {
 }
 
 /// All cases as JSON.
-pub fn to_json(outcomes: &[Outcome]) -> Value {
-    let case = |outcome: &Outcome| {
-        let quantities: Vec<Value> = outcome.referred.iter().flat_map(quantities_json).collect();
+pub fn to_json(stored: &[StoredReference]) -> Value {
+    let case = |stored: &StoredReference| {
+        let quantities: Vec<Value> = stored.reference.iter().flat_map(quantities_json).collect();
         json!({
-            "case": outcome.case,
-            "sound": outcome.complaint().is_none(),
-            "complaint": outcome.complaint(),
+            "case": stored.case,
+            "sound": stored.mistake().is_none(),
+            "complaint": stored.mistake(),
             "quantities": quantities,
         })
     };
-    json!({ "schema_version": 1, "cases": outcomes.iter().map(case).collect::<Vec<_>>() })
+    json!({ "schema_version": 1, "cases": stored.iter().map(case).collect::<Vec<_>>() })
 }
 
-fn quantities_json(referred: &Referred) -> Vec<Value> {
+fn quantities_json(reference: &Referenced) -> Vec<Value> {
     let one = |agreement: &Agreement| {
-        let codes = referred.file.solutions.iter().enumerate().map(|(index, solution)| {
+        let codes = reference.file.solutions.iter().enumerate().map(|(index, solution)| {
             let estimate = &agreement.estimates[index];
             json!({
                 "code": solution.code,
@@ -138,7 +138,7 @@ fn quantities_json(referred: &Referred) -> Vec<Value> {
                 "order_reached": matches!(estimate.basis, Basis::Order(_)),
             })
         });
-        let reference = agreement.reference();
+        let agreed = agreement.reference();
         json!({
             "quantity": agreement.quantity.name,
             "unit": agreement.quantity.family.unit(),
@@ -146,8 +146,8 @@ fn quantities_json(referred: &Referred) -> Vec<Value> {
             "rms_difference": agreement.difference,
             "difference_over_error_bars": agreement.ratio(),
             "agree": agreement.agrees(),
-            "reference": { "values": reference.values, "errors": reference.errors, "rms_error": reference.error },
+            "reference": { "values": agreed.values, "errors": agreed.errors, "rms_error": agreed.error },
         })
     };
-    referred.agreements.iter().map(one).collect()
+    reference.agreements.iter().map(one).collect()
 }

@@ -1,4 +1,4 @@
-//! The baseline of `mtled verify`, and what a job of GitHub Actions is told.
+//! The baseline of `mtled verify`, and annotations for GitHub Actions.
 
 use clap::Args;
 use mtled_checks::gate::{
@@ -9,29 +9,28 @@ use mtled_checks::study::Report;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Where a baseline is written if nobody says where.
+/// The default file of the baseline.
 const BASELINE: &str = "reports/baseline.json";
 
 #[derive(Debug, Args)]
 pub struct GateArgs {
-    /// Compare every check with this file; exit code 1 where one got worse or
-    /// is missing.
+    /// Compare every check with this file; exit code 1 if one got worse or is missing.
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
-    /// Write the baseline anew from this run instead [default file:
-    /// reports/baseline.json]; what is the same keeps its line.
+    /// Update the baseline from this run instead [default file: reports/baseline.json]; lines of
+    /// unchanged checks stay as they are.
     #[arg(long, requires = "reason")]
     update_baseline: bool,
-    /// Why the figures may change, for whoever reads the diff.
+    /// Why the figures may change, for readers of the diff.
     #[arg(long, value_name = "TEXT", requires = "update_baseline")]
     reason: Option<String>,
-    /// Runs of the same code over other clouds (`mtled verify --seed`): their
-    /// scatter makes the bands.
+    /// Runs of the same code on other node clouds (`mtled verify --seed`), whose scatter gives
+    /// the bands.
     #[arg(long, value_name = "RESULTS", num_args = 1.., requires = "update_baseline")]
     scatter: Vec<PathBuf>,
 }
 
-/// What is to be done with the baseline, read before a long run and not after.
+/// What to do with the baseline, which is read before a long run.
 #[derive(Debug)]
 pub enum Gate {
     None,
@@ -68,7 +67,7 @@ impl GateArgs {
 }
 
 impl Gate {
-    /// Adds the comparison to the report; `whole` if all studies were run.
+    /// Adds the comparison to the report; `whole` means that all studies were run.
     pub fn judge(&self, report: &mut Report, whole: bool) -> Result<(), GateError> {
         if let Gate::Compare(baseline) = self {
             report.comparison = Some(compare(report, baseline, whole)?);
@@ -76,7 +75,7 @@ impl Gate {
         Ok(())
     }
 
-    /// Writes the baseline where that was asked for; returns what changed in it.
+    /// Updates the baseline on request; returns what changed in it.
     pub fn write(&self, report: &Report, whole: bool) -> anyhow::Result<Vec<String>> {
         let Gate::Update { path, old, reason, clouds, paths } = self else { return Ok(Vec::new()) };
         let scatter = Clouds::new(clouds)?;
@@ -85,17 +84,17 @@ impl Gate {
         let mut lines = difference(old.as_ref(), &new);
         if !scatter.is_empty() {
             let (failing, alarms) = (scatter.failing(), scatter.left_out(report));
-            for (suspects, words) in
-                [(&failing, "breaks its bounds"), (&alarms, "is worse than the rest allow")]
+            for (suspects, reason) in
+                [(&failing, "violates its bounds"), (&alarms, "is outside the bands of the others")]
             {
                 lines.extend(suspects.iter().map(|suspect| {
                     let path = paths[suspect.run].display();
-                    format!("{path} {words}: {}", suspect.checks.join(", "))
+                    format!("{path} {reason}: {}", suspect.checks.join(", "))
                 }));
             }
             let (count, all) = (alarms.len(), scatter.runs());
             lines.push(format!(
-                "{count} of {all} clouds, each left out in turn, are worse than the rest allow"
+                "{count} of {all} cloud families are outside the bands of the others"
             ));
         }
         lines.push(format!("baseline: {}, {} checks", path.display(), new.checks.len()));
@@ -103,8 +102,8 @@ impl Gate {
     }
 }
 
-/// Annotations on standard error, and the summary where the job shows it.
-pub fn tell_github(report: &Report, folder: &Path) -> anyhow::Result<()> {
+/// Writes annotations to standard error and the summary to the file that the job shows.
+pub fn report_to_github(report: &Report, folder: &Path) -> anyhow::Result<()> {
     if std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true") {
         for line in github::annotations(report, folder) {
             eprintln!("{line}");
@@ -114,8 +113,8 @@ pub fn tell_github(report: &Report, folder: &Path) -> anyhow::Result<()> {
         return Ok(());
     };
     let written = std::fs::metadata(&path).map_or(0, |meta| meta.len() as usize);
-    let room = github::SUMMARY_LIMIT.saturating_sub(written);
+    let capacity = github::SUMMARY_LIMIT.saturating_sub(written);
     let mut file = std::fs::OpenOptions::new().create(true).append(true).open(&path)?;
-    file.write_all(github::step_summary(report, room).as_bytes())?;
+    file.write_all(github::step_summary(report, capacity).as_bytes())?;
     Ok(())
 }

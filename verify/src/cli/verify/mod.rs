@@ -3,31 +3,31 @@
 mod gate;
 mod progress;
 
-use crate::cli::verify::gate::{GateArgs, tell_github};
-use crate::cli::verify::progress::Progress;
-use crate::cli::{COULD_NOT_RUN, Common, Format, STOPPED, print_data};
+use super::common::{COULD_NOT_RUN, Common, STOPPED};
 use crate::machine::provenance;
 use crate::studies::workbench::{Suite, Workbench};
 use crate::studies::{Definition, STUDIES};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
+use gate::{GateArgs, report_to_github};
 use mtled_checks::report::{human, json, read, read_report, write_report};
 use mtled_checks::study::{Report, Study};
+use progress::Progress;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub struct VerifyArgs {
-    /// How thorough: quick takes about two minutes, full about a quarter of an hour.
+    /// Which suite to run: quick takes about two minutes, full about a quarter of an hour.
     #[arg(long, value_enum, default_value_t = SuiteName::Quick)]
     suite: SuiteName,
-    /// Run only studies whose name contains this.
+    /// Run only the studies whose name contains this text.
     #[arg(long, value_name = "PATTERN")]
     only: Option<String>,
-    /// Another family of clouds than that of the stated figures, 0: random clouds, their points and
-    /// graded clouds take other seeds, and the lattices of carried cases are jittered by 2 % of the
-    /// spacing. Counts of work keep their clouds.
+    /// Family of node clouds; the baseline belongs to family 0. In another family random and graded
+    /// clouds have other random seeds, and the lattices of bundled cases are jittered by 2 % of the
+    /// spacing. Operation counts keep their clouds.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..1_000_000))]
     seed: u64,
     /// Folder for index.html, results.json, junit.xml and summary.md.
@@ -52,16 +52,15 @@ pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
         return Ok(STOPPED);
     }
     gate.judge(&mut report, whole)?;
-    // What is shown is what the file holds: `mtled report` makes the same pages.
+    // The report is read back, so that `mtled report` writes the same pages from the file.
     let report = read::from_json(&json::to_json(&report), &arguments.out.join("results.json"))?;
     write_report(&report, &arguments.out)?;
-    tell(&report, arguments, common)?;
-    tell_github(&report, &arguments.out)?;
-    for line in gate.write(&report, whole)? {
-        if !common.quiet {
-            eprintln!("{line}");
-        }
-    }
+    common.print_summary(&|| Ok(json::to_json(&report)), &|| {
+        let table = human::to_table(&report, common.colours());
+        format!("{table}\nreport: {}\n", arguments.out.join("index.html").display())
+    })?;
+    report_to_github(&report, &arguments.out)?;
+    gate.write(&report, whole)?.iter().for_each(|line| common.say(line));
     let could_run = report.studies.iter().all(|study| study.failure.is_none());
     Ok(match (report.passed(), could_run) {
         (true, _) => 0,
@@ -71,16 +70,16 @@ pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
 }
 
 fn chosen(only: Option<&str>) -> anyhow::Result<Vec<&'static Definition>> {
-    let wanted = |id: &str| only.is_none_or(|pattern| id.contains(pattern));
-    let chosen: Vec<_> = STUDIES.iter().filter(|study| wanted(study.id)).collect();
+    let matches = |id: &str| only.is_none_or(|pattern| id.contains(pattern));
+    let chosen: Vec<_> = STUDIES.iter().filter(|study| matches(study.id)).collect();
     if chosen.is_empty() {
         let names: Vec<&str> = STUDIES.iter().map(|study| study.id).collect();
-        bail!("no study matches; there are {}", names.join(", "));
+        bail!("no study matches; the studies are {}", names.join(", "));
     }
     Ok(chosen)
 }
 
-/// Runs the studies side by side.
+/// Runs the studies in parallel.
 fn run(chosen: &[&Definition], arguments: &VerifyArgs, common: &Common) -> anyhow::Result<Report> {
     let start = Instant::now();
     let suite = match arguments.suite {
@@ -108,17 +107,4 @@ fn run(chosen: &[&Definition], arguments: &VerifyArgs, common: &Common) -> anyho
         wall_seconds: start.elapsed().as_secs_f64(),
         comparison: None,
     })
-}
-
-fn tell(report: &Report, arguments: &VerifyArgs, common: &Common) -> anyhow::Result<()> {
-    match common.format {
-        Format::Json => print_data(&json::to_json(report))?,
-        Format::Human if !common.quiet => {
-            let table = human::to_table(report, common.colours());
-            let page = arguments.out.join("index.html");
-            print_data(&format!("{table}\nreport: {}\n", page.display()))?;
-        }
-        Format::Human => {}
-    }
-    Ok(())
 }

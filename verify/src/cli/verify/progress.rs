@@ -1,15 +1,15 @@
-//! How far `mtled verify` is: a bar with the time left on a terminal, else a
-//! line per study.
+//! Progress of `mtled verify`: a bar with the time left on a terminal, otherwise a line per
+//! study.
 
-use crate::cli::Common;
+use crate::cli::common::Common;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use mtled_checks::study::{Report, Study};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Share of a study that is believed done for as long as it runs \[–\].
-const ALMOST: f64 = 0.95;
+/// Largest fraction of a study that counts as done while it runs \[–\].
+const LARGEST_FRACTION: f64 = 0.95;
 
 pub struct Progress {
     bar: ProgressBar,
@@ -29,7 +29,7 @@ struct State {
 }
 
 impl Progress {
-    /// `earlier` tells how long each study took.
+    /// `earlier` is a report with the time that each study took.
     pub fn new(studies: &[&str], earlier: Option<&Report>, common: &Common) -> Progress {
         let of = |id: &str| {
             let study = earlier?.studies.iter().find(|study| study.id == id)?;
@@ -75,36 +75,38 @@ impl Progress {
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {
-        peek(&self.state)
+        lock(&self.state)
     }
 }
 
-/// A bar of a thousand parts that is redrawn as time passes.
+/// A bar of a thousand parts that is redrawn regularly.
 fn drawn(state: &Arc<Mutex<State>>) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr_with_hz(5));
-    let template = "{bar:40} {share:>5}  {msg}  {left}";
-    let share = state.clone();
-    let left = state.clone();
+    let template = "{bar:40} {percent_done:>5}  {msg}  {left}";
+    let (done, left) = (state.clone(), state.clone());
     let style = ProgressStyle::with_template(template)
         .unwrap_or_else(|_| ProgressStyle::default_bar())
-        .with_key("share", move |_: &indicatif::ProgressState, out: &mut dyn std::fmt::Write| {
-            let _ = write!(out, "{:.0} %", 100.0 * peek(&share).share());
-        })
+        .with_key(
+            "percent_done",
+            move |_: &indicatif::ProgressState, out: &mut dyn std::fmt::Write| {
+                let _ = write!(out, "{:.0} %", 100.0 * lock(&done).fraction());
+            },
+        )
         .with_key("left", move |_: &indicatif::ProgressState, out: &mut dyn std::fmt::Write| {
-            if let Some(seconds) = peek(&left).seconds_left() {
+            if let Some(seconds) = lock(&left).seconds_left() {
                 let _ = write!(out, "{seconds:.0} s left");
             }
         });
     bar.set_style(style);
-    let (weak, seen) = (bar.downgrade(), state.clone());
+    let (weak, state) = (bar.downgrade(), state.clone());
     std::thread::spawn(move || {
         while let Some(bar) = weak.upgrade().filter(|bar| !bar.is_finished()) {
-            let state = peek(&seen);
-            let share = state.share();
+            let state = lock(&state);
+            let fraction = state.fraction();
             let running = state.running.keys().cloned().collect::<Vec<_>>().join(", ");
-            // Drawing asks for the state again.
+            // Drawing locks the state again.
             drop(state);
-            bar.set_position((1000.0 * share) as u64);
+            bar.set_position((1000.0 * fraction) as u64);
             bar.set_message(running);
             std::thread::sleep(Duration::from_millis(250));
         }
@@ -112,28 +114,32 @@ fn drawn(state: &Arc<Mutex<State>>) -> ProgressBar {
     bar
 }
 
-/// A study that panics ends the run; what it left of the bar is sound.
-fn peek(state: &Mutex<State>) -> std::sync::MutexGuard<'_, State> {
+/// The state is valid even if a study has panicked, which ends the run.
+fn lock(state: &Mutex<State>) -> std::sync::MutexGuard<'_, State> {
     state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 impl State {
-    /// Done, and of what runs as much as its expected time says.
-    fn share(&self) -> f64 {
+    /// Fraction that is done; running studies count by their expected time \[–\].
+    fn fraction(&self) -> f64 {
         let total: f64 = self.weights.values().sum();
         let part = |(id, since): (&String, &Instant)| {
             let weight = self.weights.get(id).copied().unwrap_or(0.0);
-            if self.known { since.elapsed().as_secs_f64().min(ALMOST * weight) } else { 0.0 }
+            if self.known {
+                since.elapsed().as_secs_f64().min(LARGEST_FRACTION * weight)
+            } else {
+                0.0
+            }
         };
         let running: f64 = self.running.iter().map(part).sum();
         if total > 0.0 { ((self.done + running) / total).min(1.0) } else { 1.0 }
     }
 
-    /// None before anything is done.
+    /// Expected time left \[s\]; none before anything is done.
     fn seconds_left(&self) -> Option<f64> {
-        let share = self.share();
+        let fraction = self.fraction();
         let elapsed = self.start.elapsed().as_secs_f64();
-        (share > 0.0).then(|| elapsed * (1.0 - share) / share)
+        (fraction > 0.0).then(|| elapsed * (1.0 - fraction) / fraction)
     }
 }
 
@@ -150,9 +156,9 @@ mod tests {
 
     #[test]
     fn a_running_study_counts_by_its_expected_time_but_never_as_done() {
-        let share = state(true).share();
-        assert!((share - (30.0 + 9.5) / 40.0).abs() < 1e-12, "{share}");
-        assert_eq!(state(false).share(), 0.75);
+        let fraction = state(true).fraction();
+        assert!((fraction - (30.0 + 9.5) / 40.0).abs() < 1e-12, "{fraction}");
+        assert_eq!(state(false).fraction(), 0.75);
     }
 
     #[test]

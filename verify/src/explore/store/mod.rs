@@ -1,22 +1,21 @@
-//! The run store: what has been run is on record, one file per run, and is not run
-//! again.
+//! The run store: a file with a record for each run, so that no run is repeated.
 //!
-//! A run is keyed by what decides its result: the case file with the recipe and the
-//! cloud seed written into it, every file that it refers to, the kind of run, the
-//! instants that are looked at and the sources of the solver. A record is written
-//! to the side and renamed, so that a program that is killed leaves whole records
-//! or none.
+//! The key of a record hashes what decides the result: the case file with the recipe
+//! and the cloud seed written into it, every file that it refers to, the kind of run, the
+//! instants of its values and the sources of the solver. A record is written to a
+//! temporary file and renamed, so that a program that is killed leaves complete records
+//! only.
 
-mod affine;
+mod boundary_misfit;
 mod disk;
-mod held;
-mod jobs;
+mod patch_test;
+mod perform;
 mod record;
 mod runs;
 mod task;
 
 pub use disk::{Store, StoreError};
-pub use jobs::COMPRESSIONS;
-pub use record::{Outcome, Record, Stage, Timings};
-pub use runs::{Progress, Stopped, perform_all};
+pub use perform::COMPRESSIONS;
+pub use record::{Figures, RunOutcome, RunRecord, Stage, Timings};
+pub use runs::{Progress, Stopped, TaskRunner};
 pub use task::{Job, Source, Task, solver_identity};

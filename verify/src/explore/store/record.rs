@@ -1,45 +1,62 @@
-//! What is kept of a run.
+//! What is stored of a run.
 
 use super::task::Job;
 use crate::run::Work;
-use crate::scene::Setting;
+use crate::scene::{Knob, Setting};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Version of the layout of a record.
 pub const SCHEMA_VERSION: u32 = 1;
 
-/// One run; all that may differ from one time to the next stands under `timings`.
+/// Numbers by name, in SI units; the unit ends the name.
+pub type Figures = BTreeMap<String, f64>;
+
+/// One run. Only `timings` may differ from one time to the next.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct RunRecord {
+    /// [`SCHEMA_VERSION`] of the program that wrote it.
     pub schema_version: u32,
+    /// Hash of everything that decides the result, in hexadecimal.
     pub key: String,
+    /// Kind of run.
     pub job: Job,
+    /// Name of the case.
     pub case: String,
+    /// [`super::solver_identity`] of the program that ran it.
     pub solver: String,
+    /// Changes to the case file.
     pub settings: Vec<Setting>,
     /// Instants of the values \[s\].
     pub times_s: Vec<f64>,
-    pub outcome: Outcome,
+    /// Result or failure.
+    pub outcome: RunOutcome,
+    /// CPU times, where and when.
     pub timings: Timings,
 }
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum RunOutcome {
+    /// It reached its end.
     Done {
-        /// By name, SI, the unit at the end of the name.
-        figures: BTreeMap<String, f64>,
-        /// The quantities of the case, each instant by instant.
+        /// Single numbers.
+        figures: Figures,
+        /// \[quantity of the case\]\[instant and component\].
         values: Vec<Vec<f64>>,
+        /// Operation counts of a simulation.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         work: Option<Work>,
+        /// Warnings of the set-up and of the run.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         warnings: Vec<String>,
     },
+    /// It ended with an error.
     Failed {
+        /// How far it came.
         stage: Stage,
+        /// The error message.
         reason: String,
     },
 }
@@ -50,61 +67,70 @@ pub enum Outcome {
 pub enum Stage {
     /// Before the first step.
     Refused,
-    /// On the way.
-    Marching,
+    /// During the simulation.
+    #[serde(rename = "marching")]
+    Running,
 }
 
-/// What a run took.
+/// What a run took on one thread.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Timings {
-    /// One thread \[s\].
+    /// Of the set-up \[CPU s\].
     pub set_up_cpu_s: f64,
-    /// One thread \[s\].
-    pub march_cpu_s: f64,
+    /// Of the simulation \[CPU s\].
+    #[serde(rename = "march_cpu_s")]
+    pub solve_cpu_s: f64,
+    /// Name of the processor.
     pub processor: String,
+    /// YYYY-MM-DD.
     pub date: String,
 }
 
-impl Record {
+impl RunRecord {
     /// A figure by its name.
     pub fn figure(&self, name: &str) -> Option<f64> {
         match &self.outcome {
-            Outcome::Done { figures, .. } => figures.get(name).copied(),
-            Outcome::Failed { .. } => None,
+            RunOutcome::Done { figures, .. } => figures.get(name).copied(),
+            RunOutcome::Failed { .. } => None,
         }
     }
 
-    /// The quantities of the case, unless the run failed.
+    /// \[quantity of the case\]\[instant and component\], unless the run failed.
     pub fn values(&self) -> Option<&[Vec<f64>]> {
         match &self.outcome {
-            Outcome::Done { values, .. } => Some(values),
-            Outcome::Failed { .. } => None,
+            RunOutcome::Done { values, .. } => Some(values),
+            RunOutcome::Failed { .. } => None,
         }
     }
 
+    /// Operation counts of a simulation that reached its end.
     pub fn work(&self) -> Option<&Work> {
         match &self.outcome {
-            Outcome::Done { work, .. } => work.as_ref(),
-            Outcome::Failed { .. } => None,
+            RunOutcome::Done { work, .. } => work.as_ref(),
+            RunOutcome::Failed { .. } => None,
         }
     }
 
-    /// Why it failed, if it did.
+    /// The error message of a run that failed.
     pub fn failure(&self) -> Option<&str> {
         match &self.outcome {
-            Outcome::Done { .. } => None,
-            Outcome::Failed { reason, .. } => Some(reason),
+            RunOutcome::Done { .. } => None,
+            RunOutcome::Failed { reason, .. } => Some(reason),
         }
     }
 
-    /// Set-up and march \[CPU s\].
+    /// Set-up and simulation \[CPU s\].
     pub fn cpu_s(&self) -> f64 {
-        self.timings.set_up_cpu_s + self.timings.march_cpu_s
+        self.timings.set_up_cpu_s + self.timings.solve_cpu_s
     }
 
-    /// The level of a knob that was set, in words.
-    pub fn level(&self, knob: crate::scene::Knob) -> Option<String> {
-        let setting = self.settings.iter().rev().find(|setting| setting.knob == knob)?;
-        Some(setting.level.to_string())
+    /// CPU time of the simulation per quadrature point and neighbour \[ns\].
+    pub fn nanoseconds_per_visit(&self) -> Option<f64> {
+        Some(1e9 * self.timings.solve_cpu_s / self.work()?.neighbour_visits as f64)
+    }
+
+    /// The change of a knob; the last one counts.
+    pub fn setting(&self, knob: Knob) -> Option<&Setting> {
+        self.settings.iter().rev().find(|setting| setting.knob == knob)
     }
 }

@@ -1,4 +1,4 @@
-//! What is to be run.
+//! Cases and the runs that are made of them.
 
 use crate::bundled::{CASES, unpack};
 use crate::scene::{Case, EditError, Setting, edited, one_error, parse_case};
@@ -8,17 +8,17 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What is done with a case.
+/// Kind of run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Job {
-    /// Solved to its end.
+    /// A simulation to its end.
     Solve,
-    /// Discretised and looked at.
+    /// The discretisation alone.
     Consistency,
-    /// Its body and recipe under an affine field.
+    /// The affine patch test with its body and recipe.
     Patch,
-    /// Its critical step by bounds, by Lanczos and by trial.
+    /// The critical time step by the per-point bound, by Lanczos and by trial.
     TimeStep,
 }
 
@@ -27,23 +27,25 @@ pub enum Job {
 pub struct Source {
     /// Stem of the file name.
     pub name: String,
+    /// Its path.
     pub file: PathBuf,
+    /// Its content.
     pub case: Case,
 }
 
 impl Source {
-    /// A case file, or else a carried case by its name, which is unpacked into
-    /// `folder`. The error holds the mistakes, a line each.
+    /// A case file, or a bundled case by its name, which is unpacked into `folder`. The
+    /// error lists the mistakes, one per line.
     pub fn find(name: &str, folder: &Path) -> Result<Arc<Source>> {
         let path = PathBuf::from(name);
-        let carried = CASES.iter().any(|(carried, _)| *carried == name);
-        let file = match (path.exists(), carried) {
+        let bundled = CASES.iter().any(|(bundled, _)| *bundled == name);
+        let file = match (path.exists(), bundled) {
             (true, _) => path,
             (false, true) => unpack(folder)?.join(format!("{name}.toml")),
             (false, false) => {
                 return Err(anyhow!(
-                    "there is no case file {name}, nor a carried case of that name \
-                     (`mtled case list` names them)"
+                    "there is no case file {name} and no bundled case of that name \
+                     (`mtled case list` prints their names)"
                 ));
             }
         };
@@ -53,12 +55,12 @@ impl Source {
         Ok(Arc::new(Source { name: case.name.clone(), file, case }))
     }
 
-    /// The case with other settings; the error names the settings.
+    /// The case with other settings.
     pub fn with(&self, settings: &[Setting]) -> Result<Case> {
         parse(&self.text_with(settings)?, &self.file)
     }
 
-    /// Its text with other settings, comments kept.
+    /// Its text with other settings; comments are kept.
     pub fn text_with(&self, settings: &[Setting]) -> Result<String, EditError> {
         edited(self.case.text(), settings)
     }
@@ -72,15 +74,18 @@ fn parse(text: &str, file: &Path) -> Result<Case> {
 /// One run.
 #[derive(Debug, Clone)]
 pub struct Task {
+    /// Kind of run.
     pub job: Job,
+    /// The case before changes.
     pub source: Arc<Source>,
+    /// Changes to its recipe.
     pub settings: Vec<Setting>,
     /// Instants of the values of a dynamic run \[s\].
     pub times: Vec<f64>,
 }
 
 impl Task {
-    /// What decides the result, in hexadecimal.
+    /// Hash of everything that decides the result, in hexadecimal.
     pub fn key(&self) -> Result<String> {
         let mut hash = Sha256::new();
         // The hash of the case covers the files that it refers to.
@@ -95,15 +100,15 @@ impl Task {
         Ok(hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect())
     }
 
-    /// The settings in words.
-    pub fn words(&self) -> String {
-        let words: Vec<String> = self.settings.iter().map(Setting::to_string).collect();
-        format!("{} ({})", self.source.name, words.join(", "))
+    /// Case and settings.
+    pub fn label(&self) -> String {
+        let settings: Vec<String> = self.settings.iter().map(Setting::to_string).collect();
+        format!("{} ({})", self.source.name, settings.join(", "))
     }
 }
 
-/// Version of the solver, with a fingerprint of its sources and of what reads
-/// cases and makes records.
+/// Version of the solver, with a fingerprint of the sources that decide results: the
+/// solver, and what reads cases and makes records.
 pub fn solver_identity() -> &'static str {
     concat!(env!("CARGO_PKG_VERSION"), "+", env!("MTLED_SOURCES"))
 }

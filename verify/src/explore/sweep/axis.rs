@@ -1,42 +1,61 @@
-//! Ranges of settings, as they are written on the command line and in plans.
+//! Ranges of settings as they are written on the command line and in plans.
 
-use crate::scene::{KNOBS, Knob, Level, Setting};
+use crate::scene::{Knob, Level, Setting};
 
-/// More levels than this on one axis are a slip of the keyboard.
+/// More levels than this on one axis are taken for a typing error.
 const MOST_LEVELS: usize = 1000;
 
 /// One knob and its levels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
+    /// What is changed.
     pub knob: Knob,
+    /// Its values.
     pub levels: Vec<Level>,
 }
 
 /// What is wrong with a range.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AxisError {
-    #[error("there is no `{name}` to change; there are {}", names())]
-    Unknown { name: String },
-    #[error("{knob}: `{text}` is no list such as 1.4,1.8 and no range such as 1.4..2.6:0.2")]
-    Range { knob: &'static str, text: String },
-    #[error("{knob}: `{text}` has {count} levels; {MOST_LEVELS} are the most")]
-    TooMany { knob: &'static str, text: String, count: f64 },
+    /// No setting has this name.
+    #[error("there is no setting `{name}`; the settings are {}", names())]
+    Unknown {
+        /// The name.
+        name: String,
+    },
+    /// The text is neither a list nor a range.
+    #[error("{knob}: `{text}` is neither a list such as 1.4,1.8 nor a range such as 1.4..2.6:0.2")]
+    Range {
+        /// Name of the setting.
+        knob: &'static str,
+        /// The text.
+        text: String,
+    },
+    /// The range is too long.
+    #[error("{knob}: `{text}` has {count} levels; at most {MOST_LEVELS} are allowed")]
+    TooMany {
+        /// Name of the setting.
+        knob: &'static str,
+        /// The text.
+        text: String,
+        /// Number of its levels.
+        count: f64,
+    },
 }
 
 fn names() -> String {
-    KNOBS.iter().map(|row| row.1).collect::<Vec<_>>().join(", ")
+    Knob::ALL.iter().map(|knob| knob.name()).collect::<Vec<_>>().join(", ")
 }
 
 impl Axis {
     /// The axis of a knob by its name.
     pub fn named(name: &str, text: &str) -> Result<Axis, AxisError> {
-        let wanted = name.replace('-', "_");
-        let row = KNOBS.iter().find(|row| row.1 == wanted);
-        let knob = row.ok_or_else(|| AxisError::Unknown { name: name.into() })?.0;
+        let knob = Knob::named(&name.replace('-', "_"))
+            .ok_or_else(|| AxisError::Unknown { name: name.into() })?;
         Axis::parse(knob, text)
     }
 
-    /// `1.4`, `1.4,1.8`, `linear,quadratic`, or `1.4..2.6:0.2` with both ends.
+    /// `1.4`, `1.4,1.8`, `linear,quadratic`, or `1.4..2.6:0.2` with both ends included.
     pub fn parse(knob: Knob, text: &str) -> Result<Axis, AxisError> {
         let refused = || AxisError::Range { knob: knob.name(), text: text.into() };
         let mut levels = Vec::new();
@@ -62,7 +81,7 @@ impl Axis {
     }
 }
 
-/// From `first` to `last`, both included, in steps; nine digits, so that 1.4 + 0.2 is
+/// From `first` to `last`, both included, rounded to nine digits, so that 1.4 + 0.2 is
 /// 1.6.
 fn range(
     first: f64,
@@ -82,8 +101,16 @@ fn range(
     Ok((0..count as usize).map(|n| Level::Number(at(n).parse().unwrap_or(first))).collect())
 }
 
-/// Every combination of levels, the last axis fastest; settings stand in the order
-/// in which they must be made.
+/// The number of a level, where it is one or a factor such as `x0.8`.
+pub fn number_of(level: &Level) -> Option<f64> {
+    match level {
+        Level::Number(number) => Some(*number),
+        Level::Word(word) => word.strip_prefix('x')?.parse().ok(),
+    }
+}
+
+/// Every combination of levels, the last axis fastest; the settings of each are in the
+/// order in which they must be applied.
 pub fn combinations(axes: &[Axis]) -> Vec<Vec<Setting>> {
     let mut all = vec![Vec::new()];
     for axis in axes {
@@ -116,14 +143,14 @@ mod tests {
     }
 
     #[test]
-    fn ranges_hold_both_ends_and_lists_may_hold_ranges() {
+    fn ranges_include_both_ends_and_lists_may_contain_ranges() {
         assert_eq!(numbers("1.4..2.6:0.4"), [1.4, 1.8, 2.2, 2.6]);
         assert_eq!(numbers("1.4..2.5:0.4"), [1.4, 1.8, 2.2]);
         assert_eq!(numbers("2, 1..0:-0.5"), [2.0, 1.0, 0.5, 0.0]);
     }
 
     #[test]
-    fn slips_are_named() {
+    fn typing_errors_are_reported() {
         for text in ["", "1.4..2", "1..2:0", "2..1:0.5", "nan", "1,,2", "a..b:1"] {
             let error = Axis::parse(Knob::Dilation, text).unwrap_err();
             assert!(matches!(error, AxisError::Range { .. }), "{text}: {error}");
@@ -135,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn combinations_come_in_order_with_the_spacing_set_first() {
+    fn combinations_are_ordered_and_the_spacing_is_set_first() {
         let axes = [
             Axis::parse(Knob::Dilation, "1.6,2").unwrap(),
             Axis::parse(Knob::Spacing, "x1,x0.5").unwrap(),

@@ -1,15 +1,15 @@
-//! A study stated in a TOML file.
+//! Studies defined in a TOML file.
 
 use super::axis::{Axis, AxisError};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Cases, ranges and clouds of a study; what stands on the command line goes before.
+/// Cases, ranges and clouds of a study; the command line takes precedence.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
-    /// Case files, relative to the plan, or names of carried cases.
+    /// Case files, relative to the plan, or names of bundled cases.
     #[serde(default)]
     pub cases: Vec<String>,
     /// Clouds per combination.
@@ -22,38 +22,58 @@ pub struct Plan {
 /// What is wrong with a plan.
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
+    /// The file cannot be read.
     #[error("{file} cannot be read: {source}")]
-    Unreadable { file: String, source: std::io::Error },
+    Unreadable {
+        /// Path of the file.
+        file: String,
+        /// What went wrong.
+        source: std::io::Error,
+    },
+    /// It is not a plan.
     #[error("{file}:{line}: {reason}")]
-    Wrong { file: String, line: usize, reason: String },
+    Invalid {
+        /// Path of the file.
+        file: String,
+        /// Line of the mistake, from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A range cannot be understood.
     #[error("{file}: ranges: {source}")]
-    Range { file: String, source: AxisError },
+    Range {
+        /// Path of the file.
+        file: String,
+        /// What went wrong.
+        source: AxisError,
+    },
 }
 
 impl Plan {
-    /// Reads a plan; its case files are found from its own folder.
+    /// Reads a plan; paths of cases are relative to its folder.
     pub fn read(path: &Path) -> Result<Plan, PlanError> {
         let file = path.display().to_string();
         let text = std::fs::read_to_string(path)
             .map_err(|source| PlanError::Unreadable { file: file.clone(), source })?;
-        let mut plan: Plan = toml::from_str(&text).map_err(|error| {
+        let mut plan: Plan = toml_edit::de::from_str(&text).map_err(|error| {
             let at = error.span().map_or(0, |span| span.start);
             let line = text[..at].matches('\n').count() + 1;
             let reason = error.message().replace('\n', ", ");
-            PlanError::Wrong { file: file.clone(), line, reason }
+            PlanError::Invalid { file: file.clone(), line, reason }
         })?;
         let folder = path.parent().unwrap_or(Path::new("."));
         for case in &mut plan.cases {
-            let beside = folder.join(case.as_str());
-            if beside.exists() {
-                *case = beside.display().to_string();
+            let path = folder.join(case.as_str());
+            if path.exists() {
+                *case = path.display().to_string();
             }
         }
         plan.axes(&file)?;
         Ok(plan)
     }
 
-    /// Its ranges.
+    /// Its ranges; errors name `file`.
     pub fn axes(&self, file: &str) -> Result<Vec<Axis>, PlanError> {
         let axis = |(name, text): (&String, &String)| {
             Axis::named(name, text)
@@ -68,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plan_finds_its_cases_beside_itself_and_its_mistakes_have_a_line() {
+    fn a_plan_finds_cases_in_its_folder_and_mistakes_are_located() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("plan.toml");
         std::fs::write(folder.path().join("mine.toml"), "").unwrap();
@@ -83,6 +103,6 @@ mod tests {
         assert!(error.contains("plan.toml:2") && error.contains("clouts"), "{error}");
         std::fs::write(&file, "[ranges]\ndilatoin = \"1\"\n").unwrap();
         let error = Plan::read(&file).unwrap_err().to_string();
-        assert!(error.contains("there is no `dilatoin`"), "{error}");
+        assert!(error.contains("there is no setting `dilatoin`"), "{error}");
     }
 }

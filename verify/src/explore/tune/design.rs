@@ -1,29 +1,40 @@
 //! The recipes that are tried.
 
-use crate::explore::sweep::Axis;
+use crate::explore::label::{AS_IN_CASE, settings_label};
+use crate::explore::sweep::{Axis, combinations};
 use crate::scene::{Case, Knob, Level, Setting};
 use mtled::problem::Motion;
 
 /// A recipe without its spacing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
+    /// Changes to the recipe of the case.
     pub settings: Vec<Setting>,
-    /// Whether it belongs to the full factorial from which main effects are told.
+    /// Whether it belongs to the full factorial from which main effects are computed.
     pub factorial: bool,
 }
 
 impl Candidate {
-    /// The settings in words; "as in the case" where there are none.
-    pub fn words(&self) -> String {
+    /// A recipe outside the factorial.
+    pub fn single(settings: Vec<Setting>) -> Candidate {
+        Candidate { settings, factorial: false }
+    }
+
+    /// Its settings, or "as in the case" where there are none.
+    pub fn label(&self) -> String {
         if self.settings.is_empty() {
-            return "as in the case".into();
+            AS_IN_CASE.into()
+        } else {
+            settings_label(self.settings.iter())
         }
-        let words: Vec<String> = self
-            .settings
-            .iter()
-            .map(|s| format!("{} {}", s.knob.name().replace('_', " "), s.level))
-            .collect();
-        words.join(", ")
+    }
+
+    /// The level of a knob, if it is a number.
+    pub fn number(&self, knob: Knob) -> Option<f64> {
+        match self.settings.iter().find(|setting| setting.knob == knob)?.level {
+            Level::Number(number) => Some(number),
+            Level::Word(_) => None,
+        }
     }
 }
 
@@ -38,90 +49,87 @@ const SINGLE: &[(Knob, &str)] = &[
     (Knob::Enforcement, "direct"),
 ];
 
-/// Quadratic bases need wider supports.
+/// Bases with their dilation: quadratic ones need larger supports.
 const BASES: &[(&str, f64)] =
     &[("quadratic", 2.6), ("modified_quadratic", 2.0), ("modified_quadratic", 2.4)];
 
-/// A full factorial of dilation and cells per spacing; quadratic bases; and single
-/// changes of everything else. The recipe of the case as it is comes first. Axes that
-/// are given replace the factorial.
+/// Solvers of static cases with their tolerances, the most accurate first.
+const SOLVERS: &[(&str, f64)] = &[
+    ("newton", 1e-8),
+    ("newton", 1e-3),
+    ("newton", 1e-2),
+    ("relaxation", 1e-4),
+    ("relaxation", 1e-3),
+    ("relaxation", 1e-2),
+];
+
+/// Safety factors of dynamic cases, the most accurate first.
+const SAFETY_FACTORS: &[f64] = &[0.4, 0.8, 0.9, 0.95];
+
+/// The recipe of the case; a full factorial of dilation and cells per spacing; quadratic
+/// bases; and single changes of everything else. `axes`, if there are any, replace all but
+/// the recipe of the case.
 pub fn candidates(case: &Case, axes: &[Axis]) -> Vec<Candidate> {
-    let number = Setting::number;
-    let mut all = vec![Candidate { settings: Vec::new(), factorial: false }];
+    let (number, word) = (Setting::number, Setting::word);
+    let mut all = vec![Candidate::single(Vec::new())];
+    let factorial = |settings| Candidate { settings, factorial: true };
     if !axes.is_empty() {
-        let given = crate::explore::sweep::combinations(axes).into_iter();
-        all.extend(given.map(|settings| Candidate { settings, factorial: true }));
+        all.extend(combinations(axes).into_iter().map(factorial));
         return all;
     }
     for &dilation in DILATIONS {
-        for &cells in CELLS {
-            let settings = vec![
+        all.extend(CELLS.iter().map(|&cells| {
+            factorial(vec![
                 number(Knob::Dilation, dilation),
                 number(Knob::CellsPerSpacing, cells),
-                Setting::word(Knob::Basis, "linear"),
-            ];
-            all.push(Candidate { settings, factorial: true });
-        }
+                word(Knob::Basis, "linear"),
+            ])
+        }));
     }
     for &(basis, dilation) in BASES {
-        for cells in [1.26, 2.0] {
-            let settings = vec![
+        all.extend([1.26, 2.0].map(|cells| {
+            Candidate::single(vec![
                 number(Knob::Dilation, dilation),
                 number(Knob::CellsPerSpacing, cells),
-                Setting::word(Knob::Basis, basis),
-                Setting::word(Knob::Mass, "even_split"),
-            ];
-            all.push(Candidate { settings, factorial: false });
-        }
+                word(Knob::Basis, basis),
+                word(Knob::Mass, "even_split"),
+            ])
+        }));
     }
-    let mut single = |settings| all.push(Candidate { settings, factorial: false });
-    for (knob, level) in SINGLE {
-        // Static solutions do not depend on how mass is spread.
-        if *knob != Knob::Mass || matches!(case.problem.motion, Motion::Dynamic { .. }) {
-            single(vec![Setting::word(*knob, level)]);
-        }
-    }
-    single(vec![number(Knob::GaussPoints, 2.0), number(Knob::CellsPerSpacing, 1.0)]);
+    let single = SINGLE.iter().filter(|(knob, _)| matters(*knob, case));
+    all.extend(single.map(|(knob, level)| Candidate::single(vec![word(*knob, level)])));
+    all.push(Candidate::single(vec![
+        number(Knob::GaussPoints, 2.0),
+        number(Knob::CellsPerSpacing, 1.0),
+    ]));
     all
 }
 
-/// Ways of finding the answer of one discretisation, the most exact first; the case's
-/// own comes last. Static cases: Newton's method and relaxation to several
-/// tolerances; dynamic ones: steps.
+/// Whether a knob can change the solution: static ones do not depend on the distribution of
+/// the mass.
+pub fn matters(knob: Knob, case: &Case) -> bool {
+    knob != Knob::Mass || matches!(case.problem.motion, Motion::Dynamic { .. })
+}
+
+/// Solvers of one discretisation, the most accurate first and the case's own last: Newton's
+/// method and relaxation to several tolerances in statics, several safety factors in
+/// dynamics.
 pub fn solvers(case: &Case) -> Vec<Candidate> {
-    let candidate = |settings| Candidate { settings, factorial: false };
-    let mut all = Vec::new();
-    match case.problem.motion {
-        Motion::Dynamic { .. } => {
-            for factor in [0.4, 0.8, 0.9, 0.95] {
-                all.push(candidate(vec![Setting::number(Knob::SafetyFactor, factor)]));
-            }
-        }
-        Motion::Static(_) | Motion::Equilibrium(_) => {
-            for (solver, tolerance) in [
-                ("newton", 1e-8),
-                ("newton", 1e-3),
-                ("newton", 1e-2),
-                ("relaxation", 1e-4),
-                ("relaxation", 1e-3),
-                ("relaxation", 1e-2),
-            ] {
-                all.push(candidate(vec![
+    let mut all: Vec<Candidate> = match case.problem.motion {
+        Motion::Dynamic { .. } => SAFETY_FACTORS
+            .iter()
+            .map(|&factor| Candidate::single(vec![Setting::number(Knob::SafetyFactor, factor)]))
+            .collect(),
+        Motion::Static(_) | Motion::Equilibrium(_) => SOLVERS
+            .iter()
+            .map(|&(solver, tolerance)| {
+                Candidate::single(vec![
                     Setting::word(Knob::Solver, solver),
                     Setting::number(Knob::Tolerance, tolerance),
-                ]));
-            }
-        }
-    }
-    all.push(candidate(Vec::new()));
+                ])
+            })
+            .collect(),
+    };
+    all.push(Candidate::single(Vec::new()));
     all
-}
-
-/// A number of a setting, for figures.
-pub fn level_of(candidate: &Candidate, knob: Knob) -> Option<f64> {
-    let setting = candidate.settings.iter().find(|setting| setting.knob == knob)?;
-    match &setting.level {
-        Level::Number(number) => Some(*number),
-        Level::Word(_) => None,
-    }
 }

@@ -1,12 +1,12 @@
-//! What the answer is sensitive to.
+//! What error and cost are sensitive to.
 
-use super::design::{Candidate, level_of};
-use super::{Bench, Trial};
+use super::design::{Candidate, matters};
+use super::trial::{Trial, TrialRunner};
+use crate::explore::label::settings_label;
 use crate::scene::{Knob, Level, Setting};
-use anyhow::Result;
-use mtled::problem::Motion;
+use anyhow::{Context, Result};
 
-/// Changes of a winner, one at a time: what may be said in words.
+/// Changes of the winner, one at a time.
 const CHANGES: &[(Knob, &str)] = &[
     (Knob::Basis, "quadratic"),
     (Knob::WeightFunction, "cubic_spline"),
@@ -17,75 +17,81 @@ const CHANGES: &[(Knob, &str)] = &[
     (Knob::Enforcement, "direct"),
 ];
 
-/// The winner with one change each, on the same clouds; the candidates grow by them.
-pub fn one_at_a_time(bench: &mut Bench, winner: &Trial) -> Result<Vec<Trial>> {
-    let own = bench.candidates[winner.candidate].settings.clone();
-    let recipe = &bench.wanted.source.case.problem.recipe;
-    let candidate = &bench.candidates[winner.candidate];
-    let dilation = level_of(candidate, Knob::Dilation).unwrap_or(recipe.dilation);
-    let spacing = crate::studies::workbench::spacing_of(&bench.wanted.source.case.problem)?;
-    let cells = level_of(candidate, Knob::CellsPerSpacing).unwrap_or(spacing / recipe.grid.cell);
-    let round = |number: f64| (number * 1e3).round() / 1e3;
+/// The winner with one change each, on the same clouds; the changed recipes are added to
+/// the candidates.
+pub fn one_at_a_time(runner: &mut TrialRunner, winner: &Trial) -> Result<Vec<Trial>> {
+    let request = runner.request;
+    let own = runner.candidates[winner.candidate].settings.clone();
+    let mut points = Vec::new();
+    for change in changes(runner, winner)? {
+        let kept = own.iter().filter(|old| change.iter().all(|new| new.knob != old.knob));
+        let settings = kept.cloned().chain(change.iter().cloned()).collect();
+        points.push((runner.candidates.len(), winner.factor));
+        runner.candidates.push(Candidate::single(settings));
+    }
+    for factor in [1.0 / 1.1, 1.1] {
+        points.push((winner.candidate, rounded(winner.factor * factor)));
+    }
+    let clouds: Vec<u64> = (0..request.clouds as u64).collect();
+    runner.trials(&points, &clouds)
+}
+
+fn rounded(number: f64) -> f64 {
+    (number * 1e3).round() / 1e3
+}
+
+/// Changes of the recipe of the winner that are not part of it already.
+fn changes(runner: &TrialRunner, winner: &Trial) -> Result<Vec<Vec<Setting>>> {
+    let case = &runner.request.source.case;
+    let recipe = &case.problem.recipe;
+    let candidate = &runner.candidates[winner.candidate];
+    let dilation = candidate.number(Knob::Dilation).unwrap_or(recipe.dilation);
+    let spacing = recipe.spacing().context("nodes that are given have no spacing to change")?;
+    let cells = candidate.number(Knob::CellsPerSpacing).unwrap_or(spacing / recipe.grid.cell);
     let mut changes: Vec<Vec<Setting>> = Vec::new();
-    for by in [-0.2, 0.2] {
-        changes.push(vec![Setting::number(Knob::Dilation, round(dilation + by))]);
+    for step in [-0.2, 0.2] {
+        changes.push(vec![Setting::number(Knob::Dilation, rounded(dilation + step))]);
     }
-    for by in [1.0 / 1.26, 1.26] {
-        changes.push(vec![Setting::number(Knob::CellsPerSpacing, round(cells * by))]);
+    for factor in [1.0 / 1.26, 1.26] {
+        changes.push(vec![Setting::number(Knob::CellsPerSpacing, rounded(cells * factor))]);
     }
-    let moves = matches!(bench.wanted.source.case.problem.motion, Motion::Dynamic { .. });
-    // Static solutions do not depend on how mass is spread.
-    for (knob, level) in CHANGES.iter().filter(|(knob, _)| moves || *knob != Knob::Mass) {
+    for (knob, level) in CHANGES.iter().filter(|(knob, _)| matters(*knob, case)) {
         let mut change = vec![Setting::word(*knob, level)];
         if (*knob, *level) == (Knob::Basis, "quadratic") {
             change.push(Setting::number(Knob::Dilation, 2.6));
         }
-        if !change.iter().all(|setting| own.contains(setting)) {
+        if !change.iter().all(|setting| candidate.settings.contains(setting)) {
             changes.push(change);
         }
     }
-    let mut points = Vec::new();
-    for change in changes {
-        let kept = own.iter().filter(|old| change.iter().all(|new| new.knob != old.knob));
-        let settings = kept.cloned().chain(change.iter().cloned()).collect();
-        points.push((bench.candidates.len(), winner.factor));
-        bench.candidates.push(Candidate { settings, factorial: false });
-    }
-    for by in [1.0 / 1.1, 1.1] {
-        points.push((winner.candidate, round(winner.factor * by)));
-    }
-    let clouds: Vec<u64> = (0..bench.wanted.clouds as u64).collect();
-    bench.trials(&points, &clouds)
+    Ok(changes)
 }
 
-/// What a change of the winner is called: the settings in which it differs.
-pub fn change_words(candidates: &[Candidate], winner: &Trial, change: &Trial) -> String {
+/// The settings in which a change differs from the winner.
+pub fn change_label(candidates: &[Candidate], winner: &Trial, change: &Trial) -> String {
     if change.candidate == winner.candidate {
         return format!("spacing x{:.3}", change.factor / winner.factor);
     }
     let own = &candidates[winner.candidate].settings;
     let changed = &candidates[change.candidate].settings;
-    let added = changed.iter().filter(|setting| !own.contains(setting));
-    let words: Vec<String> =
-        added.map(|s| format!("{} {}", s.knob.name().replace('_', " "), s.level)).collect();
-    words.join(", ")
+    settings_label(changed.iter().filter(|setting| !own.contains(setting)))
 }
 
-/// The main effect of one level of the factorial: the mean over all that have it, over
-/// the mean of all.
+/// The main effect of one level of the factorial: the mean over all recipes with it, over
+/// the mean of all recipes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MainEffect {
     pub knob: Knob,
     pub level: Level,
-    /// Of the error, geometric \[–\].
+    /// On the error, geometric mean \[–\].
     pub error: f64,
-    /// Of the CPU time, geometric \[–\].
+    /// On the CPU time, geometric mean \[–\].
     pub cpu: f64,
-    /// How many trials it is the mean of.
+    /// Number of trials with this level.
     pub trials: usize,
 }
 
-/// Main effects of the factorial in its first round; trials that failed are left out.
+/// Main effects of the factorial in its first round, without the trials that failed.
 pub fn main_effects(candidates: &[Candidate], trials: &[Trial]) -> Vec<MainEffect> {
     let mut rows: Vec<(&Candidate, f64, f64)> = Vec::new();
     let mut seen = std::collections::BTreeSet::new();
@@ -111,7 +117,7 @@ pub fn main_effects(candidates: &[Candidate], trials: &[Trial]) -> Vec<MainEffec
     levels.sort_by(|a, b| {
         a.knob.cmp(&b.knob).then(a.level.partial_cmp(&b.level).unwrap_or(std::cmp::Ordering::Equal))
     });
-    // A knob with one level has no effect to tell.
+    // A knob with a single level has no effect.
     let varied = |knob: Knob| levels.iter().filter(|s| s.knob == knob).count() > 1;
     let effect = |setting: &&Setting| {
         let with = || rows.iter().filter(|row| row.0.settings.contains(setting));

@@ -1,20 +1,21 @@
-//! What a recipe is expected to cost at the goal, from runs elsewhere, and the front.
+//! Expected cost of a recipe at the goal, from trials at other spacings, and the Pareto
+//! front.
 
-use super::{Goal, Trial};
+use super::trial::{Goal, Trial};
 use mtled_checks::measure::log_log_fit;
 
-/// Order at which errors fall with the spacing where no two spacings tell, and where
-/// what they tell is not believable \[–\] (study "manufactured": 1.5 to 2; bonded
-/// edges: 1).
+/// Order of the error in the spacing where it cannot be fitted \[–\] (study
+/// "manufactured": 1.5 to 2; bonded edges: 1).
 const ORDER: f64 = 1.5;
-const BELIEVABLE: (f64, f64) = (0.7, 3.0);
+/// Fitted orders are limited to this range \[–\].
+const PLAUSIBLE: (f64, f64) = (0.7, 3.0);
 
-/// Cost grows with the number of points and of steps: h⁻ᵈ⁻¹.
+/// The cost grows with the number of points and of steps, as h⁻ᵈ⁻¹.
 fn cost_power(components: usize) -> f64 {
     components as f64 + 1.0
 }
 
-/// Order of the errors of one candidate over its factors.
+/// Order of the error of one candidate in the spacing.
 pub fn order(trials: &[&Trial]) -> f64 {
     let samples: Vec<(f64, f64)> = trials
         .iter()
@@ -22,14 +23,14 @@ pub fn order(trials: &[&Trial]) -> f64 {
         .map(|trial| (trial.factor, trial.worst()))
         .collect();
     match log_log_fit(&samples) {
-        Some(fit) => fit.slope.clamp(BELIEVABLE.0, BELIEVABLE.1),
+        Some(fit) => fit.slope.clamp(PLAUSIBLE.0, PLAUSIBLE.1),
         None => ORDER,
     }
 }
 
-/// What is judged by: for a wanted error the expected CPU time at it \[s\], for a
-/// wanted CPU time the expected error \[–\]; less is better. An error below `bar`
-/// counts as that: more is not known.
+/// Score of a trial, smaller is better: for a target error the expected CPU time at it
+/// \[s\], for a CPU budget the expected error \[–\]. Errors below `bar`, that of the reference
+/// solution, count as `bar`.
 pub fn expected(trial: &Trial, goal: Goal, order: f64, components: usize, bar: f64) -> f64 {
     let error = trial.worst().max(bar);
     let power = cost_power(components) / order;
@@ -39,7 +40,7 @@ pub fn expected(trial: &Trial, goal: Goal, order: f64, components: usize, bar: f
     }
 }
 
-/// The factor at which the goal is expected to be met, from one trial.
+/// The spacing factor at which a trial's recipe is expected to meet the goal \[–\].
 pub fn expected_factor(trial: &Trial, goal: Goal, order: f64, components: usize) -> f64 {
     match goal {
         Goal::Error(target) => trial.factor * (target / trial.worst()).powf(1.0 / order),
@@ -49,7 +50,8 @@ pub fn expected_factor(trial: &Trial, goal: Goal, order: f64, components: usize)
     }
 }
 
-/// Trials than which no other is both cheaper and better, from cheap to dear.
+/// The Pareto front, from cheap to expensive: no other trial is both cheaper and more
+/// accurate.
 pub fn front(trials: &[Trial]) -> Vec<&Trial> {
     let mut sorted: Vec<&Trial> = trials.iter().filter(|trial| trial.worst().is_finite()).collect();
     sorted.sort_by(|a, b| a.cpu_s.total_cmp(&b.cpu_s).then(a.worst().total_cmp(&b.worst())));
@@ -72,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recipe_of_known_order_and_cost_is_expected_where_it_will_be() {
+    fn the_cost_of_a_recipe_of_known_order_is_predicted() {
         // Error 0.04 h², cost h⁻⁴ s: 1 % at h = 0.5 for 16 s.
         let coarse = trial(1.0, 0.04, 1.0);
         let goal = Goal::Error(0.01);
@@ -86,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_trial_is_never_expected_to_meet_anything_and_not_on_the_front() {
+    fn a_failed_trial_meets_no_goal_and_is_not_on_the_front() {
         let mut failed = trial(1.0, 0.01, 1.0);
         failed.failure = Some("inverted".into());
         assert_eq!(expected(&failed, Goal::Error(0.1), 2.0, 3, 0.0), f64::INFINITY);

@@ -1,221 +1,223 @@
-//! Successive halving: all recipes on one coarse cloud, fewer on finer and more
-//! clouds, the last few along a ladder of spacings.
+//! Successive halving: all recipes on one coarse cloud, fewer on finer and more clouds, the
+//! last few over a series of spacings.
 
 use super::design::{Candidate, candidates, solvers};
 use super::effects::one_at_a_time;
 use super::score::{expected, expected_factor, order};
-use super::{Bench, Goal, Trial, Wanted};
-use crate::explore::store::{Progress, Store};
-use crate::explore::sweep::find_truth;
+use super::trial::{Goal, Trial, TrialRunner, TuneRequest};
+use crate::accuracy::Group;
+use crate::explore::store::TaskRunner;
 use anyhow::{Result, bail};
 
 /// Spacings of the rounds over that of the case \[–\].
 const ROUNDS: [f64; 2] = [1.6, 1.25];
-/// Of a round, this share goes on.
-const KEPT: usize = 3;
-/// At least this many go on to the ladder.
+/// One recipe in so many goes on to the next round.
+const REDUCTION: usize = 3;
+/// At least this many go on, and at most this many are tried over spacings.
 const LAST: usize = 3;
-/// Neighbouring rungs of the ladder of spacings differ by this factor: errors of order
-/// 1.5 by 15 %.
-const RUNG: f64 = 1.1;
-/// Rungs that are tried beyond what was expected.
-const MOST_RUNGS: usize = 12;
-/// No spacing is made smaller than this share of the case's own.
+/// Ratio of neighbouring spacings: 15 % in an error of order 1.5.
+const SPACING_RATIO: f64 = 1.1;
+/// Largest number of spacings that are tried.
+const MOST_SPACINGS: usize = 12;
+/// Smallest and largest spacing over the case's own \[–\].
 const FINEST: f64 = 0.3;
-/// How much the way of solving may add to the error, over the goal \[–\].
-const SOLVER_SHARE: f64 = 0.1;
-/// Seeds of clouds on which the winner is confirmed begin here.
+const COARSEST: f64 = 3.0;
+/// Largest error of the solver over the goal \[–\].
+const SOLVER_FRACTION: f64 = 0.1;
+/// First seed of the clouds on which the winner is confirmed.
 const FRESH: u64 = 1000;
 
-/// What a search has found.
+/// Result of a search.
 #[derive(Debug)]
 pub struct Tuned {
+    /// All recipes that were tried.
     pub candidates: Vec<Candidate>,
-    /// Every trial.
+    /// All trials.
     pub trials: Vec<Trial>,
     /// The trial that meets the goal, if one does.
     pub winner: Option<Trial>,
-    /// The winner on clouds that nobody had looked at.
+    /// The winner on clouds that the search has not used.
     pub confirmed: Option<Trial>,
     /// The winner with one change each.
     pub changes: Vec<Trial>,
+    /// Error of the reference solution itself \[–\].
     pub bar: f64,
-    pub truth: String,
-    pub group: crate::accuracy::Group,
-    /// Recipes that were refused before the first step or failed on the way.
-    pub dropped: usize,
+    /// Where the reference solution comes from.
+    pub reference: String,
+    /// Quantities whose error is measured.
+    pub group: Group,
+    /// Trials that were refused before the first step or failed.
+    pub failed: usize,
 }
 
-/// Searches; runs that are on record are not run again.
-pub fn tune(wanted: &Wanted, store: &Store, say: &(dyn Fn(Progress) + Sync)) -> Result<Tuned> {
-    let truth = find_truth(&wanted.truth, &wanted.source, &[], store, say)?;
-    let case = &wanted.source.case;
-    let Some(group) = wanted.group.or_else(|| truth.group(case)) else {
-        bail!("{}: has no probe and no support whose error could be told", wanted.source.name);
-    };
-    let mut bench = Bench { wanted, candidates: Vec::new(), truth, group, store, say };
+/// Searches; runs that are stored are not repeated.
+pub fn tune(request: &TuneRequest, tasks: TaskRunner) -> Result<Tuned> {
+    let mut runner = TrialRunner::new(request, tasks)?;
     let mut trials = Vec::new();
-    let solver = best_solver(&mut bench, &mut trials)?;
-    let offset = bench.candidates.len();
-    bench.candidates.extend(candidates(case, &wanted.axes).into_iter().map(|mut candidate| {
-        candidate.settings.extend(solver.settings.iter().cloned());
-        candidate
-    }));
-    let last = halve(&bench, offset, &mut trials)?;
-    let (winner, confirmed) = ladder(&bench, &last, &mut trials)?;
+    let solver = best_solver(&mut runner, &mut trials)?;
+    let offset = runner.candidates.len();
+    runner.candidates.extend(candidates(&request.source.case, &request.axes).into_iter().map(
+        |mut candidate| {
+            candidate.settings.extend(solver.settings.iter().cloned());
+            candidate
+        },
+    ));
+    let last = halve(&runner, offset, &mut trials)?;
+    let (winner, confirmed) = confirmed_winner(&runner, &last, &mut trials)?;
     let changes = match &winner {
-        Some(winner) => one_at_a_time(&mut bench, winner)?,
+        Some(winner) => one_at_a_time(&mut runner, winner)?,
         None => Vec::new(),
     };
-    let dropped = trials.iter().filter(|trial| trial.failure.is_some()).count();
+    let failed = trials.iter().filter(|trial| trial.failure.is_some()).count();
     Ok(Tuned {
-        bar: bench.bar(),
-        truth: bench.truth.source.clone(),
-        group,
-        candidates: bench.candidates,
+        bar: runner.bar(),
+        reference: runner.reference.source.clone(),
+        group: runner.group,
+        candidates: runner.candidates,
         trials,
         winner,
         confirmed,
         changes,
-        dropped,
+        failed,
     })
 }
 
-/// The cheapest way of solving the case's own discretisation on a coarse cloud that
-/// adds little to the error of the most exact one.
-fn best_solver(bench: &mut Bench, trials: &mut Vec<Trial>) -> Result<Candidate> {
-    bench.candidates = solvers(&bench.wanted.source.case);
-    let points: Vec<(usize, f64)> = (0..bench.candidates.len()).map(|n| (n, ROUNDS[0])).collect();
-    let tried = bench.trials(&points, &[0])?;
+/// The cheapest solver that, with the case's own discretisation on a coarse cloud, adds
+/// little to the error of the most accurate one.
+fn best_solver(runner: &mut TrialRunner, trials: &mut Vec<Trial>) -> Result<Candidate> {
+    runner.candidates = solvers(&runner.request.source.case);
+    let points: Vec<(usize, f64)> = (0..runner.candidates.len()).map(|n| (n, ROUNDS[0])).collect();
+    let tried = runner.trials(&points, &[0])?;
     let exact = tried.iter().map(Trial::worst).find(|error| error.is_finite());
     let Some(exact) = exact else {
         let reason = tried.iter().find_map(|trial| trial.failure.clone()).unwrap_or_default();
-        bail!("{}: no way of solving ends soundly: {reason}", bench.wanted.source.name);
+        bail!("{}: every solver fails: {reason}", runner.request.source.name);
     };
-    let room = SOLVER_SHARE
-        * match bench.wanted.goal {
+    let margin = SOLVER_FRACTION
+        * match runner.request.goal {
             Goal::Error(target) => target,
             Goal::Budget(_) => exact,
         };
-    let good = tried.iter().filter(|trial| (trial.worst() - exact).abs() <= room);
+    let good = tried.iter().filter(|trial| (trial.worst() - exact).abs() <= margin);
     let cheapest = good.min_by(|a, b| a.cpu_s.total_cmp(&b.cpu_s)).map_or(0, |t| t.candidate);
     trials.extend(tried);
-    Ok(bench.candidates[cheapest].clone())
+    Ok(runner.candidates[cheapest].clone())
 }
 
-/// The candidates from `offset` on through the rounds; those that go on to the ladder.
-fn halve(bench: &Bench, offset: usize, trials: &mut Vec<Trial>) -> Result<Vec<usize>> {
-    let mut alive: Vec<usize> = (offset..bench.candidates.len()).collect();
+/// The best of the candidates from `offset` on after all rounds.
+fn halve(runner: &TrialRunner, offset: usize, trials: &mut Vec<Trial>) -> Result<Vec<usize>> {
+    let mut remaining: Vec<usize> = (offset..runner.candidates.len()).collect();
     for (round, factor) in ROUNDS.into_iter().enumerate() {
         let clouds: Vec<u64> = (0..=round as u64).collect();
         let points: Vec<(usize, f64)> =
-            alive.iter().map(|&candidate| (candidate, factor)).collect();
-        let tried = bench.trials(&points, &clouds)?;
+            remaining.iter().map(|&candidate| (candidate, factor)).collect();
+        let tried = runner.trials(&points, &clouds)?;
         trials.extend(tried.iter().cloned());
         let mut scored: Vec<(f64, usize)> =
-            tried.iter().map(|trial| (score(bench, trials, trial), trial.candidate)).collect();
+            tried.iter().map(|trial| (score(runner, trials, trial), trial.candidate)).collect();
         scored.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         scored.retain(|(score, _)| score.is_finite());
-        scored.truncate((scored.len() / KEPT).max(LAST));
-        alive = scored.into_iter().map(|(_, candidate)| candidate).collect();
+        scored.truncate((scored.len() / REDUCTION).max(LAST));
+        remaining = scored.into_iter().map(|(_, candidate)| candidate).collect();
     }
-    alive.truncate(LAST);
-    Ok(alive)
+    remaining.truncate(LAST);
+    Ok(remaining)
 }
 
-fn components(bench: &Bench) -> usize {
-    bench.wanted.source.case.problem.dimension.components()
+fn components(runner: &TrialRunner) -> usize {
+    runner.request.source.case.problem.dimension.components()
 }
 
 fn own(trials: &[Trial], candidate: usize) -> Vec<&Trial> {
     trials.iter().filter(|trial| trial.candidate == candidate).collect()
 }
 
-fn score(bench: &Bench, trials: &[Trial], trial: &Trial) -> f64 {
+fn score(runner: &TrialRunner, trials: &[Trial], trial: &Trial) -> f64 {
     let order = order(&own(trials, trial.candidate));
-    expected(trial, bench.wanted.goal, order, components(bench), bench.bar())
+    expected(trial, runner.request.goal, order, components(runner), runner.bar())
 }
 
-/// The winner of the ladder and its confirmation on fresh clouds; where that fails the
-/// goal is asked for with more room.
-fn ladder(
-    bench: &Bench,
+/// The best trial that also meets the goal on clouds that the search has not used, and its
+/// trial there.
+fn confirmed_winner(
+    runner: &TrialRunner,
     last: &[usize],
     trials: &mut Vec<Trial>,
 ) -> Result<(Option<Trial>, Option<Trial>)> {
-    let clouds: Vec<u64> = (0..bench.wanted.clouds as u64).collect();
-    let fresh: Vec<u64> = (0..bench.wanted.fresh as u64).map(|n| FRESH + n).collect();
-    let mut standing = Vec::new();
+    let clouds: Vec<u64> = (0..runner.request.clouds as u64).collect();
+    let fresh: Vec<u64> = (0..runner.request.fresh as u64).map(|n| FRESH + n).collect();
+    let mut passed = Vec::new();
     for &candidate in last {
-        standing.extend(climb(bench, candidate, &clouds, trials)?);
+        passed.extend(refine(runner, candidate, &clouds, trials)?);
     }
-    // Errors below the truth's own are alike: of those the cheapest.
-    let known = |trial: &Trial| trial.worst().max(bench.bar());
-    standing.sort_by(|a, b| match bench.wanted.goal {
+    // Errors below that of the reference solution count as equal: of those the cheapest.
+    let known = |trial: &Trial| trial.worst().max(runner.bar());
+    passed.sort_by(|a, b| match runner.request.goal {
         Goal::Error(_) => a.cpu_s.total_cmp(&b.cpu_s),
         Goal::Budget(_) => known(a).total_cmp(&known(b)).then(a.cpu_s.total_cmp(&b.cpu_s)),
     });
-    for winner in standing {
-        let confirmed = bench.trials(&[(winner.candidate, winner.factor)], &fresh)?.remove(0);
-        let holds = match bench.wanted.goal {
+    for winner in passed {
+        let confirmed = runner.trials(&[(winner.candidate, winner.factor)], &fresh)?.remove(0);
+        let meets = match runner.request.goal {
             Goal::Error(target) => confirmed.worst() <= target,
             Goal::Budget(_) => confirmed.failure.is_none(),
         };
-        if holds {
+        if meets {
             return Ok((Some(winner), Some(confirmed)));
         }
     }
     Ok((None, None))
 }
 
-/// Rungs of one candidate around the spacing at which it is expected to meet the goal:
-/// for a wanted error the coarsest that meets it and a finer one to fall back on, for a
-/// wanted cost the finest within it.
-fn climb(
-    bench: &Bench,
+/// Trials of one candidate that meet the goal, around the spacing at which it is expected to:
+/// for a target error the coarsest one and a finer one to fall back on, for a CPU budget the
+/// finest one.
+fn refine(
+    runner: &TrialRunner,
     candidate: usize,
     clouds: &[u64],
     trials: &mut Vec<Trial>,
 ) -> Result<Vec<Trial>> {
     let known = own(trials, candidate);
     let Some(latest) = known.last() else { return Ok(Vec::new()) };
-    let start = expected_factor(latest, bench.wanted.goal, order(&known), components(bench));
-    let start = start.clamp(FINEST, 3.0);
-    let rung = |n: i32| (RUNG.powi(n) * 1e4).round() / 1e4;
-    let first = (start.ln() / RUNG.ln()).round() as i32;
-    let mut standing: Vec<Trial> = Vec::new();
-    let (mut n, mut down) = (first, None);
-    for _ in 0..MOST_RUNGS {
-        let factor = rung(n);
-        if factor < FINEST {
+    let start = expected_factor(latest, runner.request.goal, order(&known), components(runner));
+    let start = start.clamp(FINEST, COARSEST);
+    let factor = |n: i32| (SPACING_RATIO.powi(n) * 1e4).round() / 1e4;
+    let first = (start.ln() / SPACING_RATIO.ln()).round() as i32;
+    let mut passed: Vec<Trial> = Vec::new();
+    let (mut n, mut direction) = (first, None);
+    for _ in 0..MOST_SPACINGS {
+        if factor(n) < FINEST {
             break;
         }
-        let trial = bench.trials(&[(candidate, factor)], clouds)?.remove(0);
+        let trial = runner.trials(&[(candidate, factor(n))], clouds)?.remove(0);
         trials.push(trial.clone());
-        let good = meets(bench, &trial);
+        let good = meets(runner, &trial);
         if good {
-            standing.push(trial);
+            passed.push(trial);
         }
-        // For an error: from a good rung up to coarser ones until one is bad, from a
-        // bad one down to finer ones until one is good. For a cost the other way.
-        let coarser_next = matches!(bench.wanted.goal, Goal::Error(_)) == good;
-        match down {
+        // For an error: coarser from a spacing that meets the goal until one does not, finer
+        // from one that does not until one does. For a budget the other way round.
+        let coarser_next = matches!(runner.request.goal, Goal::Error(_)) == good;
+        match direction {
             Some(before) if before != coarser_next => break,
-            _ => down = Some(coarser_next),
+            _ => direction = Some(coarser_next),
         }
         n += if coarser_next { 1 } else { -1 };
-        if rung(n) > 3.0 {
+        if factor(n) > COARSEST {
             break;
         }
     }
-    Ok(standing)
+    Ok(passed)
 }
 
-/// Whether a trial meets the goal with a margin: for an error, the largest over the
-/// clouds with half their range and the truth's own error on top of it.
-fn meets(bench: &Bench, trial: &Trial) -> bool {
-    match bench.wanted.goal {
-        Goal::Error(target) => trial.worst() + 0.5 * trial.range() + bench.bar() <= target,
+/// Whether a trial meets the goal with a margin: the error is the largest over the clouds plus
+/// half their range plus that of the reference solution.
+fn meets(runner: &TrialRunner, trial: &Trial) -> bool {
+    match runner.request.goal {
+        Goal::Error(target) => {
+            trial.worst() + 0.5 * (trial.worst() - trial.least()) + runner.bar() <= target
+        }
         Goal::Budget(cpu_s) => trial.failure.is_none() && trial.cpu_s <= cpu_s,
     }
 }

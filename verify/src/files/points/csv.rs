@@ -1,6 +1,6 @@
-//! Points from CSV: columns x, y and perhaps z, with or without a header.
+//! Points from CSV: columns x, y and optionally z, with or without a header.
 
-use crate::files::Mistake;
+use crate::files::error::Mistake;
 use mtled::algebra::tensor::Vector3;
 
 const EXPECTED: &str = "two or three numbers x, y, z";
@@ -42,7 +42,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     Ok(points)
 }
 
-/// Where a header has x, y and perhaps z.
+/// Columns of x, y and optionally z in a header.
 fn named(row: &csv::StringRecord) -> Option<Vec<usize>> {
     let find = |name: &str| row.iter().position(|cell| cell.eq_ignore_ascii_case(name));
     Some([Some(find("x")?), Some(find("y")?), find("z")].into_iter().flatten().collect())

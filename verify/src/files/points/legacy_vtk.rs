@@ -1,8 +1,8 @@
 //! The POINTS of a legacy VTK file, ASCII or binary (big-endian).
 
-use crate::files::Mistake;
-use crate::files::error::start_of;
-use crate::files::voxels::{ByteOrder, Scalar};
+use super::rows::from_rows;
+use crate::files::bytes::{ByteOrder, Scalar, start_of};
+use crate::files::error::Mistake;
 use mtled::algebra::tensor::Vector3;
 
 pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
@@ -32,7 +32,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
                     Some(true) => big_endian(rest, count, scalar)?,
                     _ => ascii(rest, count)?,
                 };
-                return Ok(super::from_rows(&values, 3));
+                return Ok(from_rows(&values, 3));
             }
             _ => {}
         }
@@ -40,7 +40,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     Err(Mistake::NoPoints)
 }
 
-/// Takes a line off the front.
+/// Removes the first line.
 fn next_line(rest: &mut &[u8]) -> Option<String> {
     if rest.is_empty() {
         return None;

@@ -3,13 +3,15 @@
 mod csv;
 mod legacy_vtk;
 mod npy;
+mod rows;
 mod vtu;
 
-use super::{FileError, Mistake, bytes_of};
+use super::bytes::bytes_of;
+use super::error::{FileError, Mistake};
 use mtled::algebra::tensor::Vector3;
 use std::path::Path;
 
-/// Reads node positions, the kind of file told by its name. Files of two
+/// Reads node positions, with the format given by the extension of the name. Files of two
 /// columns get z = 0.
 pub fn read(path: &Path) -> Result<Vec<Vector3>, FileError> {
     let kind = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -32,12 +34,6 @@ fn checked(points: Vec<Vector3>) -> Result<Vec<Vector3>, Mistake> {
         Some(point) => Err(Mistake::NotFinite { point }),
         None => Ok(points),
     }
-}
-
-/// Points from coordinates in a row, `columns` (2 or 3) for each.
-fn from_rows(values: &[f64], columns: usize) -> Vec<Vector3> {
-    let rows = values.chunks_exact(columns);
-    rows.map(|row| Vector3::new(row[0], row[1], row.get(2).copied().unwrap_or(0.0))).collect()
 }
 
 #[cfg(test)]

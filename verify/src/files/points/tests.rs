@@ -3,7 +3,6 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, write::ZlibEncoder};
 use mtled::algebra::tensor::Vector3;
-use npyz::WriterBuilder;
 use std::io::Write;
 
 const COORDINATES: [f64; 6] = [0.0, 0.5, 1.0, -2.0, 0.25, 3.5];
@@ -27,40 +26,40 @@ fn a_bad_line_of_csv_is_named() {
     assert!(csv::parse(b"1,2,3,4\n").is_err());
 }
 
-fn npy_bytes<T: npyz::AutoSerialize + Copy>(
-    values: &[T],
-    shape: &[u64],
-    order: npyz::Order,
-) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let options = npyz::WriteOptions::new().default_dtype().shape(shape).order(order);
-    let mut writer = options.writer(&mut bytes).begin_nd().unwrap();
-    writer.extend(values.iter().copied()).unwrap();
-    writer.finish().unwrap();
-    bytes
+/// A NumPy array as numpy.save writes it; `order` says whether it is stored by columns.
+fn npy_bytes(kind: &str, shape: &str, order: &str, data: &[u8]) -> Vec<u8> {
+    let header =
+        format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': {shape}, }}      \n");
+    let length = (header.len() as u16).to_le_bytes();
+    [&b"\x93NUMPY\x01\x00"[..], &length, header.as_bytes(), data].concat()
 }
 
 #[test]
 fn numpy_arrays_are_read_in_both_orders_and_precisions() {
-    let by_rows = npy_bytes(&COORDINATES, &[2, 3], npyz::Order::C);
+    let by_rows = npy_bytes("<f8", "(2, 3)", "False", &little());
     assert_eq!(npy::parse(&by_rows).unwrap(), expected());
-    let by_columns = [0.0, -2.0, 0.5, 0.25, 1.0, 3.5];
-    let by_columns = npy_bytes(&by_columns, &[2, 3], npyz::Order::Fortran);
+    let by_columns = [0.0, -2.0, 0.5, 0.25, 1.0, 3.5].map(f64::to_le_bytes).concat();
+    let by_columns = npy_bytes("<f8", "(2, 3)", "True", &by_columns);
     assert_eq!(npy::parse(&by_columns).unwrap(), expected());
-    let single = npy_bytes(&COORDINATES.map(|x| x as f32), &[2, 3], npyz::Order::C);
+    let single = COORDINATES.map(|x| (x as f32).to_be_bytes()).concat();
+    let single = npy_bytes(">f4", "(2, 3)", "False", &single);
     assert_eq!(npy::parse(&single).unwrap(), expected());
-    let plane = npy_bytes(&[1.0, 2.0], &[1, 2], npyz::Order::C);
+    let plane = [1.0, 2.0].map(f64::to_le_bytes).concat();
+    let plane = npy_bytes("<f8", "(1, 2)", "False", &plane);
     assert_eq!(npy::parse(&plane).unwrap(), [Vector3::new(1.0, 2.0, 0.0)]);
 }
 
 #[test]
 fn numpy_arrays_of_another_shape_or_type_are_refused() {
-    let wide = npy_bytes(&COORDINATES, &[1, 6], npyz::Order::C);
+    let wide = npy_bytes("<f8", "(1, 6)", "False", &little());
     assert!(npy::parse(&wide).unwrap_err().to_string().contains("shape [1, 6]"));
-    let whole = npy_bytes(&[1i32, 2, 3], &[1, 3], npyz::Order::C);
-    assert!(npy::parse(&whole).unwrap_err().to_string().contains("of floats"));
-    let whole = npy_bytes(&COORDINATES, &[2, 3], npyz::Order::C);
-    assert!(npy::parse(&whole[..whole.len() - 4]).is_err());
+    let whole = npy_bytes("<i4", "(1, 3)", "False", &[0; 12]);
+    assert!(npy::parse(&whole).unwrap_err().to_string().contains("type '<i4'; expected (n, 2)"));
+    let line = npy_bytes("<f8", "(6,)", "False", &little());
+    assert!(npy::parse(&line).unwrap_err().to_string().contains("shape [6]"));
+    let endless = npy_bytes("<f8", "(9223372036854775808, 3)", "False", &little());
+    assert!(npy::parse(&endless).unwrap_err().to_string().contains("truncated"));
+    assert!(npy::parse(b"PK\x03\x04").unwrap_err().to_string().contains("NPY"));
 }
 
 #[test]
@@ -139,7 +138,7 @@ fn damaged_vtu_files_are_refused_with_a_reason() {
     let short = STANDARD.encode([&99u32.to_le_bytes()[..], &little()].concat());
     let truncated = vtu_text("", "format=\"binary\"", &short, "");
     let message = vtu::parse(&truncated).unwrap_err().to_string();
-    assert!(message.contains("promises 99 bytes of data, there are 48"), "{message}");
+    assert!(message.contains("states 99 bytes of data, there are 48"), "{message}");
     assert!(vtu::parse(b"<html></html>").unwrap_err().to_string().contains("not a VTU file"));
     let lz4 = vtu_text("compressor=\"vtkLZ4DataCompressor\"", "format=\"binary\"", &short, "");
     assert!(vtu::parse(&lz4).unwrap_err().to_string().contains("vtkZLibDataCompressor or none"));
@@ -166,6 +165,6 @@ fn binary_points_cut_short_anywhere_are_refused_or_read_but_never_panic() {
     let tail = format!("<AppendedData encoding=\"base64\">\n_AAAA{}</AppendedData>", compressed());
     let vtu = vtu_text(attributes, "format=\"appended\" offset=\"4\"", "", &tail);
     (0..vtu.len()).for_each(|end| drop(vtu::parse(&vtu[..end])));
-    let npy = npy_bytes(&COORDINATES, &[2, 3], npyz::Order::C);
+    let npy = npy_bytes("<f8", "(2, 3)", "False", &little());
     assert!((0..npy.len()).all(|end| npy::parse(&npy[..end]).is_err()));
 }

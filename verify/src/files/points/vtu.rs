@@ -1,9 +1,9 @@
 //! The points of a VTU file: ASCII, or binary inline or appended, plain or
 //! compressed by zlib.
 
-use crate::files::Mistake;
-use crate::files::error::start_of;
-use crate::files::voxels::{ByteOrder, Scalar};
+use super::rows::from_rows;
+use crate::files::bytes::{ByteOrder, Scalar, start_of};
+use crate::files::error::Mistake;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
@@ -30,7 +30,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     let scalar = match array.get("type").map(String::as_str) {
         Some("Float32") => Scalar::F32,
         Some("Float64") => Scalar::F64,
-        other => return Err(bad("type", other, "Float32 or Float64")),
+        other => return Err(Mistake::bad_field("type", other.unwrap_or(""), "Float32 or Float64")),
     };
     let values = match array.get("format").map(String::as_str) {
         Some("ascii") => {
@@ -44,13 +44,15 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
             let at = appended.ok_or(Mistake::MissingField { field: "AppendedData" })?;
             storage.numbers(&appended_bytes(&bytes[at..], offset)?, scalar)?
         }
-        other => return Err(bad("format", other, "ascii, binary or appended")),
+        other => {
+            return Err(Mistake::bad_field(
+                "format",
+                other.unwrap_or(""),
+                "ascii, binary or appended",
+            ));
+        }
     };
-    Ok(super::from_rows(&values, 3))
-}
-
-fn bad(field: &'static str, value: Option<&str>, expected: &'static str) -> Mistake {
-    Mistake::BadField { field, value: value.unwrap_or("").to_string(), expected }
+    Ok(from_rows(&values, 3))
 }
 
 fn damaged(encoding: &'static str, reason: String) -> Mistake {
@@ -105,17 +107,27 @@ fn storage(file: &Attributes) -> Result<Storage, Mistake> {
         order: match get("byte_order") {
             Some("BigEndian") => ByteOrder::Big,
             Some("LittleEndian") | None => ByteOrder::Little,
-            other => return Err(bad("byte_order", other, "LittleEndian or BigEndian")),
+            Some(other) => {
+                return Err(Mistake::bad_field("byte_order", other, "LittleEndian or BigEndian"));
+            }
         },
         lengths: match get("header_type") {
             Some("UInt64") => Scalar::U64,
             Some("UInt32") | None => Scalar::U32,
-            other => return Err(bad("header_type", other, "UInt32 or UInt64")),
+            Some(other) => {
+                return Err(Mistake::bad_field("header_type", other, "UInt32 or UInt64"));
+            }
         },
         compressed: match get("compressor") {
             None => false,
             Some("vtkZLibDataCompressor") => true,
-            other => return Err(bad("compressor", other, "vtkZLibDataCompressor or none")),
+            Some(other) => {
+                return Err(Mistake::bad_field(
+                    "compressor",
+                    other,
+                    "vtkZLibDataCompressor or none",
+                ));
+            }
         },
     })
 }

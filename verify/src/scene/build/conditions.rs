@@ -1,23 +1,19 @@
 //! Conditions, loads and obstacles of a case file → those of the solver.
 
-use crate::scene::build::Builder;
+use crate::scene::build::builder::Builder;
 use crate::scene::format::{
-    AmplitudeFormat, CaseFormat, DisplacementFormat, ExtentFormat, FrictionFormat, ObstacleFormat,
-    PrescribeFormat, RotationFormat, SideFormat,
+    AmplitudeFormat, CaseFormat, DisplacementFormat, ObstacleFormat, PrescribeFormat,
+    RotationFormat,
 };
 use mtled::algebra::tensor::Vector3;
-use mtled::geometry::selection::Extent;
 use mtled::problem::{
-    Amplitude, BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed,
-    Traction,
+    Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Traction,
 };
 
 impl Builder<'_> {
     pub fn conditions(&mut self, rows: &[PrescribeFormat]) -> Vec<EssentialCondition> {
-        let read: Vec<Option<EssentialCondition>> = (rows.iter().enumerate())
-            .map(|(n, row)| self.condition(&format!("prescribe[{n}]"), row))
-            .collect();
-        read.into_iter().flatten().collect()
+        let rows = rows.iter().enumerate();
+        rows.filter_map(|(n, row)| self.condition(&format!("prescribe[{n}]"), row)).collect()
     }
 
     fn condition(&mut self, key: &str, row: &PrescribeFormat) -> Option<EssentialCondition> {
@@ -42,11 +38,7 @@ impl Builder<'_> {
                 return None;
             }
         };
-        let extent = match row.of {
-            ExtentFormat::Surface => Extent::Surface,
-            ExtentFormat::Volume => Extent::Volume,
-        };
-        let (name, release) = (row.name.clone(), row.release);
+        let (name, extent, release) = (row.name.clone(), row.of.into(), row.release);
         Some(EssentialCondition { name, extent, part: part?, prescribed, amplitude, release })
     }
 
@@ -90,9 +82,7 @@ impl Builder<'_> {
     }
 
     fn table(&mut self, key: &str, rows: &[(f64, f64)]) {
-        if rows.is_empty() {
-            self.mistake(key, "is empty; it needs rows of time and factor");
-        }
+        self.refuse_if(rows.is_empty(), key, "is empty; it needs rows of time and factor");
         for (n, pair) in rows.windows(2).enumerate() {
             let ((before, _), (after, _)) = (pair[0], pair[1]);
             if after <= before {
@@ -130,23 +120,15 @@ impl Builder<'_> {
     }
 
     pub fn obstacles(&mut self, rows: &[ObstacleFormat]) -> Vec<Obstacle> {
-        let read: Vec<Option<Obstacle>> = (rows.iter().enumerate())
-            .map(|(n, row)| {
-                Some(Obstacle {
-                    name: row.name.clone(),
-                    shape: self.solid(&format!("obstacle[{n}].shape"), &row.shape)?,
-                    offset: row.offset,
-                    side: match row.side {
-                        SideFormat::Outside => ObstacleSide::Outside,
-                        SideFormat::Inside => ObstacleSide::Inside,
-                    },
-                    friction: match row.friction {
-                        FrictionFormat::Frictionless => Friction::Frictionless,
-                        FrictionFormat::NoSlip => Friction::NoSlip,
-                    },
-                })
+        let obstacle = |(n, row): (usize, &ObstacleFormat)| {
+            Some(Obstacle {
+                name: row.name.clone(),
+                shape: self.solid(&format!("obstacle[{n}].shape"), &row.shape)?,
+                offset: row.offset,
+                side: row.side.into(),
+                friction: row.friction.into(),
             })
-            .collect();
-        read.into_iter().flatten().collect()
+        };
+        rows.iter().enumerate().filter_map(obstacle).collect()
     }
 }

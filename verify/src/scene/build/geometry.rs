@@ -1,23 +1,13 @@
 //! Shapes and selectors of a case file → those of the solver.
 
 use crate::files::{self, LengthUnit};
-use crate::scene::build::Builder;
-use crate::scene::format::geometry::{SelectorFormat, ShapeFormat, UnitFormat};
+use crate::scene::build::builder::Builder;
+use crate::scene::format::{SelectorFormat, ShapeFormat, UnitFormat};
 use mtled::algebra::tensor::Vector3;
-use mtled::geometry::selection::Selector;
-use mtled::geometry::{LabelField, LabelMap, Shape, Surface};
+use mtled::geometry::{LabelField, LabelMap, Selector, Shape, Surface};
 use mtled::problem::Dimension;
 use std::path::Path;
 use std::sync::Arc;
-
-impl From<UnitFormat> for LengthUnit {
-    fn from(unit: UnitFormat) -> LengthUnit {
-        match unit {
-            UnitFormat::M => LengthUnit::Metre,
-            UnitFormat::Mm => LengthUnit::Millimetre,
-        }
-    }
-}
 
 impl Builder<'_> {
     /// The solid that deforms; its label map becomes that of label selectors.
@@ -110,9 +100,7 @@ impl Builder<'_> {
     }
 
     fn union(&mut self, key: &str, parts: &[ShapeFormat]) -> Option<Shape> {
-        if parts.is_empty() {
-            self.mistake(key, "is empty; it needs at least one shape");
-        }
+        self.refuse_if(parts.is_empty(), key, "is empty; it needs at least one shape");
         let shapes: Vec<Option<Shape>> = (parts.iter().enumerate())
             .map(|(n, part)| self.shape(&format!("{key}[{n}]"), part))
             .collect();
@@ -244,9 +232,7 @@ impl Builder<'_> {
     }
 
     fn selectors(&mut self, key: &str, parts: &[SelectorFormat]) -> Option<Vec<Selector>> {
-        if parts.is_empty() {
-            self.mistake(key, "is empty; it needs at least one selector");
-        }
+        self.refuse_if(parts.is_empty(), key, "is empty; it needs at least one selector");
         let read: Vec<Option<Selector>> = (parts.iter().enumerate())
             .map(|(n, part)| self.selector(&format!("{key}[{n}]"), part))
             .collect();

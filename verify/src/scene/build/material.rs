@@ -1,8 +1,8 @@
 //! Materials and regions of a case file → those of the solver.
 
-use crate::scene::build::Builder;
-use crate::scene::format::{CaseFormat, LawFormat, MaterialFormat, VolumetricFormat};
-use mtled::geometry::selection::Selector;
+use crate::scene::build::builder::Builder;
+use crate::scene::format::{CaseFormat, LawFormat, MaterialFormat};
+use mtled::geometry::Selector;
 use mtled::material::{
     ElasticConstants, Law, LinearElastic, Material, MaterialError, MooneyRivlin,
     NeoHookeanIsochoric, NeoHookeanLogJ, StVenantKirchhoff, VolumetricTerm,
@@ -157,10 +157,7 @@ fn constants_given(format: &MaterialFormat) -> [(&'static str, Option<f64>); 5] 
 fn law(format: &MaterialFormat, constants: ElasticConstants) -> Law {
     match format.law {
         LawFormat::NeoHookeanIsochoric => {
-            let volumetric = match format.volumetric {
-                Some(VolumetricFormat::SimoTaylor) => VolumetricTerm::SimoTaylor,
-                Some(VolumetricFormat::Quadratic) | None => VolumetricTerm::Quadratic,
-            };
+            let volumetric = format.volumetric.map_or(VolumetricTerm::Quadratic, Into::into);
             Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(constants, volumetric))
         }
         LawFormat::StVenantKirchhoff => Law::StVenantKirchhoff(StVenantKirchhoff::new(constants)),

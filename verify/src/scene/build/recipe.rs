@@ -1,66 +1,25 @@
 //! The discretisation table of a case file → the solver's recipe.
 
 use crate::files;
-use crate::scene::build::Builder;
-use crate::scene::format::recipe::{
-    BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientStorageFormat,
-    GradientsFormat, GridFormat, InsideFormat, MassFormat, VolumetricProjectionFormat,
-    WeightFunctionFormat,
+use crate::scene::build::builder::Builder;
+use crate::scene::format::{
+    BasisFormat, CloudFormat, DiscretisationFormat, GradientsFormat, GridFormat,
 };
 use mtled::geometry::Shape;
 use mtled::problem::{
-    BackgroundGrid, Basis, Cloud, Dimension, Enforcement, GradientStorage, Gradients, InsideRule,
-    MassRule, Recipe, Refinement, VolumetricProjection, WeightFunction,
+    BackgroundGrid, Basis, Cloud, Dimension, Gradients, Recipe, Refinement, defaults,
 };
 
-/// What a case file need not say.
-pub mod defaults {
-    use mtled::problem::{
-        Basis, Enforcement, InsideRule, MassRule, VolumetricProjection, WeightFunction,
-    };
-
-    /// Influence radius over nodal spacing \[–\], by basis: a quadratic one needs
-    /// more nodes in its supports.
-    pub fn dilation(basis: Basis) -> f64 {
-        match basis {
-            Basis::Linear => 1.8,
-            Basis::Quadratic => 2.6,
-            Basis::ModifiedQuadratic { .. } => 2.0,
-        }
-    }
-    pub const BASIS: Basis = Basis::Linear;
-    /// Of the modified quadratic basis \[–\] (Joldes et al. 2015).
-    pub const REGULARISATION: f64 = 1e-7;
-    pub const WEIGHT_FUNCTION: WeightFunction = WeightFunction::QuarticSpline;
-    /// Row sums of quadratic functions are negative at some corners.
-    pub fn mass(basis: Basis) -> MassRule {
-        match basis {
-            Basis::Linear => MassRule::RowSum,
-            Basis::Quadratic | Basis::ModifiedQuadratic { .. } => MassRule::EvenSplit,
-        }
-    }
-    pub const ENFORCEMENT: Enforcement = Enforcement::Collocation;
-    /// Of consistent gradients, over the defect of plain ones \[–\].
-    pub const GRADIENT_TOLERANCE: f64 = 1e-3;
-    pub const VOLUMETRIC_PROJECTION: VolumetricProjection = VolumetricProjection::Patches;
-    pub const INSIDE: InsideRule = InsideRule::VolumeFraction;
-    /// Two cells per node in three dimensions: 1.26³ = 2.
-    pub const CELLS_PER_SPACING: f64 = 1.26;
-    pub const GAUSS_POINTS: usize = 1;
-    /// Growth of the spacing per length \[–\].
-    pub const GROWTH: f64 = 0.25;
-    pub const SEED: u64 = 1;
-    /// Of selectors, over the nodal spacing \[–\].
-    pub const TOLERANCE: f64 = 1e-3;
-    /// Of selectors where the nodes come from a file \[m\].
-    pub const TOLERANCE_OF_GIVEN_NODES: f64 = 1e-6;
-}
+/// Tolerance of selectors that state none, over the nodal spacing \[–\].
+const TOLERANCE: f64 = 1e-3;
+/// The same where the nodes come from a file \[m\].
+const TOLERANCE_OF_GIVEN_NODES: f64 = 1e-6;
 
 /// Tolerance \[m\] of selectors that state none.
 pub fn tolerance(format: &DiscretisationFormat) -> f64 {
     match format.spacing {
-        Some(spacing) if spacing > 0.0 => defaults::TOLERANCE * spacing,
-        _ => defaults::TOLERANCE_OF_GIVEN_NODES,
+        Some(spacing) if spacing > 0.0 => TOLERANCE * spacing,
+        _ => TOLERANCE_OF_GIVEN_NODES,
     }
 }
 
@@ -79,37 +38,26 @@ impl Builder<'_> {
         if let Some(spacing) = format.spacing {
             self.spacing_fits(spacing);
         }
-        let cloud = self.cloud(format);
-        let grid = self.grid(&format.grid, format);
-        Some(Recipe {
+        let (cloud, grid) = (self.cloud(format), self.grid(&format.grid, format));
+        let mut recipe = Recipe {
             cloud: cloud?,
-            dilation,
-            basis,
-            weight_function: format
-                .weight_function
-                .map_or(defaults::WEIGHT_FUNCTION, WeightFunction::from),
             grid: grid?,
-            mass: format.mass.map_or(defaults::mass(basis), MassRule::from),
-            enforcement: format.enforcement.map_or(defaults::ENFORCEMENT, Enforcement::from),
+            basis,
+            dilation,
+            mass: defaults::mass(basis),
             gradients: self.gradients(format),
-            gradient_storage: match format.gradient_storage {
-                Some(GradientStorageFormat::Single) => GradientStorage::Single,
-                Some(GradientStorageFormat::Double) | None => GradientStorage::Double,
-            },
-            volumetric_projection: format
-                .volumetric_projection
-                .map_or(defaults::VOLUMETRIC_PROJECTION, VolumetricProjection::from),
-        })
+            ..Recipe::with_spacing(1.0)
+        };
+        format.choose(&mut recipe);
+        Some(recipe)
     }
 
     fn basis(&mut self, format: &DiscretisationFormat) -> Basis {
         let key = "discretisation.regularisation";
         let regularisation = format.regularisation.unwrap_or(defaults::REGULARISATION);
         if !(regularisation > 0.0 && regularisation <= 1.0) {
-            self.mistake(
-                key,
-                format!("is {regularisation}; it must lie in 0 < regularisation ≤ 1"),
-            );
+            let message = format!("is {regularisation}; it must lie in 0 < regularisation ≤ 1");
+            self.mistake(key, message);
         }
         let basis = match format.basis {
             None => defaults::BASIS,
@@ -263,7 +211,7 @@ impl Builder<'_> {
             boundary_cell: format.boundary_cell,
             refinements,
             gauss_points,
-            inside: format.inside.map_or(defaults::INSIDE, InsideRule::from),
+            inside: format.inside.map_or(defaults::INSIDE, Into::into),
         })
     }
 
@@ -296,52 +244,6 @@ impl Builder<'_> {
                 self.mistake(&format!("{key}.cell"), message);
                 None
             }
-        }
-    }
-}
-
-impl From<WeightFunctionFormat> for WeightFunction {
-    fn from(format: WeightFunctionFormat) -> WeightFunction {
-        match format {
-            WeightFunctionFormat::CubicSpline => WeightFunction::CubicSpline,
-            WeightFunctionFormat::QuarticSpline => WeightFunction::QuarticSpline,
-            WeightFunctionFormat::Exponential => WeightFunction::Exponential,
-        }
-    }
-}
-
-impl From<MassFormat> for MassRule {
-    fn from(format: MassFormat) -> MassRule {
-        match format {
-            MassFormat::EvenSplit => MassRule::EvenSplit,
-            MassFormat::RowSum => MassRule::RowSum,
-        }
-    }
-}
-
-impl From<EnforcementFormat> for Enforcement {
-    fn from(format: EnforcementFormat) -> Enforcement {
-        match format {
-            EnforcementFormat::Direct => Enforcement::Direct,
-            EnforcementFormat::Collocation => Enforcement::Collocation,
-        }
-    }
-}
-
-impl From<VolumetricProjectionFormat> for VolumetricProjection {
-    fn from(format: VolumetricProjectionFormat) -> VolumetricProjection {
-        match format {
-            VolumetricProjectionFormat::None => VolumetricProjection::None,
-            VolumetricProjectionFormat::Patches => VolumetricProjection::Patches,
-        }
-    }
-}
-
-impl From<InsideFormat> for InsideRule {
-    fn from(format: InsideFormat) -> InsideRule {
-        match format {
-            InsideFormat::Centre => InsideRule::Centre,
-            InsideFormat::VolumeFraction => InsideRule::VolumeFraction,
         }
     }
 }

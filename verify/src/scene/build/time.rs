@@ -1,23 +1,12 @@
 //! Time, probes and output of a case file.
 
-use crate::scene::build::Builder;
+use crate::scene::build::builder::Builder;
+use crate::scene::case::{Outputs, Probe, ProbeKind};
 use crate::scene::format::{
     CaseFormat, LatticeFormat, MethodFormat, OutputFormat, ProbeFormat, SolverFormat, TimeFormat,
 };
-use crate::scene::{Outputs, Probe, ProbeKind};
 use mtled::algebra::tensor::Vector3;
-use mtled::problem::{Dimension, Motion, Newton, Relaxation, RelaxationMass, StepControl};
-
-/// Wanted relative error of a static solution \[–\].
-const TOLERANCE: f64 = 1e-4;
-/// Wanted relative residual of Newton's method \[–\].
-const RESIDUAL: f64 = 1e-10;
-/// Step over the critical one where nothing damps: large vibrations near the
-/// limit resonate with the step and blow up (study "energy").
-const UNDAMPED_SAFETY_FACTOR: f64 = 0.8;
-/// Steps over which a static load is applied.
-const LOAD_STEPS: usize = 500;
-const MAX_STEPS: usize = 200_000;
+use mtled::problem::{Dimension, Motion, Newton, Relaxation, StepControl};
 
 impl Builder<'_> {
     pub fn motion(&mut self, format: &TimeFormat) -> Motion {
@@ -38,13 +27,14 @@ impl Builder<'_> {
                 self.newton(format)
             }
             MethodFormat::Static => {
+                let preset = Relaxation::default();
                 let relaxation = Relaxation {
-                    load_end: format.load_end.unwrap_or(1.0),
-                    load_steps: format.load_steps.unwrap_or(LOAD_STEPS),
-                    tolerance: format.tolerance.unwrap_or(TOLERANCE),
-                    max_steps: format.max_steps.unwrap_or(MAX_STEPS),
+                    load_end: format.load_end.unwrap_or(preset.load_end),
+                    load_steps: format.load_steps.unwrap_or(preset.load_steps),
+                    tolerance: format.tolerance.unwrap_or(preset.tolerance),
+                    max_steps: format.max_steps.unwrap_or(preset.max_steps),
                     step,
-                    mass: RelaxationMass::default(),
+                    mass: preset.mass,
                 };
                 self.positive("time.load_end", relaxation.load_end);
                 self.at_least_one("time.load_steps", relaxation.load_steps);
@@ -67,11 +57,14 @@ impl Builder<'_> {
             let message = "does not belong to solver = \"newton\", which takes no time steps";
             self.mistake(&format!("time.{name}"), message);
         }
-        let load_end = format.load_end.unwrap_or(1.0);
-        let tolerance = format.tolerance.unwrap_or(RESIDUAL);
-        self.positive("time.load_end", load_end);
-        self.tolerance_of_time(tolerance);
-        Motion::Equilibrium(Newton { load_end, tolerance })
+        let preset = Newton::default();
+        let newton = Newton {
+            load_end: format.load_end.unwrap_or(preset.load_end),
+            tolerance: format.tolerance.unwrap_or(preset.tolerance),
+        };
+        self.positive("time.load_end", newton.load_end);
+        self.tolerance_of_time(newton.tolerance);
+        Motion::Equilibrium(newton)
     }
 
     fn tolerance_of_time(&mut self, tolerance: f64) {
@@ -102,12 +95,11 @@ impl Builder<'_> {
     }
 
     fn step(&mut self, format: &TimeFormat) -> StepControl {
-        let preset = StepControl::default();
         let undamped =
             format.method == MethodFormat::Dynamic && format.damping.unwrap_or(0.0) == 0.0;
-        let safety_factor = if undamped { UNDAMPED_SAFETY_FACTOR } else { preset.safety_factor };
+        let preset = if undamped { StepControl::UNDAMPED } else { StepControl::default() };
         let step = StepControl {
-            safety_factor: format.safety_factor.unwrap_or(safety_factor),
+            safety_factor: format.safety_factor.unwrap_or(preset.safety_factor),
             reevaluate_every: format.reevaluate_every.unwrap_or(preset.reevaluate_every),
             fixed: format.fixed_step,
             mass_scaling: format.mass_scaling.unwrap_or(preset.mass_scaling),

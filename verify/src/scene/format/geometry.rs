@@ -1,10 +1,14 @@
 //! Shapes and selectors as they are written. Each is a table with one key that
 //! names the kind.
 
-use crate::scene::format::Triple;
+use crate::files::LengthUnit;
+use crate::scene::format::choice::choice;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
+
+/// A vector in space: three numbers.
+pub type Triple = [f64; 3];
 
 /// A solid.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -43,12 +47,12 @@ pub enum ShapeFormat {
     },
 }
 
-/// A unit of length.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum UnitFormat {
-    M,
-    Mm,
+choice! {
+    /// A unit of length.
+    UnitFormat for LengthUnit {
+        "m" Metre,
+        "mm" Millimetre,
+    }
 }
 
 /// A part of the body or of its boundary: "all" or a table with one key.

@@ -1,6 +1,11 @@
 //! The discretisation recipe as it is written.
 
+use crate::scene::format::choice::choice;
 use crate::scene::format::geometry::SelectorFormat;
+use mtled::problem::{
+    Enforcement, GradientStorage, InsideRule, MassRule, Recipe, VolumetricProjection,
+    WeightFunction,
+};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -51,21 +56,38 @@ pub struct DiscretisationFormat {
     pub grid: GridFormat,
 }
 
-/// Where the nodes come from.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CloudFormat {
-    /// A lattice inside the body plus boundary nodes.
-    Regular,
-    /// A lattice moved at random.
-    Jittered,
-    /// A spacing that varies.
-    Graded,
-    /// Positions from a file.
-    File,
+impl DiscretisationFormat {
+    /// Replaces what this table chooses by a word; the rest of the recipe stays.
+    pub fn choose(&self, recipe: &mut Recipe) {
+        choose(&mut recipe.weight_function, self.weight_function);
+        choose(&mut recipe.mass, self.mass);
+        choose(&mut recipe.enforcement, self.enforcement);
+        choose(&mut recipe.gradient_storage, self.gradient_storage);
+        choose(&mut recipe.volumetric_projection, self.volumetric_projection);
+    }
 }
 
-/// A spacing wanted in a part of the body.
+fn choose<T>(option: &mut T, chosen: Option<impl Into<T>>) {
+    if let Some(chosen) = chosen {
+        *option = chosen.into();
+    }
+}
+
+choice! {
+    /// Where the nodes come from.
+    CloudFormat {
+        /// A lattice inside the body plus boundary nodes.
+        "regular" Regular,
+        /// A lattice moved at random.
+        "jittered" Jittered,
+        /// A spacing that varies.
+        "graded" Graded,
+        /// Positions from a file.
+        "file" File,
+    }
+}
+
+/// The spacing in a part of the body.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RefineSpacingFormat {
@@ -75,75 +97,75 @@ pub struct RefineSpacingFormat {
     pub spacing: f64,
 }
 
-/// Polynomial basis of the moving least squares.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum BasisFormat {
-    Linear,
-    Quadratic,
-    /// Quadratic with small second-order coefficients (modified moving least
-    /// squares): for supports too poor for the plain quadratic basis.
-    ModifiedQuadratic,
+choice! {
+    /// Polynomial basis of the moving least squares.
+    BasisFormat {
+        "linear" Linear,
+        "quadratic" Quadratic,
+        /// Quadratic with small second-order coefficients (modified moving least
+        /// squares): for supports too poor for the plain quadratic basis.
+        "modified_quadratic" ModifiedQuadratic,
+    }
 }
 
-/// Weight function of the moving least squares.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum WeightFunctionFormat {
-    CubicSpline,
-    QuarticSpline,
-    Exponential,
+choice! {
+    /// Weight function of the moving least squares.
+    WeightFunctionFormat for WeightFunction {
+        "cubic_spline" CubicSpline,
+        "quartic_spline" QuarticSpline,
+        "exponential" Exponential,
+    }
 }
 
-/// How the mass of a quadrature point is given to nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum MassFormat {
-    /// Evenly over its support.
-    EvenSplit,
-    /// In proportion to the shape functions.
-    RowSum,
+choice! {
+    /// How the mass of a quadrature point is given to nodes.
+    MassFormat for MassRule {
+        /// Evenly over its support.
+        "even_split" EvenSplit,
+        /// In proportion to the shape functions.
+        "row_sum" RowSum,
+    }
 }
 
-/// How many digits of the gradients the forces read.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GradientStorageFormat {
-    /// Every one.
-    Double,
-    /// Single precision: half the bytes to read. Patch tests stop at 1e-7 and
-    /// displacements change by less than 1e-6 of the largest.
-    Single,
+choice! {
+    /// How many digits of the gradients the forces read.
+    GradientStorageFormat for GradientStorage {
+        /// Every one.
+        "double" Double,
+        /// Single precision: half the bytes to read. Patch tests stop at 1e-7 and
+        /// displacements change by less than 1e-6 of the largest.
+        "single" Single,
+    }
 }
 
-/// How prescribed displacements are enforced.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum EnforcementFormat {
-    /// On the nodal parameters.
-    Direct,
-    /// On the displacement field at the nodes.
-    Collocation,
+choice! {
+    /// How prescribed displacements are enforced.
+    EnforcementFormat for Enforcement {
+        /// On the nodal parameters.
+        "direct" Direct,
+        /// On the displacement field at the nodes.
+        "collocation" Collocation,
+    }
 }
 
-/// Projection of the change of volume in the bulk energy.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum VolumetricProjectionFormat {
-    /// None, which locks where ν is close to 0.5.
-    None,
-    /// On patches of points where ν is larger than 0.3.
-    Patches,
+choice! {
+    /// Projection of the change of volume in the bulk energy.
+    VolumetricProjectionFormat for VolumetricProjection {
+        /// None, which locks where ν is close to 0.5.
+        "none" None,
+        /// On patches of points where ν is larger than 0.3.
+        "patches" Patches,
+    }
 }
 
-/// Which gradients of the shape functions are used.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GradientsFormat {
-    /// The derivatives of the shape functions.
-    Plain,
-    /// Changed as little as possible until the divergence theorem holds.
-    Consistent,
+choice! {
+    /// Which gradients of the shape functions are used.
+    GradientsFormat {
+        /// The derivatives of the shape functions.
+        "plain" Plain,
+        /// Changed as little as possible until the divergence theorem holds.
+        "consistent" Consistent,
+    }
 }
 
 /// The background grid that quadrature points come from.
@@ -165,7 +187,7 @@ pub struct GridFormat {
     pub inside: Option<InsideFormat>,
 }
 
-/// An edge of cells wanted in a part of the body.
+/// The largest edge of cells in a part of the body.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RefineCellFormat {
@@ -175,12 +197,12 @@ pub struct RefineCellFormat {
     pub cell: f64,
 }
 
-/// What becomes of a cell that the boundary cuts; volume_fraction if left out.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum InsideFormat {
-    /// Kept whole if its centre is inside.
-    Centre,
-    /// A point at the centroid of the inside part with its volume.
-    VolumeFraction,
+choice! {
+    /// What becomes of a cell that the boundary cuts; volume_fraction if left out.
+    InsideFormat for InsideRule {
+        /// Kept whole if its centre is inside.
+        "centre" Centre,
+        /// A point at the centroid of the inside part with its volume.
+        "volume_fraction" VolumeFraction,
+    }
 }

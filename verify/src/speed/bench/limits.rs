@@ -1,12 +1,12 @@
-//! What this machine can do at most: memory bandwidth and multiply-adds.
+//! Limits of the machine: memory bandwidth and multiply-adds.
 
-use super::turns::{Clock, seconds_of};
+use super::alternation::{Clock, seconds_of};
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use mtled_checks::measure::median;
 use rayon::prelude::*;
 use std::hint::black_box;
 
-/// a = b + s c over arrays that no cache holds (McCalpin 1995, STREAM).
+/// a = b + s c over arrays that exceed every cache (McCalpin 1995, STREAM).
 pub struct Triad {
     a: Vec<f64>,
     b: Vec<f64>,
@@ -30,7 +30,7 @@ impl Triad {
         triad(&mut self.a, &self.b, &self.c);
     }
 
-    /// One pass on all threads of the pool that is installed.
+    /// One pass on all threads of the current pool.
     pub fn parallel_pass(&mut self) {
         let part = self.a.len().div_ceil(rayon::current_num_threads()).max(1);
         let Triad { a, b, c } = self;
@@ -54,11 +54,11 @@ fn triad_with<S: Simd>(_: S, a: &mut [f64], b: &[f64], c: &[f64], factor: f64) {
     }
 }
 
-/// Chains of multiply-adds that do not wait for each other: as many as hide
-/// the latency and fit the registers.
+/// Independent chains of multiply-adds: enough to hide the latency, and few enough for the
+/// registers.
 const CHAINS: usize = 12;
 
-/// Sum of the chains, and numbers per vector.
+/// Sum of the chains, and numbers per SIMD vector.
 #[inline(always)]
 fn chains<S: Simd>(simd: S, rounds: usize) -> (f64, usize) {
     let factor = S::f64s::splat(simd, black_box(0.999));
@@ -72,29 +72,29 @@ fn chains<S: Simd>(simd: S, rounds: usize) -> (f64, usize) {
     (chains.iter().map(|chain| chain.reduce_sum()).sum(), S::f64s::LEN)
 }
 
-/// So many multiply-adds in a row per chain, and returns the numbers per vector.
+/// Performs `rounds` multiply-adds per chain; returns the numbers per SIMD vector.
 pub fn multiply_adds(rounds: usize) -> usize {
     let (sum, lanes) = dispatch!(Level::new(), simd => chains(simd, rounds));
     black_box(sum);
     lanes
 }
 
-/// Floating-point operations of [`multiply_adds`].
+/// Floating-point operations of [`multiply_adds`], two per multiply-add.
 pub fn operations(rounds: usize, lanes: usize) -> f64 {
     (2 * CHAINS * rounds * lanes) as f64
 }
 
-/// Largest rate of multiply-adds of one thread \[flop/s\], and the numbers per
-/// vector; the best of some tries, since this is a limit.
+/// Largest rate of multiply-adds of one thread \[flop/s\] in several trials, and the numbers
+/// per SIMD vector.
 pub fn multiply_add_rate() -> (f64, usize) {
     const ROUNDS: usize = 1_000_000;
     let lanes = multiply_adds(ROUNDS);
-    let tries = (0..7).map(|_| {
+    let trials = (0..7).map(|_| {
         seconds_of(Clock::Processor, || {
             multiply_adds(ROUNDS);
         })
     });
-    (operations(ROUNDS, lanes) / tries.fold(f64::INFINITY, f64::min), lanes)
+    (operations(ROUNDS, lanes) / trials.fold(f64::INFINITY, f64::min), lanes)
 }
 
 /// Median rate of the triad \[B/s\] over some passes.

@@ -1,59 +1,30 @@
 //! Runs of the finite-element codes, by `python -m mtled_reference race`.
 
-use super::problems::triples;
-use super::{Challenge, Run};
+use super::challenge::{Challenge, triples};
+use super::race_run::{Code, RaceRun};
 use crate::machine::provenance;
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Who races.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Code {
-    Mtled,
-    Fenicsx,
-    ScikitFem,
-}
-
-impl Code {
-    /// As the Python package calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Code::Mtled => "mtled",
-            Code::Fenicsx => "fenicsx",
-            Code::ScikitFem => "scikit-fem",
-        }
-    }
-
-    pub fn title(self) -> &'static str {
-        match self {
-            Code::Mtled => "mtled",
-            Code::Fenicsx => "FEniCSx",
-            Code::ScikitFem => "scikit-fem",
-        }
-    }
-}
-
-/// The finite-element codes.
-pub const RIVALS: [Code; 2] = [Code::Fenicsx, Code::ScikitFem];
-
-/// A code that is installed: `python -m mtled_reference` as words.
+/// A Python interpreter with an installed finite-element code.
 #[derive(Debug, Clone)]
 pub struct Interpreter {
+    /// The code.
     pub code: Code,
+    /// Program and flags.
     pub program: Vec<String>,
     /// The folder `reference` of a checkout.
     pub reference: PathBuf,
 }
 
-/// An element and cells along an edge.
-type Ladder = (&'static str, &'static [usize]);
+/// An element, and numbers of cells along an edge.
+type MeshSeries = (&'static str, &'static [usize]);
 
-/// What each code is raced with, whole bodies, uniform meshes. `Q1/P0` and `Q2/P1`
-/// have p and θ as fields of their own.
-fn ladders(code: Code, challenge: Challenge) -> &'static [Ladder] {
+/// Elements and uniform meshes of the whole body. `Q1/P0` and `Q2/P1` have p and θ as
+/// separate fields.
+fn mesh_series(code: Code, challenge: Challenge) -> &'static [MeshSeries] {
     match (code, challenge) {
         (Code::Mtled, _) => &[],
         (Code::Fenicsx, Challenge::BondedBlock) => &[
@@ -86,27 +57,33 @@ fn ladders(code: Code, challenge: Challenge) -> &'static [Ladder] {
     }
 }
 
-/// Timings of another day.
+/// Timings of the finite-element codes, as stored in `reference/race/timings.json`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Timings {
+    /// Version of the layout.
     pub schema_version: u32,
     /// YYYY-MM-DD.
     pub date: String,
+    /// Name of the processor.
     pub processor: String,
-    /// Version and solver by code.
+    /// Version and solver of each code.
     pub codes: Vec<Description>,
-    pub runs: Vec<Run>,
+    /// All runs.
+    pub runs: Vec<RaceRun>,
 }
 
-/// What ran.
+/// Version and solver of a code.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Description {
+    /// The code.
     pub code: Code,
+    /// Its version.
     pub version: String,
+    /// Its linear and nonlinear solver.
     pub solver: String,
 }
 
-/// What a run of Python writes.
+/// What a run of the Python package writes.
 #[derive(Debug, Deserialize)]
 struct Written {
     version: String,
@@ -121,10 +98,10 @@ struct Written {
     displacement_m: Vec<f64>,
 }
 
-/// The finite-element codes: those that are here, and what is stored of the others.
+/// The finite-element codes: those that are installed, and stored timings of the others.
 #[derive(Debug)]
-pub struct Rivals<'a> {
-    here: &'a [Interpreter],
+pub struct FiniteElementCodes<'a> {
+    installed: &'a [Interpreter],
     pub stored: Timings,
     described: std::cell::RefCell<Vec<Description>>,
 }
@@ -132,31 +109,32 @@ pub struct Rivals<'a> {
 const ONE_THREAD: [&str; 4] =
     ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS"];
 
-impl Rivals<'_> {
-    pub fn new(here: &[Interpreter]) -> Result<Rivals<'_>> {
+impl FiniteElementCodes<'_> {
+    /// The installed codes, with the bundled timings of the others.
+    pub fn new(installed: &[Interpreter]) -> Result<FiniteElementCodes<'_>> {
         let text = include_str!("../../../../reference/race/timings.json");
         let stored = serde_json::from_str(text).context("reference/race/timings.json")?;
-        Ok(Rivals { here, stored, described: Vec::new().into() })
+        Ok(FiniteElementCodes { installed, stored, described: Vec::new().into() })
     }
 
-    pub fn is_here(&self, code: Code) -> bool {
-        self.here.iter().any(|interpreter| interpreter.code == code)
+    pub fn is_installed(&self, code: Code) -> bool {
+        self.installed.iter().any(|interpreter| interpreter.code == code)
     }
 
-    /// All runs of the codes that are here.
-    pub fn runs(&self, challenge: Challenge) -> Result<Vec<Run>> {
-        let truth = challenge.truth()?;
+    /// All runs of the installed codes.
+    pub fn runs(&self, challenge: Challenge) -> Result<Vec<RaceRun>> {
+        let solution = challenge.solution()?;
         let mut runs = Vec::new();
-        for interpreter in self.here {
-            for &(element, cells) in ladders(interpreter.code, challenge) {
+        for interpreter in self.installed {
+            for &(element, cells) in mesh_series(interpreter.code, challenge) {
                 for &cells in cells {
                     let written = interpreter.run(challenge, element, cells)?;
                     self.describe(interpreter.code, &written);
                     let displacements = triples(&written.displacement_m);
-                    if displacements.len() != truth.places.len() {
-                        bail!("{} has looked elsewhere", interpreter.code.title());
+                    if displacements.len() != solution.positions.len() {
+                        bail!("{} has other sample points", interpreter.code.title());
                     }
-                    let error = truth.error(&displacements);
+                    let error = solution.error(&displacements);
                     runs.push(written.into_run(challenge, interpreter.code, element, cells, error));
                 }
             }
@@ -173,27 +151,28 @@ impl Rivals<'_> {
         }
     }
 
-    /// Version and solver of what ran, and of what is stored.
+    /// Version and solver of the codes that ran and of those with stored timings.
     pub fn descriptions(&self) -> Vec<Description> {
-        let stored = self.stored.codes.iter().filter(|known| !self.is_here(known.code));
+        let stored = self.stored.codes.iter().filter(|known| !self.is_installed(known.code));
         self.described.borrow().iter().chain(stored).cloned().collect()
     }
 
-    /// Stored runs of the codes that are not here.
-    pub fn stored(&self, challenge: Challenge) -> Vec<Run> {
-        let wanted = |run: &&Run| run.challenge == challenge.name() && !self.is_here(run.code);
-        let mark = |run: &Run| Run { stored: true, ..run.clone() };
-        self.stored.runs.iter().filter(wanted).map(mark).collect()
+    /// Stored runs of the codes that are not installed.
+    pub fn stored(&self, challenge: Challenge) -> Vec<RaceRun> {
+        let matches =
+            |run: &&RaceRun| run.challenge == challenge.name() && !self.is_installed(run.code);
+        let mark = |run: &RaceRun| RaceRun { stored: true, ..run.clone() };
+        self.stored.runs.iter().filter(matches).map(mark).collect()
     }
 
-    /// What `reference/race/timings.json` would hold of these runs.
-    pub fn timings<'r>(&self, runs: impl Iterator<Item = &'r Run>) -> Timings {
-        let here = provenance();
+    /// The content of `reference/race/timings.json` with these runs.
+    pub fn timings<'r>(&self, runs: impl Iterator<Item = &'r RaceRun>) -> Timings {
+        let provenance = provenance();
         let own = runs.filter(|run| run.code != Code::Mtled && !run.stored);
         Timings {
             schema_version: self.stored.schema_version,
-            date: here.date,
-            processor: here.processor,
+            date: provenance.date,
+            processor: provenance.processor,
             codes: self.described.borrow().clone(),
             runs: own.cloned().collect(),
         }
@@ -232,8 +211,8 @@ impl Written {
         element: &str,
         cells: usize,
         error: f64,
-    ) -> Run {
-        Run {
+    ) -> RaceRun {
+        RaceRun {
             challenge: challenge.name().to_string(),
             code,
             family: element.to_string(),
@@ -256,16 +235,17 @@ impl Written {
 
 #[cfg(test)]
 mod tests {
+    use super::super::race_run::FINITE_ELEMENT_CODES;
     use super::*;
     use clap::ValueEnum;
 
     #[test]
-    fn timings_are_stored_of_every_rung_of_every_ladder() {
-        let rivals = Rivals::new(&[]).unwrap();
+    fn timings_of_every_mesh_are_stored() {
+        let codes = FiniteElementCodes::new(&[]).unwrap();
         for &challenge in Challenge::value_variants() {
-            let stored = rivals.stored(challenge);
-            for code in RIVALS {
-                for (element, cells) in ladders(code, challenge) {
+            let stored = codes.stored(challenge);
+            for code in FINITE_ELEMENT_CODES {
+                for (element, cells) in mesh_series(code, challenge) {
                     for cells in *cells {
                         let run = stored.iter().find(|run| {
                             run.code == code && run.family == *element && run.per_edge == *cells

@@ -1,77 +1,62 @@
-//! Speed against error, side by side: the meshless solver and two
-//! finite-element codes on the same problems in the same minutes.
+//! Speed against error: the meshless solver and two finite-element codes on the same
+//! problems in the same minutes.
 //!
-//! Every run has a process of its own, with one thread, so that processor time
-//! and peak memory are its own. CPU seconds are all in, set-up and solution:
-//! of `mtled` from the start of the process, of the finite-element codes without
-//! the start of the interpreter and the compilation of kernels, which are listed
-//! beside them. What reads displacements off the solution is not counted.
+//! Every run has its own process with one thread, so that CPU time and peak memory are its
+//! own. CPU times include set-up and solution: of `mtled` from the start of the process, of
+//! the finite-element codes without the start of the interpreter and the compilation of
+//! kernels, which are listed separately. Sampling the displacements is not counted.
 
+mod challenge;
 mod equal_error;
+mod field;
 mod finite_elements;
 mod notes;
-mod problems;
+mod own_runs;
+mod race_run;
 mod recipes;
 mod report;
-mod runs;
+mod tables;
 
-pub use finite_elements::{Code, Interpreter, Timings};
-pub use problems::Challenge;
-pub use runs::{Run, run_here};
+pub use challenge::Challenge;
+pub use field::RaceSettings;
+pub use finite_elements::{Interpreter, Timings};
+pub use own_runs::run_here;
+pub use race_run::{Code, FINITE_ELEMENT_CODES, RaceRun};
 
 use anyhow::Result;
-use finite_elements::Rivals;
+use field::Field;
+use finite_elements::FiniteElementCodes;
 use mtled_checks::study::Study;
-use std::time::Instant;
+use own_runs::own_runs;
+use race_run::medians;
 
-/// What is raced, and with whom.
+/// Result of a race.
 #[derive(Debug)]
-pub struct Race {
-    pub challenges: Vec<Challenge>,
-    /// Every run is repeated this often; medians are shown.
-    pub repetitions: usize,
-    /// The finite-element codes that are installed.
-    pub interpreters: Vec<Interpreter>,
-}
-
-/// All runs of a challenge, of all codes.
-#[derive(Debug)]
-pub struct Field {
-    pub challenge: Challenge,
-    pub runs: Vec<Run>,
-    /// Error bar of the field that errors are measured against, in the unit of
-    /// the errors.
-    pub uncertainty: f64,
-}
-
-/// What came of a race.
-#[derive(Debug)]
-pub struct Outcome {
+pub struct RaceOutcome {
+    /// Tables, figures and checks.
     pub study: Study,
-    /// Of the finite-element codes that ran, to be stored.
+    /// Timings of the finite-element codes that ran, to be stored.
     pub timings: Timings,
 }
 
-/// Runs the race; `say` hears of every run.
-pub fn race(race: &Race, say: &dyn Fn(&str)) -> Result<Outcome> {
-    let start = Instant::now();
-    let rivals = Rivals::new(&race.interpreters)?;
+/// Runs the race; `notify` is called before every round.
+pub fn race(settings: &RaceSettings, notify: &dyn Fn(&str)) -> Result<RaceOutcome> {
+    let codes = FiniteElementCodes::new(&settings.interpreters)?;
     let mut fields = Vec::new();
-    for &challenge in &race.challenges {
-        let mut turns: Vec<Vec<Run>> = Vec::new();
-        for turn in 1..=race.repetitions {
-            say(&format!("{}: round {turn} of {}", challenge.title(), race.repetitions));
-            let mut runs = runs::own(challenge)?;
-            runs.extend(rivals.runs(challenge)?);
-            turns.push(runs);
+    for &challenge in &settings.challenges {
+        let mut rounds: Vec<Vec<RaceRun>> = Vec::new();
+        for round in 1..=settings.repetitions {
+            notify(&format!("{}: round {round} of {}", challenge.title(), settings.repetitions));
+            let mut runs = own_runs(challenge)?;
+            runs.extend(codes.runs(challenge)?);
+            rounds.push(runs);
         }
-        let mut runs = runs::medians(&turns);
-        runs.extend(rivals.stored(challenge));
-        let uncertainty = challenge.truth()?.uncertainty;
+        let mut runs = medians(&rounds);
+        runs.extend(codes.stored(challenge));
+        let uncertainty = challenge.solution()?.uncertainty;
         fields.push(Field { challenge, runs, uncertainty });
     }
-    let mut study = report::study(race, &rivals, &fields);
-    study.wall_seconds = start.elapsed().as_secs_f64();
-    let timings = rivals.timings(fields.iter().flat_map(|field| &field.runs));
-    Ok(Outcome { study, timings })
+    let study = report::study(settings, &codes, &fields);
+    let timings = codes.timings(fields.iter().flat_map(|field| &field.runs));
+    Ok(RaceOutcome { study, timings })
 }

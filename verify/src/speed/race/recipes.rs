@@ -1,27 +1,30 @@
-//! The ladders of the meshless solver: recipes, each over node spacings.
+//! The recipes of the meshless solver, each over a series of node spacings.
 
-use super::Challenge;
+use super::challenge::Challenge;
 use mtled::problem::{Basis, Cloud, MassRule, Motion, Newton, Problem, Relaxation};
 
-/// A family of recipes that differ in the spacing alone. What is not stated is the
-/// default of case files.
+/// A family of recipes that differ in the spacing only. What is not stated is the default of
+/// case files.
 #[derive(Debug, Clone, Copy)]
 pub struct Family {
+    /// Its name in tables.
     pub name: &'static str,
+    /// How the static solution is computed.
     pub solver: Solver,
     /// Influence radius over spacing \[–\].
     pub dilation: Option<f64>,
     /// Cells along a spacing \[–\].
     pub cells_per_spacing: Option<f64>,
+    /// Whether the basis is quadratic.
     pub quadratic: bool,
-    /// Spacings along an edge of the body.
-    pub ladder: &'static [usize],
+    /// Numbers of spacings along an edge of the body.
+    pub spacings: &'static [usize],
 }
 
-/// How the static solution is found.
+/// How the static solution is computed.
 #[derive(Debug, Clone, Copy)]
 pub enum Solver {
-    /// Dynamic relaxation as case files have it by default.
+    /// Dynamic relaxation with the defaults of case files.
     Default,
     /// Dynamic relaxation to `tolerance`, the load applied in `load_steps`.
     Relaxation { tolerance: f64, load_steps: usize },
@@ -35,21 +38,21 @@ const DEFAULT: Family = Family {
     dilation: None,
     cells_per_spacing: None,
     quadratic: false,
-    ladder: &[4, 5, 6, 8, 12],
+    spacings: &[4, 5, 6, 8, 12],
 };
 
-/// No further than the discretisation is good.
+/// Relaxation to the accuracy of the discretisation.
 const RELAXED: Family = Family {
     name: "relaxation to 1e-2",
     solver: Solver::Relaxation { tolerance: 1e-2, load_steps: 200 },
-    ladder: &[4, 5, 6, 8, 12],
+    spacings: &[4, 5, 6, 8, 12],
     ..DEFAULT
 };
 
 const NEWTON: Family = Family {
     name: "Newton to 1e-2",
     solver: Solver::Newton { tolerance: 1e-2 },
-    ladder: &[4, 5, 6, 7, 8, 9, 12, 16],
+    spacings: &[4, 5, 6, 7, 8, 9, 12, 16],
     ..DEFAULT
 };
 
@@ -59,9 +62,9 @@ const DENSE: Family =
     Family { name: "Newton, 2 cells per spacing", cells_per_spacing: Some(2.0), ..NEWTON };
 
 const QUADRATIC: Family =
-    Family { name: "Newton, quadratic basis", quadratic: true, ladder: &[4, 6, 8], ..NEWTON };
+    Family { name: "Newton, quadratic basis", quadratic: true, spacings: &[4, 6, 8], ..NEWTON };
 
-/// What is raced on a challenge.
+/// The recipes for a challenge.
 pub fn families(challenge: Challenge) -> &'static [Family] {
     match challenge {
         Challenge::BondedBlock => &[DEFAULT, RELAXED, NEWTON, NARROW],
@@ -70,7 +73,7 @@ pub fn families(challenge: Challenge) -> &'static [Family] {
 }
 
 impl Family {
-    /// Gives `problem` this recipe with `spacings` along an edge of the body.
+    /// Sets this recipe with `spacings` along an edge of the body.
     pub fn apply(&self, challenge: Challenge, spacings: usize, problem: &mut Problem) {
         let spacing = challenge.edge() / spacings as f64;
         let recipe = &mut problem.recipe;
@@ -83,7 +86,7 @@ impl Family {
         }
         if self.quadratic {
             recipe.basis = Basis::Quadratic;
-            recipe.dilation = crate::scene::defaults::dilation(Basis::Quadratic);
+            recipe.dilation = mtled::problem::defaults::dilation(Basis::Quadratic);
             recipe.mass = MassRule::EvenSplit;
         }
         recipe.dilation = self.dilation.unwrap_or(recipe.dilation);

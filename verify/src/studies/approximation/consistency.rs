@@ -1,14 +1,15 @@
 //! The approximation: partition of unity, reproduction, derivatives.
 #![allow(non_snake_case)]
 
-use crate::specimens::simple::{PLANE, Random, SIZE, block_shape, recipe};
-use crate::studies::workbench::Workbench;
+use crate::specimens::simple::{PLANE, SIZE, block_shape, recipe};
+use crate::studies::workbench::{Workbench, exact};
+use mtled::algebra::random::Random;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::mls::{Approximation, Support};
 use mtled::discretisation::nodes::{NodeCloud, node_cloud};
 use mtled::problem::{Basis, Dimension, WeightFunction};
-use mtled_checks::study::shorthand::{axis, curve, larger, number, text};
-use mtled_checks::study::{Bound, Cell, Check, Column, Figure, Kind, Plot, Study, Table};
+use mtled_checks::measure::larger;
+use mtled_checks::study::{Cell, Column, Figure, Plot, Study, Table, axis, curve, number, text};
 use nalgebra::DMatrix;
 
 /// Nodal spacing \[m\]: six nodes along each edge.
@@ -20,11 +21,11 @@ const DISTANCES: [f64; 3] = [0.0, 1.0, 10.0];
 /// about C·step²/6 with C ~ 10², and the round-off, about 10²·1e-16/step,
 /// are both far below the bound of 1e-6.
 const DIFFERENCE_STEP: f64 = 1e-5;
-/// The same for the modified basis, whose φ may change its course within 10⁻⁴ of the
-/// spacing: differences over this step and twice as much are extrapolated.
+/// The same for the modified basis, whose φ may change its slope within 10⁻⁴ of the spacing:
+/// differences over this step and twice this step are extrapolated.
 const MODIFIED_STEP: f64 = 2e-5;
 
-/// Modified moving least squares as the case format has them.
+/// Modified moving least squares with the default regularisation.
 const MODIFIED: Basis = Basis::ModifiedQuadratic { regularisation: 1e-7 };
 
 /// Influence radius over spacing \[–\].
@@ -36,7 +37,7 @@ fn dilation(basis: Basis) -> f64 {
     }
 }
 
-/// Largest errors seen.
+/// Largest errors so far \[–\].
 #[derive(Debug, Clone, Copy, Default)]
 struct Errors {
     partition: f64,
@@ -51,20 +52,21 @@ struct Errors {
     compared: usize,
 }
 
+/// Measures the errors of every basis and weight function on every cloud.
 pub fn consistency(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let mut rows = Vec::new();
-    for (dimension, place) in [(PLANE, "2d"), (Dimension::Three, "3d")] {
+    for (dimension, space) in [(PLANE, "2d"), (Dimension::Three, "3d")] {
         for (basis, order) in
             [(Basis::Linear, "linear"), (Basis::Quadratic, "quadratic"), (MODIFIED, "modified")]
         {
             let mut worst = Errors::default();
             for weight_function in WeightFunction::ALL {
                 let errors = measure(bench, dimension, basis, weight_function)?;
-                rows.push(row(&place.replace('d', "-D"), order, weight_function, &errors));
+                rows.push(row(&space.replace('d', "-D"), order, weight_function, &errors));
                 worst = worst.or(&errors);
             }
             anyhow::ensure!(worst.compared > 1000, "Grad φ was compared with too few differences");
-            add_checks(study, &format!("{place}-{order}"), basis, &worst);
+            add_checks(study, &format!("{space}-{order}"), basis, &worst);
         }
     }
     study.tables.push(Table {
@@ -78,8 +80,8 @@ pub fn consistency(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
         "Clouds of 6 nodes along each edge, spacing {SPACING} m, jitter 0, 0.15, 0.3 and 0.45 of the \
          spacing, at 0, 1 and 10 m from the origin; dilation 1.8 (linear), 2.7 (quadratic) and 2 \
          (modified quadratic, regularised by 1e-7). \
-         Differences are not taken where the support changes within the step: the exponential \
-         weight has a kink at its edge."
+         Differences are left out where the support changes within the step: the exponential \
+         weight function has a kink at its edge."
     ));
     Ok(())
 }
@@ -104,7 +106,7 @@ fn measure(
                 let approximation = approximation(&cloud, shift, dimension, basis, weight_function);
                 for (i, X) in points.iter().enumerate() {
                     let support = evaluate(&approximation, &(X + shift))?;
-                    errors.see(&approximation, &(X + shift), &support, components);
+                    errors.sample(&approximation, &(X + shift), &support, components);
                     if distance == 0.0 {
                         at_origin.push(support.condition);
                     }
@@ -130,7 +132,7 @@ impl Errors {
         }
     }
 
-    fn see(&mut self, approximation: &Approximation, X: &Vector3, support: &Support, d: usize) {
+    fn sample(&mut self, approximation: &Approximation, X: &Vector3, support: &Support, d: usize) {
         self.condition = larger(self.condition, support.condition);
         let sum: f64 = support.phi.iter().sum();
         self.partition = larger(self.partition, (sum - 1.0).abs());
@@ -187,8 +189,8 @@ impl Errors {
     }
 }
 
-/// Central differences of φ along an axis over `step` spacings \[1/m\]; None where
-/// the support changes within them.
+/// Central differences of φ along an axis over `step` spacings \[1/m\]; None where the support
+/// changes within the step.
 fn differences(
     a: &Approximation,
     X: &Vector3,
@@ -199,20 +201,20 @@ fn differences(
     let (mut ahead, mut behind) = (*X, *X);
     ahead[axis] += step * SPACING;
     behind[axis] -= step * SPACING;
-    // What the two points are really apart, after rounding.
-    let apart = ahead[axis] - behind[axis];
+    // The distance of the two points after rounding.
+    let distance = ahead[axis] - behind[axis];
     let (Ok(ahead), Ok(behind)) = (a.evaluate(&ahead), a.evaluate(&behind)) else { return None };
-    let alike =
+    let same_nodes =
         |other: &Support| other.nodes == support.nodes && other.enlargement == support.enlargement;
-    let slopes = || ahead.phi.iter().zip(&behind.phi).map(|(p, m)| (p - m) / apart).collect();
-    (alike(&ahead) && alike(&behind)).then(slopes)
+    let slopes = || ahead.phi.iter().zip(&behind.phi).map(|(p, m)| (p - m) / distance).collect();
+    (same_nodes(&ahead) && same_nodes(&behind)).then(slopes)
 }
 
 fn add_checks(study: &mut Study, case: &str, basis: Basis, worst: &Errors) {
     // The modified basis reproduces linear fields.
     let limit = if basis == Basis::Quadratic { 1e-11 } else { 1e-12 };
     let derivation = "Moving least squares reproduce their basis exactly (Lancaster and \
-                      Salkauskas 1981); what is left is round-off times the condition number";
+                      Salkauskas 1981); what remains is round-off times the condition number";
     let (difference_bound, difference_source) = match basis {
         Basis::ModifiedQuadratic { .. } => (
             1e-4,
@@ -245,10 +247,9 @@ fn add_checks(study: &mut Study, case: &str, basis: Basis, worst: &Errors) {
              coordinates, 1e-13 of the spacing, times the condition number",
         ),
     ];
-    for (quantity, words, value, bound, source) in rows {
+    for (quantity, label, value, bound, source) in rows {
         let id = format!("consistency/{case}/{quantity}");
-        let bound = Bound::AtMost(bound);
-        study.checks.push(Check::new(&id, words, Kind::Exact, value, bound, "1", source));
+        study.checks.push(exact(&id, label, value, bound, source));
     }
 }
 
@@ -265,17 +266,17 @@ fn columns() -> Vec<Column> {
     ]
 }
 
-fn row(place: &str, order: &str, weight_function: WeightFunction, errors: &Errors) -> Vec<Cell> {
+fn row(space: &str, order: &str, weight_function: WeightFunction, errors: &Errors) -> Vec<Cell> {
     let name = match weight_function {
         WeightFunction::CubicSpline => "cubic spline",
         WeightFunction::QuarticSpline => "quartic spline",
         WeightFunction::Exponential => "exponential",
     };
-    let words = [place, order, name].map(|word| Cell::Text(word.to_string()));
+    let label = [space, order, name].map(|word| Cell::Text(word.to_string()));
     let numbers =
         [errors.partition, errors.value, errors.gradient, errors.derivative, errors.condition]
             .map(Cell::Number);
-    words.into_iter().chain(numbers).collect()
+    label.into_iter().chain(numbers).collect()
 }
 
 /// Condition number against distance from the origin: flat in the local
@@ -305,7 +306,7 @@ fn condition_figure(bench: &Workbench) -> anyhow::Result<Plot> {
         title: "Condition of the moment matrix away from the origin".into(),
         caption: "One point of a jittered cloud, moved. In the local scaled basis the distance \
                   from the origin does not matter; with global monomials (for comparison only) \
-                  it would cost digits."
+                  digits would be lost."
             .into(),
         x: axis("distance from the origin", "m", true),
         y: axis("condition number", "1", true),
@@ -323,13 +324,8 @@ fn regularisation_figure(bench: &Workbench) -> anyhow::Result<Plot> {
     for power in -8..=-1 {
         let regularisation = 10f64.powi(power);
         let basis = Basis::ModifiedQuadratic { regularisation };
-        let a = approximation(
-            &cloud,
-            Vector3::zeros(),
-            dimension,
-            basis,
-            WeightFunction::QuarticSpline,
-        );
+        let weight_function = WeightFunction::QuarticSpline;
+        let a = approximation(&cloud, Vector3::zeros(), dimension, basis, weight_function);
         let support = evaluate(&a, &X)?;
         let mut square = Vector3::zeros();
         for (&node, phi) in support.nodes.iter().zip(&support.phi) {
@@ -382,15 +378,15 @@ fn approximation(
 }
 
 fn evaluate(approximation: &Approximation, X: &Vector3) -> anyhow::Result<Support> {
-    approximation.evaluate(X).map_err(|poor| anyhow::anyhow!("no approximation at {X}: {poor:?}"))
+    approximation.evaluate(X).map_err(|error| anyhow::anyhow!("no approximation at {X}: {error:?}"))
 }
 
 fn point_inside(random: &mut Random, components: usize) -> Vector3 {
-    let middle = Vector3::from_fn(|k, _| if k < components { 0.5 * SIZE } else { 0.0 });
-    middle + random.vector(components) * (0.499 * SIZE)
+    let centre = Vector3::from_fn(|k, _| if k < components { 0.5 * SIZE } else { 0.0 });
+    centre + random.vector(components) * (0.499 * SIZE)
 }
 
-/// `distance` \[m\] away from the origin, along no axis.
+/// A vector of length `distance` \[m\] along no axis.
 fn shift(distance: f64, components: usize) -> Vector3 {
     let mut direction = Vector3::new(2.0, -3.0, 1.0);
     if components == 2 {

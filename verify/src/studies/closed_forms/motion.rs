@@ -2,18 +2,18 @@
 
 use crate::exact::bar::ConfinedColumn;
 use crate::exact::beam::Beam;
-use crate::run::{march, prepare};
-use crate::specimens::simple::{PLANE, bonded_face, free_body, grid, recipe};
-use crate::studies::closed_forms::{BOUND, Comparison};
+use crate::run::{integrate, prepare};
+use crate::specimens::simple::{PLANE, bonded_face, free_body, recipe};
+use crate::studies::closed_forms::results::{BOUND, Results};
 use anyhow::{Context, Result};
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
 use mtled::geometry::Shape;
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
 use mtled::motion::observe::{Continue, Observer, View};
-use mtled::problem::{Amplitude, BodyForce, Motion, Problem, StepControl};
+use mtled::problem::{Amplitude, BackgroundGrid, BodyForce, Motion, Problem, StepControl};
 
-/// A fifth below the limit where nothing damps.
+/// A fifth below the stability limit, without damping.
 const UNDAMPED: StepControl = StepControl {
     safety_factor: 0.8,
     reevaluate_every: usize::MAX,
@@ -21,7 +21,7 @@ const UNDAMPED: StepControl = StepControl {
     mass_scaling: 1.0,
 };
 
-/// Displacement of one place along x against time.
+/// Displacement of one point along x over time.
 struct History {
     row: Rows,
     /// (s, m)
@@ -36,12 +36,12 @@ impl Observer for History {
     }
 }
 
-/// Gravity sets in on a column at rest: the top over one period.
+/// Gravity acts suddenly on a column at rest: its top over one period.
 pub fn wave(
     mut problem: Problem,
     exact: &ConfinedColumn,
     top: Vector3,
-    comparison: &mut Comparison,
+    results: &mut Results,
 ) -> Result<()> {
     let period = 4.0 * exact.height / exact.wave_speed();
     problem.motion = Motion::Dynamic { end: period, step: UNDAMPED, damping: 0.0 };
@@ -49,20 +49,20 @@ pub fn wave(
     let prepared = prepare(&problem)?;
     let row = prepared.discretisation.rows_at(&[top])?;
     let mut history = History { row, samples: Vec::new() };
-    march(&problem, prepared, &mut history)?;
+    integrate(&problem, prepared, &mut history)?;
     let (mut error, mut size) = (0.0, 0.0);
     for (t, u) in &history.samples {
         let exact = exact.top_after_release(*t);
         error += (u - exact).powi(2);
         size += exact * exact;
     }
-    let words = "released column, L2 error of the motion of its top over one period";
+    let label = "released column, L2 error of the motion of its top over one period";
     let source = "d'Alembert; Graff 1975, section 2.1";
-    comparison.relative("wave/top", words, f64::sqrt(error / size), BOUND, source);
+    results.relative("wave/top", label, f64::sqrt(error / size), BOUND, source);
     Ok(())
 }
 
-/// Momentum of the first mode against time.
+/// Momentum of the first mode over time.
 struct Mode {
     /// \[node\]
     shape: Vec<f64>,
@@ -75,15 +75,15 @@ impl Observer for Mode {
         let state = &view.state;
         let momentum = self.shape.iter().zip(&view.model.lumped_mass).enumerate();
         let sum = momentum.map(|(node, (shape, mass))| shape * mass * state.velocity[2 * node + 1]);
-        // Velocities stand half a step behind.
+        // Velocities belong to half a step earlier.
         self.samples.push((state.time - 0.5 * state.time_step, sum.sum()));
         Continue::Yes
     }
 }
 
-/// Small swing of a cantilever in plane strain after gravity sets in: the first
-/// mode comes to rest for the first time after half a period.
-pub fn swing(comparison: &mut Comparison) -> Result<()> {
+/// Small vibration of a cantilever in plane strain after gravity acts suddenly: the velocity of
+/// the first mode first vanishes after half a period.
+pub fn swing(results: &mut Results) -> Result<()> {
     let (length, height) = (0.2, 0.01);
     let constants = ElasticConstants::from_young_poisson(1e6, 0.3)?;
     let beam = Beam {
@@ -98,7 +98,7 @@ pub fn swing(comparison: &mut Comparison) -> Result<()> {
         Material { density: beam.density, law: Law::LinearElastic(LinearElastic::new(constants)) };
     let shape = Shape::Box { min: Vector3::zeros(), max: Vector3::new(length, height, 1.0) };
     let mut recipe = recipe(spacing, 0.0, 0);
-    recipe.grid = grid(0.5 * spacing);
+    recipe.grid = BackgroundGrid::with_cell(0.5 * spacing);
     let mut problem = free_body(PLANE, shape, material, recipe);
     problem.conditions = vec![bonded_face(0, 0.0, 0.0, Amplitude::Constant)];
     problem.loads.body_forces = vec![BodyForce {
@@ -111,13 +111,14 @@ pub fn swing(comparison: &mut Comparison) -> Result<()> {
     let positions = &prepared.model.positions;
     let shape = positions.iter().map(|at| beam.cantilever_mode(at.x)).collect();
     let mut mode = Mode { shape, samples: Vec::new() };
-    march(&problem, prepared, &mut mode)?;
+    integrate(&problem, prepared, &mut mode)?;
     let turn = mode.samples.windows(2).skip(2).find(|pair| pair[0].1 < 0.0 && pair[1].1 >= 0.0);
-    let [(t0, p0), (t1, p1)] = turn.context("the beam does not turn")? else {
+    let [(t0, p0), (t1, p1)] = turn.context("the velocity of the beam does not change its sign")?
+    else {
         anyhow::bail!("a window of two holds two samples");
     };
     let half_period = t0 + (t1 - t0) * p0 / (p0 - p1);
-    comparison.value(
+    results.value(
         ("swinging_beam/frequency", "cantilever 20 times as long as high, first frequency", "Hz"),
         (0.5 / half_period, beam.cantilever_frequency()),
         "Euler and Bernoulli; Blevins 1979, table 8-1",

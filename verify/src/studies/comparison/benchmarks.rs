@@ -1,17 +1,19 @@
 //! Published benchmarks: Cook's membrane and the flag of Turek and Hron.
 
 use crate::exact::{Published, cook, turek_hron};
-use crate::run::{Record, Work, solve_case};
+use crate::run::{Recording, Solved, Work, solve_case};
 use crate::scene::Case;
-use crate::studies::workbench::{Workbench, relative_error, respaced, solve_ladder};
+use crate::specimens::spacing::respaced;
+use crate::studies::workbench::{Workbench, relative_error};
 use anyhow::{Context, Result};
 use mtled_checks::study::{
-    Axis, Bound, Cell, Check, Column, Figure, Kind, Plot, Series, SeriesStyle, Study, Table,
+    Bound, Cell, Check, Figure, Kind, Plot, Study, Table, axis, line, number, text,
 };
+use rayon::prelude::*;
 
-/// The issue's bound on the tips \[–\].
+/// Bound on the tips \[–\].
 const BOUND: f64 = 0.02;
-/// The time step of an undamped oscillation and a coarse cloud cost more.
+/// The same of an undamped oscillation on a coarse cloud.
 const BOUND_DYNAMIC: f64 = 0.04;
 
 pub fn benchmarks(bench: &Workbench, study: &mut Study) -> Result<()> {
@@ -20,26 +22,25 @@ pub fn benchmarks(bench: &Workbench, study: &mut Study) -> Result<()> {
     tip(bench, study, &mut rows, "cook_membrane", &finer, cook::TIP)?;
     let finer = bench.pick(vec![0.005, 0.0025], vec![0.005, 0.0025, 0.00125]);
     tip(bench, study, &mut rows, "turek_hron_csm1", &finer, turek_hron::CSM1[1])?;
-    let column = |name: &str, unit: &str| Column { name: name.into(), unit: unit.into() };
     study.tables.push(Table {
         title: "Vertical displacement of the probe".into(),
         columns: vec![
-            column("case", ""),
-            column("spacing", "m"),
-            column("nodes", ""),
-            column("points", ""),
-            column("steps", ""),
-            column("computed", "m"),
-            column("published", "m"),
-            column("relative difference", "1"),
-            column("neighbour visits", ""),
+            text("case"),
+            number("spacing", "m"),
+            number("nodes", ""),
+            number("points", ""),
+            number("steps", ""),
+            number("computed", "m"),
+            number("published", "m"),
+            number("relative difference", "1"),
+            number("neighbour visits", ""),
         ],
         rows,
     });
     swing(&bench.case("turek_hron_csm3")?, study, bench.pick(0.0033333, 0.0025))
 }
 
-/// The tip of a static case over a ladder of spacings; the finest is gated.
+/// The tip of a static case at several spacings; the finest is checked.
 fn tip(
     bench: &Workbench,
     study: &mut Study,
@@ -49,8 +50,8 @@ fn tip(
     published: Published,
 ) -> Result<()> {
     let case = bench.case(name)?;
-    for (spacing, solved, record) in solve_ladder(&case, spacings)? {
-        let computed = record.samples.last().context("nothing was recorded")?.displacements[0][0].y;
+    for (spacing, solved, record) in solve_levels(&case, spacings)? {
+        let computed = record.samples.last().context("the record is empty")?.displacements[0][0].y;
         let difference = relative_error(computed, published.value);
         rows.push(vec![
             Cell::Text(name.into()),
@@ -78,7 +79,16 @@ fn tip(
     Ok(())
 }
 
-/// The undamped swing of CSM3: mean and amplitude of the tip.
+/// A case solved at several spacings \[m\] in parallel.
+fn solve_levels(case: &Case, spacings: &[f64]) -> Result<Vec<(f64, Solved, Recording)>> {
+    let solve = |&spacing: &f64| {
+        let (solved, record) = solve_case(&respaced(case, spacing)?)?;
+        Ok((spacing, solved, record))
+    };
+    spacings.par_iter().map(solve).collect()
+}
+
+/// The undamped oscillation of CSM3: mean and amplitude of the tip.
 fn swing(case: &Case, study: &mut Study, spacing: f64) -> Result<()> {
     let (_, record) = solve_case(&respaced(case, spacing)?)?;
     let history = tip_history(&record);
@@ -107,19 +117,14 @@ fn swing(case: &Case, study: &mut Study, spacing: f64) -> Result<()> {
             "Vertical displacement of the tip, from {low:.4} m to {high:.4} m; published: \
              −0.0636 ± 0.0652 m."
         ),
-        x: Axis { label: "time".into(), unit: "s".into(), log: false },
-        y: Axis { label: "u_y of the tip".into(), unit: "m".into(), log: false },
-        series: vec![Series {
-            name: format!("spacing {spacing} m"),
-            points: history,
-            error_bars: Vec::new(),
-            style: SeriesStyle::Line,
-        }],
+        x: axis("time", "s", false),
+        y: axis("u_y of the tip", "m", false),
+        series: vec![line(&format!("spacing {spacing} m"), history)],
         slopes: Vec::new(),
     }));
     Ok(())
 }
 
-fn tip_history(record: &Record) -> Vec<(f64, f64)> {
+fn tip_history(record: &Recording) -> Vec<(f64, f64)> {
     record.samples.iter().map(|sample| (sample.time, sample.displacements[0][0].y)).collect()
 }

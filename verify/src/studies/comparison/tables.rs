@@ -3,29 +3,20 @@
 use crate::accuracy::{Difference, Group};
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{CODES, Family, Mesh};
-use crate::studies::comparison::Compared;
-use mtled_checks::study::shorthand::{axis, number, styled, text};
-use mtled_checks::study::{Cell, Plot, SeriesStyle, Table};
+use crate::studies::comparison::compared::Compared;
+use mtled_checks::study::{Cell, Plot, SeriesStyle, Table, axis, number, styled, text};
 
 /// A row per case and kind of quantity.
 pub fn differences_table(compared: &[Compared]) -> Table {
     let mut rows = Vec::new();
     for case in compared {
-        let kinds: [(&str, Option<Difference>); 6] = [
-            ("displacement", case.displacement()),
-            ("centre of mass", case.centre()),
-            ("force", case.of(Group::Force)),
-            ("moment", case.of(Group::Moment)),
-            ("strain energy", case.of(Group::StrainEnergy)),
-            ("kinetic energy", case.of(Group::KineticEnergy)),
-        ];
-        for (what, difference) in kinds {
-            let Some(Difference { rms, max, bar }) = difference else { continue };
+        for group in Group::ALL {
+            let Some(Difference { rms, max, bar }) = case.of(group) else { continue };
             let nodes = case.solved.prepared.discretisation.cloud.positions.len();
             rows.push(vec![
                 Cell::Text(case.case.name.clone()),
                 Cell::Number(nodes as f64),
-                Cell::Text(what.into()),
+                Cell::Text(group.name().replace('_', " ")),
                 Cell::Number(100.0 * rms),
                 Cell::Number(100.0 * max),
                 Cell::Number(100.0 * bar),
@@ -46,8 +37,7 @@ pub fn differences_table(compared: &[Compared]) -> Table {
     }
 }
 
-/// The seed's table 1: centres of mass of the brain slice at the release and at
-/// the end.
+/// Table 1 of Horton 2007: centres of mass of the brain slice at the release and at the end.
 pub fn brain_table(brain: &Compared) -> Table {
     let last = brain.file.times_s.len() - 1;
     let nearest = |time: f64| {
@@ -62,7 +52,7 @@ pub fn brain_table(brain: &Compared) -> Table {
         }
     }
     Table {
-        title: "Centres of mass (seed, table 1), with the reference's error bars".into(),
+        title: "Centres of mass (Horton 2007, table 1), with the reference's error bars".into(),
         columns: vec![
             number("time", "s"),
             text("part"),
@@ -89,7 +79,7 @@ fn centre_rows(brain: &Compared, probe: &str, instant: usize) -> Vec<Vec<Cell>> 
     let reference = &brain.references[moved];
     let (fe, bars) = (reference.instant(instant), reference.bars(instant));
     let computed = &brain.computed[moved][3 * instant..];
-    let way = (fe[0] * fe[0] + fe[1] * fe[1]).sqrt();
+    let displacement = (fe[0] * fe[0] + fe[1] * fe[1]).sqrt();
     let row = |(axis, name): (usize, &str)| {
         let initial = brain.references[start].values[axis];
         let difference = computed[axis] - fe[axis];
@@ -102,8 +92,8 @@ fn centre_rows(brain: &Compared, probe: &str, instant: usize) -> Vec<Vec<Cell>> 
             Cell::Number(1e3 * (initial + fe[axis])),
             Cell::Number(1e3 * bars[axis]),
             Cell::Number(1e3 * difference),
-            Cell::Number(100.0 * difference.abs() / way),
-            Cell::Number(100.0 * bars[axis] / way),
+            Cell::Number(100.0 * difference.abs() / displacement),
+            Cell::Number(100.0 * bars[axis] / displacement),
         ]
     };
     ["x", "y"].into_iter().enumerate().map(row).collect()
@@ -124,14 +114,14 @@ pub fn cost_figure(compared: &[Compared]) -> Plot {
         series.push(styled(&name, points, SeriesStyle::Points));
     }
     let own = |case: &Compared| {
-        let difference = case.displacement().or_else(|| case.centre())?;
+        let difference = case.of(Group::Displacement).or_else(|| case.of(Group::CentreOfMass))?;
         Some((case.cpu, difference.rms))
     };
     let points = compared.iter().filter_map(own).collect();
     series.push(styled("mtled, on this machine", points, SeriesStyle::Points));
     Plot {
         title: "Speed against error".into(),
-        caption: "A point per case and mesh: CPU seconds of one thread, all in, and rms \
+        caption: "A point per case and mesh: CPU seconds of one thread, set-up included, and rms \
                   difference of the displacements from the reference over its largest \
                   displacement. The finite-element codes ran on another machine; their finest meshes made \
                   the reference."
@@ -146,16 +136,16 @@ pub fn cost_figure(compared: &[Compared]) -> Plot {
 /// rms error of all displacements on a mesh, relative to the largest one; none
 /// where the mesh differs from the reference by no more than its error bar.
 fn error_of(case: &Compared, mesh: &Mesh) -> Option<f64> {
-    let (mut apart, mut bars, mut largest) = (Vec::new(), Vec::new(), 0.0f64);
+    let (mut differences, mut bars, mut largest) = (Vec::new(), Vec::new(), 0.0f64);
     for reference in &case.references {
         if reference.quantity.family == Family::Displacement {
             let values = mesh.values[&reference.quantity.name].flat();
-            apart.extend(values.iter().zip(&reference.values).map(|(a, b)| a - b));
+            differences.extend(values.iter().zip(&reference.values).map(|(a, b)| a - b));
             bars.extend(std::iter::repeat_n(reference.error, values.len() / 3));
             let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
             largest = reference.values.chunks(3).map(length).fold(largest, f64::max);
         }
     }
-    let error = rms_of_points(&apart, 3) / largest;
+    let error = rms_of_points(&differences, 3) / largest;
     (error > rms_of_points(&bars, 1) / largest).then_some(error)
 }

@@ -1,89 +1,85 @@
-//! The same body in other units, elsewhere, and turned: the same answer.
+//! The same body in other units, translated and rotated has the same solution.
 #![allow(non_snake_case)]
 
-use crate::run::{Prepared, march, prepare};
+use crate::run::{Prepared, integrate, prepare};
 use crate::specimens::simple::{SIZE, free_body, relaxation};
 use crate::studies::hard::bodies::{SMOOTH, hard_recipe, rubber, turn};
-use crate::studies::workbench::Workbench;
+use crate::studies::workbench::{Workbench, exact};
 use anyhow::Result;
 use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::discretisation::Discretisation;
 use mtled::discretisation::mls::Approximation;
-use mtled::geometry::Shape;
-use mtled::geometry::selection::{Extent, Selector};
+use mtled::geometry::{Extent, Selector, Shape};
 use mtled::model::Model;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{Dimension, EssentialCondition, Field, Prescribed, Problem};
 use mtled_checks::measure::relative_max;
-use mtled_checks::study::shorthand::{number, text};
-use mtled_checks::study::{Bound, Cell, Check, Kind, Study, Table};
+use mtled_checks::study::{Cell, Study, Table, number, text};
 
-/// A rigid change of place and a change of unit: X → scale · X + offset.
+/// A change of unit and a translation: X → scale · X + offset.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct Frame {
     scale: f64,
     /// \[m\]
     offset: Vector3,
 }
 
-/// Wanted of twins that differ by round-off alone \[–\]. The relaxation stops
-/// at 1e-10, so round-off is all that may differ.
+/// Bound on the difference of paired runs \[–\]. The relaxation stops at 1e-10, so they may differ
+/// by round-off alone.
 const ROUND_OFF: f64 = 1e-8;
 
+/// Solves the block in every frame and compares the displacements.
 pub fn invariance(bench: &Workbench, study: &mut Study) -> Result<()> {
-    let home = Place { scale: 1.0, offset: Vector3::zeros() };
-    let posed = |place| posed(place, bench.seed(7));
-    let base = posed(home)?;
-    let answer = solve(&base, prepare(&base)?)?;
+    let home = Frame { scale: 1.0, offset: Vector3::zeros() };
+    let problem_in = |frame| problem_in(frame, bench.seed(7));
+    let base = problem_in(home)?;
+    let solution = solve(&base, prepare(&base)?)?;
     let mut rows = Vec::new();
-    let mut add = |id: &str, words: &str, twin: Vec<f64>| {
-        let difference = relative_max(&twin, &answer);
-        rows.push(vec![Cell::Text(words.into()), Cell::Number(difference)]);
-        study.checks.push(Check::new(
+    let mut add = |id: &str, label: &str, paired: Vec<f64>| {
+        let difference = relative_max(&paired, &solution);
+        rows.push(vec![Cell::Text(label.into()), Cell::Number(difference)]);
+        study.checks.push(exact(
             &format!("hard_cases/{id}"),
-            &format!("{words}: largest change of the displacements over the largest displacement"),
-            Kind::Exact,
+            &format!("{label}: largest change of the displacements over the largest displacement"),
             difference,
-            Bound::AtMost(ROUND_OFF),
-            "1",
-            "The equations know no length, no place and no direction; what is left is round-off, \
+            ROUND_OFF,
+            "The equations have no length scale, origin or direction; what remains is round-off, \
              1e-16 of the coordinates over the displacements, times the condition of the problem",
         ));
     };
     let far = Vector3::new(6.0, -7.0, 4.0);
-    for (id, words, place) in [
-        ("micrometres", "lengths a million times smaller", Place { scale: 1e-6, ..home }),
-        ("kilometres", "lengths a hundred thousand times larger", Place { scale: 1e5, ..home }),
-        ("far_away", "10 m from the origin", Place { offset: far, ..home }),
+    for (id, label, frame) in [
+        ("micrometres", "lengths a million times smaller", Frame { scale: 1e-6, ..home }),
+        ("kilometres", "lengths a hundred thousand times larger", Frame { scale: 1e5, ..home }),
+        ("far_away", "10 m from the origin", Frame { offset: far, ..home }),
     ] {
-        let problem = posed(place)?;
+        let problem = problem_in(frame)?;
         let u = solve(&problem, prepare(&problem)?)?;
-        add(id, words, u.iter().map(|u| u / place.scale).collect());
+        add(id, label, u.iter().map(|u| u / frame.scale).collect());
     }
     let R = rotation(&(Vector3::new(1.0, 2.0, 3.0) / 14.0_f64.sqrt()), 1.1);
-    let problem = turned_conditions(&base, R);
-    let discretisation = turned(&Discretisation::new(&base)?, R);
+    let problem = rotated_conditions(&base, R);
+    let discretisation = rotated(&Discretisation::new(&base)?, R);
     let model = Model::new(&problem, &discretisation)?;
     let u = solve(&problem, Prepared { discretisation, model, setup_seconds: 0.0 })?;
-    add("turned", "everything turned at random", turned_field(&u, &R.transpose()));
+    add("turned", "everything rotated", rotated_field(&u, &R.transpose()));
     study.tables.push(Table {
-        title: "Twins of a sheared and compressed block".into(),
-        columns: vec![text("twin"), number("relative difference of displacements", "1")],
+        title: "Paired runs of a sheared and compressed block".into(),
+        columns: vec![text("paired run"), number("relative difference of displacements", "1")],
         rows,
     });
     Ok(())
 }
 
-/// Corners of a block without equal edges \[m\]: where edges or diagonals tie,
-/// round-off chooses the panels of the boundary.
+/// Corners of a block without equal edges \[m\]: where edges or diagonals are equal, round-off
+/// chooses the panels of the boundary.
 const OUTLINE: [[f64; 2]; 4] = [[-0.05, -0.045], [0.0465, -0.05], [0.05, 0.035], [-0.048, 0.0415]];
 
-/// A jittered block between bonded faces that are pushed together by 20 % and
-/// past each other by 10 %, at a place.
-fn posed(place: Place, seed: u64) -> Result<Problem> {
-    let Place { scale, offset } = place;
+/// A jittered block, compressed by 20 % and sheared by 10 % between bonded faces, in a frame.
+fn problem_in(frame: Frame, seed: u64) -> Result<Problem> {
+    let Frame { scale, offset } = frame;
     let corner = |p: [f64; 2]| [scale * p[0] + offset.x, scale * p[1] + offset.y];
-    let z = move |share: f64| scale * share * SIZE + offset.z;
+    let z = move |fraction: f64| scale * fraction * SIZE + offset.z;
     let points = OUTLINE.map(turn).map(corner).to_vec();
     let body = Shape::Polygon { points, z: (z(0.0), z(1.0)) };
     let recipe = hard_recipe(scale * SIZE / 4.0, seed);
@@ -108,52 +104,52 @@ fn posed(place: Place, seed: u64) -> Result<Problem> {
 }
 
 fn solve(problem: &Problem, prepared: Prepared) -> Result<Vec<f64>> {
-    Ok(march(problem, prepared, &mut Unobserved)?.state.displacement)
+    Ok(integrate(problem, prepared, &mut Unobserved)?.state.displacement)
 }
 
 /// The conditions of a problem after X → R X.
-fn turned_conditions(problem: &Problem, R: Matrix3) -> Problem {
+fn rotated_conditions(problem: &Problem, R: Matrix3) -> Problem {
     let mut problem = problem.clone();
     for condition in &mut problem.conditions {
         if let Prescribed::Field(field) = condition.prescribed.clone() {
             let back = R.transpose();
             condition.prescribed = Prescribed::Field(Field::of(move |X| R * field.at(&(back * X))));
         }
-        turn_selector(&mut condition.part, &R);
+        rotate_selector(&mut condition.part, &R);
     }
     problem
 }
 
-fn turn_selector(part: &mut Selector, R: &Matrix3) {
+fn rotate_selector(part: &mut Selector, R: &Matrix3) {
     match part {
         Selector::Plane { point, normal, .. } => (*point, *normal) = (R * *point, R * *normal),
-        Selector::Union(parts) => parts.iter_mut().for_each(|part| turn_selector(part, R)),
+        Selector::Union(parts) => parts.iter_mut().for_each(|part| rotate_selector(part, R)),
         _ => {}
     }
 }
 
 /// Nodes, points, gradients and boundary after X → R X.
-fn turned(discretisation: &Discretisation, R: Matrix3) -> Discretisation {
-    let mut turned = discretisation.clone();
+fn rotated(discretisation: &Discretisation, R: Matrix3) -> Discretisation {
+    let mut rotated = discretisation.clone();
     let all = |vectors: &mut Vec<Vector3>| vectors.iter_mut().for_each(|X| *X = R * *X);
-    all(&mut turned.cloud.positions);
-    all(&mut turned.quadrature.positions);
-    all(&mut turned.supports.grad_phi);
-    for panel in &mut turned.surface.panels {
+    all(&mut rotated.cloud.positions);
+    all(&mut rotated.quadrature.positions);
+    all(&mut rotated.supports.grad_phi);
+    for panel in &mut rotated.surface.panels {
         (panel.centre, panel.normal) = (R * panel.centre, R * panel.normal);
     }
     let old = &discretisation.approximation;
-    turned.approximation = Approximation::new(
-        turned.cloud.positions.clone(),
+    rotated.approximation = Approximation::new(
+        rotated.cloud.positions.clone(),
         old.influence_radius.clone(),
         old.basis,
         old.weight_function,
         &discretisation.dimension,
     );
-    turned
+    rotated
 }
 
-fn turned_field(u: &[f64], R: &Matrix3) -> Vec<f64> {
+fn rotated_field(u: &[f64], R: &Matrix3) -> Vec<f64> {
     let at = |u: &[f64]| <[f64; 3]>::from(R * Vector3::from_column_slice(u));
     u.chunks_exact(3).flat_map(at).collect()
 }

@@ -1,7 +1,8 @@
-//! One hard case from its problem to what became of it.
+//! One hard case from its problem to its outcome.
 #![allow(non_snake_case)]
 
-use crate::run::{Prepared, Solved, march, prepare, prepare_to_run};
+use crate::run::{Prepared, Solved, integrate, prepare, prepare_to_run};
+use crate::studies::hard::case::{Expected, HardCase};
 use crate::studies::workbench::relative_error;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
@@ -11,115 +12,57 @@ use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::energy::Energies;
 use mtled::motion::internal_force::Workspace;
 use mtled::motion::observe::{Continue, Observer, View};
-use mtled::motion::simulate::Crushed;
+use mtled::motion::summary::CollapsedPoint;
 use mtled::problem::{Motion, Problem};
-use mtled_checks::study::shorthand::larger;
-use mtled_checks::study::{Bound, Kind};
+use mtled_checks::measure::larger;
 
-/// What a run may be compared with.
-#[derive(Debug, Clone)]
-pub enum Truth {
-    /// The same right Cauchy–Green tensor C = FᵀF everywhere.
-    Homogeneous(Matrix3),
-    /// Vertical force \[N\] of the last condition.
-    Force(f64),
-    /// Moment about the vertical through the origin \[N·m\] of the last condition.
-    Moment(f64),
-    /// The vertical force of the same body on a finer cloud.
-    Finer(Box<Problem>),
-    /// The body is back in its shape of rest, C = I.
-    Rest,
-    /// The balance of all energies stays what it was.
-    Balance,
-    Unknown,
-}
-
-impl Truth {
-    /// What the error of a case is measured by.
-    pub fn words(&self) -> String {
-        let words = match self {
-            Truth::Homogeneous(_) => "uniaxial closed form, largest error of C",
-            Truth::Force(_) => "reaction of three-field finite elements",
-            Truth::Moment(_) => "moment of the incompressible closed form",
-            Truth::Finer(_) => "reaction on a finer cloud",
-            Truth::Rest => "shape at rest, largest error of C",
-            Truth::Balance => "energy balance, over the largest energy",
-            Truth::Unknown => "–",
-        };
-        words.into()
-    }
-}
-
-/// A bound on the error of a case.
-#[derive(Debug, Clone, Copy)]
-pub struct Limit {
-    pub kind: Kind,
-    pub bound: Bound,
-    pub source: &'static str,
-}
-
-/// A problem that is hard, and what its answer can be measured by.
-#[derive(Debug, Clone)]
-pub struct HardCase {
-    pub id: &'static str,
-    pub words: &'static str,
-    pub problem: Problem,
-    pub truth: Truth,
-    pub limit: Option<Limit>,
-    /// How it is known to end: "finite", or the names of errors.
-    pub ends: &'static [&'static str],
-    /// Whether the truth is the only equilibrium; beyond buckling it is not.
-    pub unique: bool,
-    /// What a reader should know of it.
-    pub remark: &'static str,
-    /// Steps of a motion, whose end is then set by the critical step at rest.
-    pub steps: Option<usize>,
-}
-
-/// What became of a case.
+/// Outcome of a case.
 #[derive(Debug)]
-pub enum Outcome {
-    Finished(Box<Measures>),
+pub enum CaseOutcome {
+    /// It ended without an error.
+    Finished(Box<CaseResult>),
+    /// It ended with an error, in the set-up or the run.
     Refused { during: &'static str, error: Error },
 }
 
-/// What a finished run shows.
+/// What is measured of a finished run.
 #[derive(Debug, Clone)]
-pub struct Measures {
+pub struct CaseResult {
     pub nodes: usize,
     pub steps: usize,
-    /// Smallest J of the run and of its last state \[–\]; NaN if one is.
+    /// Smallest J of the run and of its last state \[–\]; NaN if any J is.
     pub smallest_jacobian: f64,
-    /// Whether every displacement is a finite number.
+    /// Whether every displacement is finite.
     pub finite: bool,
-    /// Against the truth \[–\].
+    /// Difference from the expected result \[–\].
     pub error: Option<f64>,
+    /// Rms of the nodal parameters that the field does not show, over their largest rms \[–\].
     pub noise: f64,
-    /// What the run says about a point that lost its volume.
-    pub crushed: Option<Crushed>,
+    /// The warning of the run about a point that has nearly no volume left.
+    pub crushed: Option<CollapsedPoint>,
     /// Most nodes that touched an obstacle at once.
     pub touched: usize,
-    /// Of the gradients' consistency, over its size before the correction \[–\].
+    /// Residual of the gradients' consistency over that before the correction \[–\].
     pub residual: f64,
 }
 
-impl Measures {
-    /// Whether the body is finite and nowhere inside out.
-    pub fn is_sound(&self) -> bool {
+impl CaseResult {
+    /// Whether the solution is finite and no point is inverted.
+    pub fn is_valid(&self) -> bool {
         self.finite && self.smallest_jacobian > 0.0
     }
 
-    /// Whether the answer is known to be none: an error of more than 10 %.
-    pub fn is_far(&self) -> bool {
+    /// Whether the solution is wrong: an error of more than 10 %.
+    pub fn is_wrong(&self) -> bool {
         self.error.is_some_and(|error| error.is_nan() || error > 0.1)
     }
 
-    /// In a word, for the table.
+    /// Label of the table.
     pub fn verdict(&self) -> &'static str {
-        match (self.is_sound(), self.is_far(), self.crushed.is_some()) {
-            (false, ..) => "not sound",
-            (true, true, true) => "finite, far from the truth, with a warning",
-            (true, true, false) => "finite, far from the truth",
+        match (self.is_valid(), self.is_wrong(), self.crushed.is_some()) {
+            (false, ..) => "not valid",
+            (true, true, true) => "finite, wrong, with a warning",
+            (true, true, false) => "finite, wrong",
             (true, false, true) => "finite, with a warning",
             (true, false, false) => "finite",
         }
@@ -135,34 +78,34 @@ pub fn name_of(error: &Error) -> String {
     text.split([' ', '{', '(']).next().unwrap_or_default().into()
 }
 
-/// Runs a case to its end or to its refusal.
-pub fn run(case: &HardCase) -> Outcome {
+/// Runs a case until it finishes or is refused.
+pub fn run(case: &HardCase) -> CaseOutcome {
     let prepared = match prepare_to_run(&case.problem) {
         Ok(prepared) => prepared,
-        Err(error) => return Outcome::Refused { during: "set-up", error },
+        Err(error) => return CaseOutcome::Refused { during: "set-up", error },
     };
     match finish(case, prepared) {
-        Ok(measures) => Outcome::Finished(Box::new(measures)),
-        Err(error) => Outcome::Refused { during: "run", error },
+        Ok(measures) => CaseOutcome::Finished(Box::new(measures)),
+        Err(error) => CaseOutcome::Refused { during: "run", error },
     }
 }
 
-fn finish(case: &HardCase, prepared: Prepared) -> Result<Measures, Error> {
+fn finish(case: &HardCase, prepared: Prepared) -> Result<CaseResult, Error> {
     let problem = with_steps(case, &prepared);
-    let mut watcher = Watcher::new(matches!(problem.motion, Motion::Dynamic { .. }));
-    let solved = march(&problem, prepared, &mut watcher)?;
-    let finer = match &case.truth {
-        Truth::Finer(problem) => {
-            let mut watcher = Watcher::default();
-            march(problem, prepare(problem)?, &mut watcher)?;
-            watcher.force()
+    let mut monitor = Monitor::new(matches!(problem.motion, Motion::Dynamic { .. }));
+    let solved = integrate(&problem, prepared, &mut monitor)?;
+    let finer = match &case.expected {
+        Expected::Finer(problem) => {
+            let mut monitor = Monitor::default();
+            integrate(problem, prepare(problem)?, &mut monitor)?;
+            monitor.force()
         }
         _ => f64::NAN,
     };
-    Ok(measure(case, &solved, &watcher, finer))
+    Ok(measure(case, &solved, &monitor, finer))
 }
 
-/// The problem with the end of its motion set.
+/// The problem with the duration of its motion.
 fn with_steps(case: &HardCase, prepared: &Prepared) -> Problem {
     let mut problem = case.problem.clone();
     if let (Some(steps), Motion::Dynamic { end, step, .. }) = (case.steps, &mut problem.motion) {
@@ -174,10 +117,10 @@ fn with_steps(case: &HardCase, prepared: &Prepared) -> Problem {
     problem
 }
 
-/// Keeps energies of a motion and the last reactions.
+/// Records energies of a motion and the last reactions.
 #[derive(Debug, Default)]
-struct Watcher {
-    moves: bool,
+struct Monitor {
+    is_motion: bool,
     balances: Vec<f64>,
     largest_energy: f64,
     reactions: Vec<Reaction>,
@@ -186,12 +129,12 @@ struct Watcher {
     size: f64,
 }
 
-impl Watcher {
-    fn new(moves: bool) -> Watcher {
-        Watcher { moves, ..Watcher::default() }
+impl Monitor {
+    fn new(is_motion: bool) -> Monitor {
+        Monitor { is_motion, ..Monitor::default() }
     }
 
-    fn keep(&mut self, e: &Energies) {
+    fn record(&mut self, e: &Energies) {
         self.balances.push(e.balance());
         let works = [e.kinetic, e.strain, e.external_work, e.constraint_work, e.damping_loss];
         self.largest_energy = works.iter().map(|w| w.abs()).fold(self.largest_energy, larger);
@@ -215,15 +158,15 @@ impl Watcher {
     }
 }
 
-impl Observer for Watcher {
+impl Observer for Monitor {
     fn observe(&mut self, view: &mut View) -> Continue {
         self.touched = self.touched.max(view.state.contact.touching.len());
         if view.state.step.is_multiple_of(10) {
             let u = &view.state.displacement;
             self.size = larger(self.size, root_mean_square(u.iter().copied(), view.model));
-            if self.moves {
+            if self.is_motion {
                 let energies = view.energies();
-                self.keep(&energies);
+                self.record(&energies);
             }
         }
         if view.progress >= 1.0 - 1e-9 {
@@ -233,36 +176,36 @@ impl Observer for Watcher {
     }
 
     fn tracks_work(&self) -> bool {
-        self.moves
+        self.is_motion
     }
 }
 
-fn measure(case: &HardCase, solved: &Solved, watcher: &Watcher, finer: f64) -> Measures {
+fn measure(case: &HardCase, solved: &Solved, monitor: &Monitor, finer: f64) -> CaseResult {
     let u = &solved.state.displacement;
     let (model, discretisation) = (&solved.prepared.model, &solved.prepared.discretisation);
     let rows = &discretisation.supports;
     let smallest = |a: f64, J: f64| if J.is_nan() || J < a { J } else { a };
-    let now = (0..rows.len())
+    let last = (0..rows.len())
         .map(|q| rows.deformation_gradient(q, u, model.components).determinant())
         .fold(f64::INFINITY, smallest);
-    let error = match &case.truth {
-        Truth::Homogeneous(C) => Some(deviation(solved, C) / (C - Matrix3::identity()).amax()),
-        Truth::Rest => Some(deviation(solved, &Matrix3::identity())),
-        Truth::Force(exact) => Some(relative_error(watcher.force(), *exact)),
-        Truth::Finer(_) => Some(relative_error(watcher.force(), finer)),
-        Truth::Moment(exact) => Some(relative_error(watcher.moment(), *exact)),
-        Truth::Balance => Some(watcher.drift()),
-        Truth::Unknown => None,
+    let error = match &case.expected {
+        Expected::Homogeneous(C) => Some(deviation(solved, C) / (C - Matrix3::identity()).amax()),
+        Expected::Rest => Some(deviation(solved, &Matrix3::identity())),
+        Expected::Force(exact) => Some(relative_error(monitor.force(), *exact)),
+        Expected::Finer(_) => Some(relative_error(monitor.force(), finer)),
+        Expected::Moment(exact) => Some(relative_error(monitor.moment(), *exact)),
+        Expected::Balance => Some(monitor.drift()),
+        Expected::Unknown => None,
     };
-    Measures {
+    CaseResult {
         nodes: model.positions.len(),
         steps: solved.summary.steps,
-        smallest_jacobian: smallest(solved.summary.smallest_jacobian.jacobian, now),
+        smallest_jacobian: smallest(solved.summary.smallest_jacobian.jacobian, last),
         finite: u.iter().all(|u| u.is_finite()),
         error,
-        noise: noise(solved) / watcher.size,
-        crushed: solved.summary.crushed(model),
-        touched: watcher.touched,
+        noise: noise(solved) / monitor.size,
+        crushed: solved.summary.collapsed_point(model),
+        touched: monitor.touched,
         residual: discretisation.correction.map_or(f64::NAN, |correction| correction.residual),
     }
 }
@@ -278,10 +221,9 @@ fn deviation(solved: &Solved, C: &Matrix3) -> f64 {
     (0..rows.len()).map(at).fold(0.0, larger)
 }
 
-/// Root mean square over the nodes of u_a − Σ φ_b(X_a) u_b \[m\], the part of
-/// the nodal parameters that the field does not show: nothing of an affine
-/// field, O(h²) of a smooth one, nearly all of one that changes its sign from
-/// node to node, as spurious modes do.
+/// Root mean square over the nodes of u_a − Σ φ_b(X_a) u_b \[m\], the part of the nodal parameters
+/// that the field does not show: 0 for an affine field, O(h²) for a smooth one, nearly all of one
+/// that changes its sign from node to node, as spurious modes do.
 fn noise(solved: &Solved) -> f64 {
     let (model, u) = (&solved.prepared.model, &solved.state.displacement);
     let Ok(rows) = solved.prepared.discretisation.rows_at(&model.positions) else {

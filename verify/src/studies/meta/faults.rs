@@ -1,19 +1,18 @@
-//! Faults put into the solver on purpose, and the checks that noticed.
+//! Deliberate faults in the solver, and the checks that detect them.
 
-use crate::studies::workbench::Workbench;
+use crate::studies::workbench::{Workbench, exact};
 use anyhow::{Context, Result};
-use mtled_checks::study::shorthand::{number, text};
-use mtled_checks::study::{Bound, Cell, Check, Kind, Study, Table};
+use mtled_checks::study::{Cell, Study, Table, number, text};
 use serde::Deserialize;
 
-macro_rules! carried {
+macro_rules! bundled {
     ($($name:literal),* $(,)?) => {
         &[$(($name, include_str!(concat!("../../../faults/", $name, ".toml")))),*]
     };
 }
 
 /// (name, text) of every file in `verify/faults`.
-pub const FAULTS: &[(&str, &str)] = carried![
+pub const FAULTS: &[(&str, &str)] = bundled![
     "01_sign_of_stress",
     "02_last_point_dropped",
     "03_constant_of_rubber",
@@ -36,18 +35,18 @@ pub const FAULTS: &[(&str, &str)] = carried![
     "20_neighbour_dropped",
 ];
 
-/// What `.ci/faults` wrote.
+/// Written by `.ci/faults`.
 const RECORD: &str = include_str!("../../../../reports/faults.json");
-/// Checks that are named in the table.
+/// Number of checks that the table names.
 const NAMED: usize = 3;
 
-/// A fault as it is stated.
+/// A fault as its file states it.
 #[derive(Debug, Deserialize)]
 struct Fault {
     change: Vec<Change>,
 }
 
-/// A piece of the source and what stood in its place.
+/// A piece of the source and its replacement.
 #[derive(Debug, PartialEq, Deserialize)]
 struct Change {
     file: String,
@@ -56,17 +55,17 @@ struct Change {
 }
 
 #[derive(Debug, Deserialize)]
-struct Record {
+struct FaultRecord {
     commit: String,
     date: String,
-    /// Seconds of a study that is left out once a fault is caught.
+    /// Studies that take longer \[s\] are skipped once a fault is detected.
     enough: f64,
-    faults: Vec<Tried>,
+    faults: Vec<TestedFault>,
 }
 
-/// A fault that was tried, with the checks that failed.
+/// A tested fault with the checks that failed.
 #[derive(Debug, Deserialize)]
-struct Tried {
+struct TestedFault {
     name: String,
     title: String,
     changes: Vec<Change>,
@@ -77,76 +76,77 @@ struct Tried {
 }
 
 pub fn faults(_: &Workbench, study: &mut Study) -> Result<()> {
-    let record: Record = serde_json::from_str(RECORD).context("reports/faults.json")?;
+    let record: FaultRecord = serde_json::from_str(RECORD).context("reports/faults.json")?;
     let stated: Vec<(&str, Fault)> = FAULTS
         .iter()
-        .map(|(name, text)| Ok((*name, toml::from_str(text).with_context(|| name.to_string())?)))
+        .map(|(name, text)| {
+            Ok((*name, toml_edit::de::from_str(text).with_context(|| name.to_string())?))
+        })
         .collect::<Result<_>>()?;
     add_checks(study, &stated, &record);
     study.tables.push(Table {
-        title: "Faults and the checks that noticed".into(),
+        title: "Faults and the checks that detect them".into(),
         columns: vec![
             text("fault"),
             text("where"),
             number("failing checks", "1"),
             number("studies run", "1"),
-            text("the first of them"),
+            text("the first checks"),
             number("time", "s"),
         ],
         rows: record.faults.iter().map(row).collect(),
     });
     study.notes.push(format!(
         "Written by .ci/faults at commit {} on {}: each fault goes into a scratch copy of the solver, whose \
-         studies run one by one, the cheapest first. Once a fault is caught, studies that take more \
-         than {} s of one thread are left out, so it may be caught by more checks than are counted. \
-         What was changed stands in verify/faults and reports/faults.md.",
+         studies run one by one, the cheapest first. Once a fault is detected, studies that take more \
+         than {} s of one thread are skipped, so more checks may detect it than are counted. \
+         The changes are in verify/faults and reports/faults.md.",
         record.commit, record.date, record.enough
     ));
     Ok(())
 }
 
-fn add_checks(study: &mut Study, stated: &[(&str, Fault)], record: &Record) {
-    let tried = |(name, fault): &(&str, Fault)| {
-        record.faults.iter().any(|tried| tried.name == *name && tried.changes == fault.change)
+fn add_checks(study: &mut Study, stated: &[(&str, Fault)], record: &FaultRecord) {
+    let tested = |(name, fault): &(&str, Fault)| {
+        record.faults.iter().any(|tested| tested.name == *name && tested.changes == fault.change)
     };
-    let untried = stated.iter().filter(|fault| !tried(fault)).count();
-    let unknown = |tried: &&Tried| !stated.iter().any(|(name, _)| *name == tried.name);
+    let untested = stated.iter().filter(|fault| !tested(fault)).count();
+    let unknown = |tested: &&TestedFault| !stated.iter().any(|(name, _)| *name == tested.name);
     let unknown = record.faults.iter().filter(unknown).count();
-    let missed = record.faults.iter().filter(|tried| tried.checks.is_empty()).count();
-    for (id, words, value, source) in [
+    let missed = record.faults.iter().filter(|tested| tested.checks.is_empty()).count();
+    for (id, label, value, source) in [
         (
             "faults/tried",
-            "faults that are stated otherwise than they were tried, or in one place only",
-            untried + unknown,
-            "a fault that changes has to be tried again: .ci/faults",
+            "faults whose files differ from what was tested, or that are only in one of the two",
+            untested + unknown,
+            "a fault that changes has to be tested again: .ci/faults",
         ),
         (
             "faults/missed",
-            "faults that no check noticed",
+            "faults that no check detects",
             missed,
-            "a fault that nobody notices shows that a check is missing",
+            "an undetected fault shows that a check is missing",
         ),
     ] {
-        let bound = Bound::AtMost(0.0);
-        study.checks.push(Check::new(id, words, Kind::Exact, value as f64, bound, "1", source));
+        study.checks.push(exact(id, label, value as f64, 0.0, source));
     }
 }
 
-fn row(tried: &Tried) -> Vec<Cell> {
-    let mut files: Vec<&str> = tried.changes.iter().map(|change| change.file.as_str()).collect();
+fn row(tested: &TestedFault) -> Vec<Cell> {
+    let mut files: Vec<&str> = tested.changes.iter().map(|change| change.file.as_str()).collect();
     files.dedup();
-    let ends = match tried.unfinished.is_empty() {
+    let ends = match tested.unfinished.is_empty() {
         true => String::new(),
-        false => format!("; did not end: {}", tried.unfinished.join(", ")),
+        false => format!("; did not end: {}", tested.unfinished.join(", ")),
     };
-    let first: Vec<&str> = tried.checks.iter().take(NAMED).map(String::as_str).collect();
+    let first: Vec<&str> = tested.checks.iter().take(NAMED).map(String::as_str).collect();
     vec![
-        Cell::Text(tried.title.clone()),
+        Cell::Text(tested.title.clone()),
         Cell::Text(files.join(", ")),
-        Cell::Number(tried.checks.len() as f64),
-        Cell::Number(tried.studies.len() as f64),
+        Cell::Number(tested.checks.len() as f64),
+        Cell::Number(tested.studies.len() as f64),
         Cell::Text(first.join(", ") + &ends),
-        Cell::Number(tried.seconds),
+        Cell::Number(tested.seconds),
     ]
 }
 
@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_fault_of_the_folder_is_carried() {
+    fn every_fault_of_the_folder_is_bundled() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/faults");
         let mut files: Vec<String> = std::fs::read_dir(folder)
             .unwrap()
@@ -163,7 +163,7 @@ mod tests {
             .filter_map(|name| name.strip_suffix(".toml").map(String::from))
             .collect();
         files.sort();
-        let carried: Vec<&str> = FAULTS.iter().map(|(name, _)| *name).collect();
-        assert_eq!(files, carried);
+        let bundled: Vec<&str> = FAULTS.iter().map(|(name, _)| *name).collect();
+        assert_eq!(files, bundled);
     }
 }

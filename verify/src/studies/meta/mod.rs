@@ -1,9 +1,6 @@
-//! Studies of the harness itself and of single parts.
+//! Studies of the harness itself and of the cost of a run.
 
 pub mod faults;
-pub mod parts;
-mod parts_model;
-mod parts_motion;
 pub mod references;
 pub mod set_up;
 pub mod smallest;

@@ -1,21 +1,21 @@
-//! What comes before the first step, and what it costs.
+//! Cost of the set-up: everything before the first step.
 
 use crate::specimens::simple::{
     SIZE, block_shape, bonded_face, free_body, recipe, relaxation, tissue,
 };
-use crate::studies::workbench::Workbench;
+use crate::studies::workbench::{Workbench, exact};
 use mtled::discretisation::Discretisation;
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::{Amplitude, Dimension, Gradients, Problem};
-use mtled_checks::study::shorthand::{axis, curve, number, text};
-use mtled_checks::study::{Bound, Cell, Check, Figure, Kind, Plot, Study, Table};
+use mtled_checks::measure::larger;
+use mtled_checks::study::{Cell, Figure, Plot, Study, Table, axis, curve, number, text};
 use std::time::Instant;
 
 /// Wall seconds of each part, and the work of the correction.
 struct Costs {
-    words: String,
+    label: String,
     nodes: usize,
     points: usize,
     iterations: usize,
@@ -36,6 +36,7 @@ impl Costs {
     }
 }
 
+/// Measures the set-up of cubes of several sizes and of bundled cases.
 pub fn set_up(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let sizes: &[f64] = bench.pick(&[8.0, 16.0], &[8.0, 16.0, 30.0, 45.0]);
     let mut rows = Vec::new();
@@ -49,8 +50,40 @@ pub fn set_up(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
         rows.push(measure(case.title.clone(), case.problem)?);
     }
     add_checks(study, &rows);
-    let over_step = |value: f64, row: &Costs| value / row.step;
-    study.tables.push(Table {
+    study.tables.push(table(&rows));
+    let cubes = &rows[..sizes.len()];
+    study.figures.push(Figure::Plot(Plot {
+        title: "Iterations of the correction".into(),
+        caption: "Bonded cubes, to a tolerance of 1e-3.".into(),
+        x: axis("nodes", "1", true),
+        y: axis("iterations", "1", false),
+        series: vec![curve(
+            "iterations",
+            cubes.iter().map(|row| (row.nodes as f64, row.iterations as f64)).collect(),
+        )],
+        slopes: Vec::new(),
+    }));
+    study.notes.push(
+        "Wall times on all threads, each part once, while other studies run: they are shown and \
+         not checked. The correction is the time of consistent gradients less that of plain ones, \
+         boundary panels included."
+            .into(),
+    );
+    Ok(())
+}
+
+fn table(rows: &[Costs]) -> Table {
+    let row = |costs: &Costs| {
+        let Costs { nodes, points, iterations, approximation, correction, model, .. } = *costs;
+        let parts = [approximation, correction, model, costs.critical, costs.set_up()];
+        let mut row = vec![Cell::Text(costs.label.clone())];
+        row.extend([nodes, points, iterations].map(|count| Cell::Number(count as f64)));
+        row.push(Cell::Number(costs.residual));
+        row.extend(parts.map(|seconds| Cell::Number(seconds / costs.step)));
+        row.push(Cell::Number(correction / approximation));
+        row
+    };
+    Table {
         title: "Set-up in units of one evaluation of the internal force".into(),
         columns: vec![
             text("case"),
@@ -65,43 +98,11 @@ pub fn set_up(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
             number("all", "1"),
             number("correction over nodes, cells and MLS", "1"),
         ],
-        rows: rows
-            .iter()
-            .map(|row| {
-                let mut cells = vec![Cell::Text(row.words.clone())];
-                let counts = [row.nodes, row.points, row.iterations].map(|n| n as f64);
-                cells.extend(counts.map(Cell::Number));
-                cells.push(Cell::Number(row.residual));
-                let parts = [row.approximation, row.correction, row.model, row.critical];
-                cells.extend(parts.map(|part| Cell::Number(over_step(part, row))));
-                cells.push(Cell::Number(over_step(row.set_up(), row)));
-                cells.push(Cell::Number(row.correction / row.approximation));
-                cells
-            })
-            .collect(),
-    });
-    let cubes = &rows[..sizes.len()];
-    study.figures.push(Figure::Plot(Plot {
-        title: "Iterations of the correction".into(),
-        caption: "Bonded cubes, to a tolerance of 1e-3.".into(),
-        x: axis("nodes", "1", true),
-        y: axis("iterations", "1", false),
-        series: vec![curve(
-            "iterations",
-            cubes.iter().map(|row| (row.nodes as f64, row.iterations as f64)).collect(),
-        )],
-        slopes: Vec::new(),
-    }));
-    study.notes.push(
-        "Wall times on all threads, each part once, beside the other studies: they are shown and \
-         not judged. The correction is what consistent gradients take above plain ones, boundary \
-         panels included."
-            .into(),
-    );
-    Ok(())
+        rows: rows.iter().map(row).collect(),
+    }
 }
 
-/// A jittered cube between bonded faces, ν = 0.49, as users have it.
+/// A jittered cube between bonded faces, ν = 0.49, with the default tolerance of the gradients.
 fn cube(cells: f64) -> anyhow::Result<Problem> {
     let mut recipe = recipe(SIZE / cells, 0.3, 5);
     recipe.gradients = Gradients::Consistent { tolerance: 1e-3 };
@@ -116,17 +117,17 @@ fn cube(cells: f64) -> anyhow::Result<Problem> {
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
-    let made = work();
-    (made, start.elapsed().as_secs_f64())
+    let result = work();
+    (result, start.elapsed().as_secs_f64())
 }
 
-fn measure(words: String, problem: Problem) -> anyhow::Result<Costs> {
+fn measure(label: String, problem: Problem) -> anyhow::Result<Costs> {
     let mut plain = problem.clone();
     plain.recipe.gradients = Gradients::Plain;
     let (_, approximation) = timed(|| Discretisation::new(&plain));
     let (discretisation, both) = timed(|| Discretisation::new(&problem));
     let discretisation = discretisation?;
-    let (model, binding) = timed(|| Model::new(&problem, &discretisation));
+    let (model, model_seconds) = timed(|| Model::new(&problem, &discretisation));
     let model = model?;
     let mut workspace = Workspace::new(&model);
     let u = vec![0.0; model.size()];
@@ -137,7 +138,7 @@ fn measure(words: String, problem: Problem) -> anyhow::Result<Costs> {
     steps.sort_by(f64::total_cmp);
     let correction = discretisation
         .correction
-        .ok_or_else(|| anyhow::anyhow!("{words}: the gradients are not made consistent"))?;
+        .ok_or_else(|| anyhow::anyhow!("{label}: the gradients are not made consistent"))?;
     Ok(Costs {
         nodes: model.positions.len(),
         points: model.point_positions.len(),
@@ -145,33 +146,27 @@ fn measure(words: String, problem: Problem) -> anyhow::Result<Costs> {
         residual: correction.residual,
         approximation,
         correction: (both - approximation).max(0.0),
-        model: binding,
+        model: model_seconds,
         critical,
         step: steps[4],
-        words,
+        label,
     })
 }
 
 fn add_checks(study: &mut Study, rows: &[Costs]) {
     let most = rows.iter().map(|row| row.iterations).max().unwrap_or(usize::MAX);
-    study.checks.push(Check::new(
+    study.checks.push(exact(
         "set_up/iterations",
         "iterations of the correction to 1e-3, most of all cases",
-        Kind::Exact,
         most as f64,
-        Bound::AtMost(20.0),
-        "1",
-        "a multilevel preconditioner keeps them the same at every number of nodes",
+        20.0,
+        "a multilevel preconditioner makes them independent of the number of nodes",
     ));
-    let residual =
-        rows.iter().map(|row| row.residual).fold(0.0, mtled_checks::study::shorthand::larger);
-    study.checks.push(Check::new(
+    study.checks.push(exact(
         "set_up/residual",
-        "defect of the divergence theorem that is left, largest of all cases",
-        Kind::Exact,
-        residual,
-        Bound::AtMost(1e-3),
-        "1",
-        "the tolerance asked for",
+        "remaining defect of the divergence theorem, largest of all cases",
+        rows.iter().map(|row| row.residual).fold(0.0, larger),
+        1e-3,
+        "the requested tolerance",
     ));
 }

@@ -1,5 +1,5 @@
-//! The smallest case file that shows what broke: a cube between rollers, whose
-//! answer is known to round-off on any cloud.
+//! The smallest case file that reproduces a failure: a cube between rollers, whose solution is
+//! known to round-off on any cloud.
 #![allow(non_snake_case)]
 
 use crate::bundled::CASES;
@@ -15,41 +15,41 @@ use std::path::Path;
 const EDGE: f64 = 0.1;
 /// Stretch between the rollers \[–\].
 const STRETCH: f64 = 1.1;
-/// Spacings along an edge that are tried, the fewest last.
+/// Spacings along an edge that are tried, the coarsest cloud last.
 const SPACINGS: [f64; 4] = [5.0, 4.0, 3.0, 2.0];
-/// What the gradients, consistent to 1e-12, and the relaxation to 1e-7 leave \[–\].
+/// Tolerance of the width \[–\]: the gradients are consistent to 1e-12, the relaxation to 1e-7.
 const WIDTH: f64 = 1e-5;
-/// Of the reaction; the residual may be ten times the tolerance.
+/// Tolerance of the reaction \[–\]; the residual may be ten times that of the relaxation.
 const REACTION: f64 = 1e-4;
 
-/// Gives the failing checks of a study the case that shows it: the smallest cube
-/// that also fails, else the carried case that the check is about.
+/// Attaches to each failing check of a study a case that reproduces the failure: the smallest cube
+/// that also fails, else the bundled case that the check is about.
 pub fn attach(study: &mut Study) {
     if study.checks.iter().all(|check| check.pass || check.reproduce.is_some()) {
         return;
     }
     let cube = smallest_failing(&cube_text(), &SPACINGS.map(|n| EDGE / n), is_off);
     for check in study.checks.iter_mut().filter(|check| !check.pass) {
-        let carried = CASES.iter().find(|(name, _)| check.id.split('/').nth(1) == Some(name));
-        let stated = || carried.map(|(_, text)| text.to_string());
-        check.reproduce = check.reproduce.take().or_else(|| cube.clone()).or_else(stated);
+        let bundled = CASES.iter().find(|(name, _)| check.id.split('/').nth(1) == Some(name));
+        let text = || bundled.map(|(_, text)| text.to_string());
+        check.reproduce = check.reproduce.take().or_else(|| cube.clone()).or_else(text);
     }
 }
 
 /// The case at the coarsest of ever coarser `spacings` \[m\] at which it still fails;
-/// None if it does not at the first. Finer ones cost most, so that the work is at
-/// most twice that of the first.
+/// None if it passes at the first. The finest costs most, so the work is at most about twice
+/// that of the first.
 pub fn smallest_failing(
     text: &str,
     spacings: &[f64],
     fails: impl Fn(&Case) -> bool,
 ) -> Option<String> {
-    let posed = |&spacing: &f64| {
+    let failing = |&spacing: &f64| {
         let text = edited(text, &[Setting::number(Knob::Spacing, spacing)]).ok()?;
         let case = parse_case(&text, "smallest", Path::new(".")).ok()?;
         fails(&case).then_some(text)
     };
-    spacings.iter().map_while(posed).last()
+    spacings.iter().map_while(failing).last()
 }
 
 /// A jittered cube pulled between rollers: one stretch everywhere.
@@ -66,9 +66,9 @@ fn cube_text() -> String {
     format!("{CUBE}{}{ENDING}", faces.concat())
 }
 
-const CUBE: &str = r#"# Pulled between two rollers the cube stretches by 1.1 along x and is free to thin:
-# its corners (0.1, 0, 0) and (0.1, 0.1, 0) end 0.095433 m apart, and the pull is that
-# of the stretch. A sound solver meets the closed form to five digits on this cloud and
+const CUBE: &str = r#"# Pulled between two rollers the cube stretches by 1.1 along x and is free to contract:
+# its corners (0.1, 0, 0) and (0.1, 0.1, 0) end 0.095433 m apart, and the force is that
+# of the stretch. A correct solver agrees with the closed form to five digits on this cloud and
 # on any other; the one that wrote this file does not.
 title = "Smallest cube that fails"
 description = "A jittered cube between two rollers, pulled by 10 %."
@@ -107,13 +107,13 @@ name = "the next"
 point = [0.1, 0.1, 0.0]
 "#;
 
-/// Whether the cube misses its closed form or cannot be solved.
+/// Whether the cube differs from its closed form or cannot be solved.
 fn is_off(case: &Case) -> bool {
-    let sound = |[width, pull]: [f64; 2]| width <= WIDTH && pull <= REACTION;
-    !errors(case).is_some_and(sound)
+    let within = |[width, force]: [f64; 2]| width <= WIDTH && force <= REACTION;
+    !errors(case).is_some_and(within)
 }
 
-/// Relative errors of the width at the pulled end and of the pull.
+/// Relative errors of the width at the pulled end and of the force.
 fn errors(case: &Case) -> Option<[f64; 2]> {
     let (_, record) = solve_case(case).ok()?;
     let last = record.samples.last()?;
@@ -128,17 +128,18 @@ fn errors(case: &Case) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::specimens::spacing::spacing_of;
     use anyhow::{Context, Result, anyhow};
 
     fn cube(spacings: f64) -> Result<Case> {
         let text = edited(&cube_text(), &[Setting::number(Knob::Spacing, EDGE / spacings)])?;
         parse_case(&text, "cube", Path::new("."))
             .map_err(|mistakes| anyhow!("{}", mistakes[0]))
-            .context("the cube is no case")
+            .context("the cube is not a valid case")
     }
 
     #[test]
-    fn the_sound_solver_meets_the_closed_form_on_every_cube() {
+    fn the_solver_agrees_with_the_closed_form_on_every_cube() {
         for spacings in SPACINGS {
             let [width, force] = errors(&cube(spacings).unwrap()).unwrap();
             assert!(width < WIDTH && force < REACTION, "{width} {force}");
@@ -146,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_file_promises_of_the_width_is_the_closed_form() {
+    fn the_width_that_the_file_states_is_the_closed_form() {
         let case = cube(2.0).unwrap();
         let law = &case.problem.regions[0].material.law;
         let lateral = uniaxial::uniaxial_stress(law, STRETCH).unwrap().lateral_stretch;
@@ -155,8 +156,7 @@ mod tests {
 
     #[test]
     fn the_coarsest_failing_cloud_is_kept_and_the_search_ends_where_it_passes() {
-        let fine =
-            |case: &Case| crate::studies::workbench::spacing_of(&case.problem).unwrap() < 0.03;
+        let fine = |case: &Case| spacing_of(&case.problem).unwrap() < 0.03;
         let text = smallest_failing(&cube_text(), &SPACINGS.map(|n| EDGE / n), fine).unwrap();
         assert!(text.contains("spacing = 0.025"), "{text}");
         assert!(smallest_failing(&cube_text(), &[0.05], fine).is_none());

@@ -1,20 +1,20 @@
-//! Dynamic relaxation against Newton's method on the same discretisation: what
-//! is left between them is the error in time, without that in space.
+//! Dynamic relaxation against Newton's method on the same discretisation: their difference is the
+//! error of the relaxation, without that of the discretisation.
 #![allow(non_snake_case)]
 
-use crate::run::{Solved, Work, march, prepare};
+use crate::run::{Solved, Work, integrate, prepare};
 use crate::scene::Case;
-use crate::studies::workbench::{Workbench, respaced, spacing_of};
+use crate::specimens::spacing::{respaced, spacing_of};
+use crate::studies::workbench::{Workbench, exact};
 use anyhow::{Context, Result, bail};
 use mtled::algebra::tensor::Vector3;
 use mtled::motion::internal_force::{Workspace, stiffness_times};
 use mtled::motion::observe::{Continue, Observer, Unobserved, View};
 use mtled::problem::{Cloud, Motion, Newton, Problem, RelaxationMass};
-use mtled_checks::study::shorthand::{axis, line, number, text};
-use mtled_checks::study::{Bound, Cell, Check, Figure, Kind, Plot, Study, Table};
+use mtled_checks::study::{Cell, Figure, Plot, Study, Table, axis, line, number, text};
 use rayon::prelude::*;
 
-/// Cases with what is special about them.
+/// Names of cases with their labels.
 const CASES: [(&str, &str); 6] = [
     ("bonded_block", "cube, ν = 0.49, compressed by 20 %"),
     ("soft_inclusion", "inclusion ten times softer, graded"),
@@ -23,23 +23,20 @@ const CASES: [(&str, &str); 6] = [
     ("sphere_gravity", "sphere under its weight"),
     ("cook_membrane", "Cook's membrane"),
 ];
-/// Wanted relative error of relaxation \[–\].
+/// Requested relative error of relaxation \[–\].
 const TOLERANCE: f64 = 1e-5;
-/// Wanted relative residual of Newton's method \[–\].
+/// Requested relative residual of Newton's method \[–\].
 const RESIDUAL: f64 = 1e-10;
-/// Asymmetry of the tangent, which round-off leaves \[–\].
+/// Asymmetry of the tangent by round-off \[–\].
 const SYMMETRY: f64 = 1e-12;
 /// Errors to which steps are counted, relative to the largest displacement \[–\].
 const LEVELS: [f64; 3] = [1e-2, 1e-3, 1e-4];
-const LOOK_EVERY: usize = 10;
-/// Steps over which the load is applied: fewer than usual, so that what comes
-/// after them weighs.
+/// Steps between two samples of the error.
+const SAMPLE_EVERY: usize = 10;
+/// Steps over which the load is applied: fewer than usual, so that the steps after them dominate.
 const LOAD_STEPS: usize = 200;
-/// Steps after loading with lumped masses over those with masses like the
-/// stiffness, at least, over all cases; measured 1.08 to 1.16.
-const SAVED: f64 = 1.05;
 
-/// Records the error as relaxation goes on.
+/// Records the error during relaxation.
 struct Trace<'a> {
     exact: &'a [f64],
     /// (step, largest error over the largest displacement)
@@ -48,7 +45,7 @@ struct Trace<'a> {
 
 impl Observer for Trace<'_> {
     fn observe(&mut self, view: &mut View) -> Continue {
-        if view.state.step > 0 && view.state.step.is_multiple_of(LOOK_EVERY) {
+        if view.state.step > 0 && view.state.step.is_multiple_of(SAMPLE_EVERY) {
             let error = difference(&view.state.displacement, self.exact);
             self.history.push((view.state.step, error));
         }
@@ -59,9 +56,9 @@ impl Observer for Trace<'_> {
 /// One case solved three times.
 struct Compared {
     name: &'static str,
-    words: &'static str,
+    label: &'static str,
     newton: Solved,
-    /// With masses like the stiffness.
+    /// With masses proportional to the stiffness.
     relaxed: Relaxed,
     lumped: Relaxed,
 }
@@ -71,12 +68,13 @@ struct Relaxed {
     history: Vec<(usize, f64)>,
 }
 
+/// Solves every case by Newton's method and by relaxation with both kinds of masses.
 pub fn statics(bench: &Workbench, study: &mut Study) -> Result<()> {
-    let run = |&(name, words): &(&'static str, &'static str)| {
+    let run = |&(name, label): &(&'static str, &'static str)| {
         let case = bench.case(name)?;
         // As stated in the full suite, coarser in the quick one.
         let spacing = spacing_of(&case.problem)? * bench.pick(1.5, 1.0);
-        compare(&jittered(bench, respaced(&case, spacing)?), name, words)
+        compare(&jittered(bench, respaced(&case, spacing)?), name, label)
             .with_context(|| format!("case \"{name}\""))
     };
     let compared: Vec<Compared> = CASES.par_iter().map(run).collect::<Result<_>>()?;
@@ -84,29 +82,27 @@ pub fn statics(bench: &Workbench, study: &mut Study) -> Result<()> {
     let settling = |relaxed: &Relaxed| relaxed.solved.summary.steps - LOAD_STEPS;
     let saved = compared.iter().map(|one| settling(&one.lumped)).sum::<usize>() as f64
         / compared.iter().map(|one| settling(&one.relaxed)).sum::<usize>() as f64;
-    study.checks.push(Check::new(
+    study.checks.push(bench.regression(
         "statics/all/saved",
-        "steps after loading that relaxation takes with lumped masses over those with masses like \
-         the stiffness, all cases",
-        Kind::Regression,
+        "steps after loading that relaxation takes with lumped masses over those with masses \
+         proportional to the stiffness, all cases",
         saved,
-        Bound::AtLeast(SAVED),
         "1",
-        "our own figure: masses like the diagonal of the stiffness pay",
+        "masses like the diagonal of the stiffness pay",
     ));
     study.tables = vec![steps_table(&compared), newton_table(&compared)];
     study.figures.push(Figure::Plot(error_plot(&compared)));
     study.notes.push(format!(
         "Newton's method solves the equations of the same discretisation to a residual of \
          {RESIDUAL:e}; the error of relaxation is the largest difference of a nodal parameter from \
-         it over the largest nodal parameter. Steps are counted to the first look, every \
-         {LOOK_EVERY} steps, from which on the error stays below the level. The load takes the first \
+         it over the largest nodal parameter. Steps are counted to the first sample, every \
+         {SAMPLE_EVERY} steps, from which on the error stays below the level. The load takes the first \
          {LOAD_STEPS} steps. Nodes are jittered by 0.3 of the spacing where the case has a lattice."
     ));
     Ok(())
 }
 
-/// A cloud without the regularity that would flatter lumped masses.
+/// The case with jittered nodes: regular ones would favour lumped masses.
 fn jittered(bench: &Workbench, mut case: Case) -> Case {
     let cloud = &mut case.problem.recipe.cloud;
     if let Cloud::Regular { spacing } | Cloud::Jittered { spacing, .. } = *cloud {
@@ -115,11 +111,11 @@ fn jittered(bench: &Workbench, mut case: Case) -> Case {
     case
 }
 
-fn compare(case: &Case, name: &'static str, words: &'static str) -> Result<Compared> {
-    let Motion::Static(settings) = case.problem.motion else { bail!("is not static") };
+fn compare(case: &Case, name: &'static str, label: &'static str) -> Result<Compared> {
+    let Motion::Static(settings) = case.problem.motion else { bail!("the case is not static") };
     let motion = Motion::Equilibrium(Newton { load_end: settings.load_end, tolerance: RESIDUAL });
     let problem = Problem { motion, ..case.problem.clone() };
-    let newton = march(&problem, prepare(&problem)?, &mut Unobserved)?;
+    let newton = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
     let relax = |mass| -> Result<Relaxed> {
         let mut settings = settings;
         settings.tolerance = TOLERANCE;
@@ -127,17 +123,17 @@ fn compare(case: &Case, name: &'static str, words: &'static str) -> Result<Compa
         settings.mass = mass;
         let problem = Problem { motion: Motion::Static(settings), ..case.problem.clone() };
         let mut trace = Trace { exact: &newton.state.displacement, history: Vec::new() };
-        let solved = march(&problem, prepare(&problem)?, &mut trace)?;
+        let solved = integrate(&problem, prepare(&problem)?, &mut trace)?;
         Ok(Relaxed { solved, history: trace.history })
     };
     let (relaxed, lumped) = (relax(RelaxationMass::Stiffness)?, relax(RelaxationMass::Lumped)?);
-    Ok(Compared { name, words, newton, relaxed, lumped })
+    Ok(Compared { name, label, newton, relaxed, lumped })
 }
 
 /// Largest difference over the largest entry of `v`.
 fn difference(u: &[f64], v: &[f64]) -> f64 {
-    let apart = u.iter().zip(v).fold(0.0f64, |a, (u, v)| a.max((u - v).abs()));
-    apart / v.iter().fold(0.0f64, |a, v| a.max(v.abs()))
+    let difference = u.iter().zip(v).fold(0.0f64, |a, (u, v)| a.max((u - v).abs()));
+    difference / v.iter().fold(0.0f64, |a, v| a.max(v.abs()))
 }
 
 /// Largest difference of a reaction force over the largest reaction force.
@@ -150,16 +146,16 @@ fn reaction_difference(a: &Solved, b: &Solved) -> f64 {
         all.iter().map(|reaction| reaction.force).collect()
     };
     let (a, b) = (reactions(a), reactions(b));
-    let apart = a.iter().zip(&b).fold(0.0f64, |most, (a, b)| most.max((a - b).norm()));
-    apart / b.iter().fold(0.0f64, |most, b| most.max(b.norm()))
+    let difference = a.iter().zip(&b).fold(0.0f64, |most, (a, b)| most.max((a - b).norm()));
+    difference / b.iter().fold(0.0f64, |most, b| most.max(b.norm()))
 }
 
-/// |v·Kw − w·Kv|/(|v||Kw|) of two directions that are noise.
+/// |v·Kw − w·Kv|/(|v||Kw|) of two irregular directions.
 fn asymmetry(solved: &Solved) -> f64 {
     let (model, u) = (&solved.prepared.model, &solved.state.displacement);
-    let noise = |salt: f64| -> Vec<f64> {
-        // Fractional parts of multiples of an irrational number are spread evenly.
-        (1..=u.len()).map(|i| (i as f64 * salt).fract() - 0.5).collect()
+    let irregular = |factor: f64| -> Vec<f64> {
+        // Fractional parts of multiples of an irrational number are distributed evenly.
+        (1..=u.len()).map(|i| (i as f64 * factor).fract() - 0.5).collect()
     };
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
     let times = |v: &[f64]| {
@@ -167,7 +163,7 @@ fn asymmetry(solved: &Solved) -> f64 {
         stiffness_times(model, u, v, &mut Workspace::new(model), &mut product);
         product
     };
-    let (v, w) = (noise(std::f64::consts::SQRT_2), noise(std::f64::consts::E));
+    let (v, w) = (irregular(std::f64::consts::SQRT_2), irregular(std::f64::consts::E));
     let (Kv, Kw) = (times(&v), times(&w));
     (dot(&v, &Kw) - dot(&w, &Kv)).abs() / (dot(&v, &v) * dot(&Kw, &Kw)).sqrt()
 }
@@ -177,9 +173,9 @@ fn add_checks(study: &mut Study, one: &Compared) {
     let error = |relaxed: &Relaxed| difference(&relaxed.solved.state.displacement, u);
     let residual = one.newton.summary.newton.map_or(f64::NAN, |counts| counts.residual);
     let relaxed = one.relaxed.solved.summary.relaxation;
-    let tolerance = "the tolerance that relaxation was asked to keep";
-    for (quantity, words, value, bound, source) in [
-        ("residual", "residual of Newton's method", residual, RESIDUAL, "the tolerance asked for"),
+    let tolerance = "the requested tolerance";
+    for (quantity, label, value, bound, source) in [
+        ("residual", "residual of Newton's method", residual, RESIDUAL, tolerance),
         ("error", "error of relaxation", error(&one.relaxed), TOLERANCE, tolerance),
         (
             "lumped_error",
@@ -193,32 +189,26 @@ fn add_checks(study: &mut Study, one: &Compared) {
             "residual of relaxation",
             relaxed.map_or(f64::NAN, |convergence| convergence.residual),
             10.0 * TOLERANCE,
-            "relaxation demands ten times its tolerance of the residual too",
+            "relaxation also requires the residual to be at most ten times its tolerance",
         ),
         (
             "reaction",
             "reactions of relaxation against those of Newton's method",
             reaction_difference(&one.relaxed.solved, &one.newton),
             10.0 * TOLERANCE,
-            "one discretisation has one static solution; the residual that relaxation may leave",
+            "one discretisation has one static solution; bound on the residual of relaxation",
         ),
         (
             "symmetry",
             "|v·Kw − w·Kv| over |v||Kw| at the solution, v and w random",
             asymmetry(&one.newton),
             SYMMETRY,
-            "K is a second derivative of the strain energy; what is left is round-off",
+            "K is a second derivative of the strain energy; what remains is round-off",
         ),
     ] {
-        study.checks.push(Check::new(
-            &format!("statics/{}/{quantity}", one.name),
-            &format!("{words}: {}", one.words),
-            Kind::Exact,
-            value,
-            Bound::AtMost(bound),
-            "1",
-            source,
-        ));
+        let (id, label) =
+            (format!("statics/{}/{quantity}", one.name), format!("{label}: {}", one.label));
+        study.checks.push(exact(&id, &label, value, bound, source));
     }
 }
 
@@ -235,7 +225,7 @@ fn steps_to(history: &[(usize, f64)], level: f64) -> Cell {
 fn steps_table(compared: &[Compared]) -> Table {
     let row = |one: &Compared, relaxed: &Relaxed, mass: &str| {
         let u = &one.newton.state.displacement;
-        let mut row = vec![Cell::Text(one.words.into()), Cell::Text(mass.into())];
+        let mut row = vec![Cell::Text(one.label.into()), Cell::Text(mass.into())];
         row.extend(LEVELS.map(|level| steps_to(&relaxed.history, level)));
         row.push(Cell::Number(relaxed.solved.summary.steps as f64));
         row.push(Cell::Number(Work::of(&relaxed.solved).force_evaluations as f64));
@@ -257,7 +247,7 @@ fn steps_table(compared: &[Compared]) -> Table {
         rows: compared
             .iter()
             .flat_map(|one| {
-                [row(one, &one.relaxed, "like the stiffness"), row(one, &one.lumped, "lumped")]
+                [row(one, &one.relaxed, "as the stiffness"), row(one, &one.lumped, "lumped")]
             })
             .collect(),
     }
@@ -268,7 +258,7 @@ fn newton_table(compared: &[Compared]) -> Table {
         let counts = one.newton.summary.newton.unwrap_or_default();
         let relaxed = Work::of(&one.relaxed.solved).force_evaluations as f64;
         vec![
-            Cell::Text(one.words.into()),
+            Cell::Text(one.label.into()),
             Cell::Number(one.newton.prepared.model.positions.len() as f64),
             Cell::Number(counts.increments as f64),
             Cell::Number(counts.iterations as f64),
@@ -288,7 +278,7 @@ fn newton_table(compared: &[Compared]) -> Table {
             number("products", "1"),
             number("internal forces over relaxation", "1"),
             number("residual", "1"),
-            number("reactions apart", "1"),
+            number("difference of reactions", "1"),
         ],
         rows: compared.iter().map(row).collect(),
     }
@@ -296,15 +286,17 @@ fn newton_table(compared: &[Compared]) -> Table {
 
 fn error_plot(compared: &[Compared]) -> Plot {
     let points = |relaxed: &Relaxed| {
-        let held = relaxed.history.iter().filter(|(_, error)| *error > 0.0);
-        held.map(|&(step, error)| (step as f64, error)).collect()
+        let positive = relaxed.history.iter().filter(|(_, error)| *error > 0.0);
+        positive.map(|&(step, error)| (step as f64, error)).collect()
     };
     Plot {
         title: "Error of dynamic relaxation".into(),
-        caption: format!("Masses like the stiffness; the load takes the first {LOAD_STEPS} steps."),
+        caption: format!(
+            "Masses proportional to the stiffness; the load takes the first {LOAD_STEPS} steps."
+        ),
         x: axis("step", "1", false),
         y: axis("error over the largest displacement", "1", true),
-        series: compared.iter().map(|one| line(one.words, points(&one.relaxed))).collect(),
+        series: compared.iter().map(|one| line(one.label, points(&one.relaxed))).collect(),
         slopes: Vec::new(),
     }
 }

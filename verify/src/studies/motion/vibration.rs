@@ -1,4 +1,4 @@
-//! Runs whose energies are kept, and a free vibration of finite size.
+//! The energies of a run over time, and a free vibration of finite amplitude.
 
 use crate::run::prepare;
 use crate::specimens::simple::{SIZE, block_shape, free_body, recipe, tissue};
@@ -12,9 +12,9 @@ use mtled::motion::observe::{Continue, Observer, View};
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
 use mtled::problem::{Dimension, Motion, StepControl};
-use mtled_checks::study::shorthand::larger;
+use mtled_checks::measure::larger;
 
-/// Keeps the energies of every few steps.
+/// Records the energies every few steps.
 #[derive(Debug, Default)]
 pub struct Log {
     every: usize,
@@ -40,16 +40,17 @@ impl Observer for Log {
 }
 
 impl Log {
+    /// Records every so many steps.
     pub fn new(every: usize) -> Log {
         Log { every, ..Log::default() }
     }
 
     /// Largest of all energies and works \[J\].
     fn largest(&self) -> f64 {
-        let sizes = self.rows.iter().flat_map(|(_, e)| {
+        let magnitudes = self.rows.iter().flat_map(|(_, e)| {
             [e.kinetic, e.strain, e.external_work.abs(), e.constraint_work.abs(), e.damping_loss]
         });
-        sizes.fold(0.0, larger)
+        magnitudes.fold(0.0, larger)
     }
 
     /// (balance − first balance)/largest energy over time.
@@ -60,10 +61,12 @@ impl Log {
     }
 }
 
-/// What is kept of a run: its log, and the step at which it failed, if it did.
+/// Result of a run.
 #[derive(Debug)]
 pub struct Vibration {
+    /// (time \[s\], change of the energy balance over the largest energy \[–\]).
     pub imbalance: Vec<(f64, f64)>,
+    /// Steps until it ended or failed.
     pub survived: usize,
 }
 
@@ -87,16 +90,16 @@ fn average(samples: &[(f64, f64)]) -> f64 {
     samples.iter().map(|(_, e)| e).sum::<f64>() / samples.len() as f64
 }
 
-/// A free block released from a stretched state, marched for `steps` steps of
-/// `share` of the critical step at rest.
-pub fn vibrate(steps: usize, share: f64, seed: u64) -> anyhow::Result<Vibration> {
+/// A free block released from a stretched state, over `steps` steps of a fraction of the critical
+/// step at rest.
+pub fn vibrate(steps: usize, fraction: f64, seed: u64) -> anyhow::Result<Vibration> {
     let recipe = recipe(SIZE / 4.0, 0.3, seed);
     let mut problem = free_body(Dimension::Three, block_shape(), tissue(0.49)?, recipe);
     problem.motion = Motion::Dynamic { end: 1.0, step: StepControl::default(), damping: 0.0 };
     let model = prepare(&problem)?.model;
     let at_rest = vec![0.0; model.size()];
     let critical = critical_time_step(&model, &at_rest, 0.0, None, &mut Workspace::new(&model));
-    let time_step = share * critical.time_step;
+    let time_step = fraction * critical.time_step;
     let control = StepControl { fixed: Some(time_step), ..StepControl::default() };
     let end = time_step * steps as f64;
     let motion = Motion::Dynamic { end, step: control, damping: 0.0 };

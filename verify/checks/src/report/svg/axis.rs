@@ -19,7 +19,7 @@ pub(super) struct Scale {
 pub(super) struct Tick {
     pub value: f64,
     pub label: String,
-    /// Where labels would overlap, those of the lowest rank are written.
+    /// Where labels would overlap, those of the lowest rank are drawn.
     pub rank: u8,
 }
 
@@ -133,22 +133,22 @@ impl Scale {
 }
 
 impl Ticks {
-    /// Ticks whose labels are written, and where their middles are: none within the room of
-    /// another of lower rank or further left. `room` is a label's middle and half of its
-    /// size in pixels.
-    pub fn written(&self, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Tick, f64)> {
+    /// Ticks whose labels do not overlap one of lower rank or further left, with the
+    /// middles of their labels; `extent` is the middle of a label and half of its size in
+    /// pixels.
+    pub fn labelled(&self, extent: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Tick, f64)> {
         let mut order: Vec<&Tick> = self.major.iter().collect();
         order.sort_by_key(|tick| tick.rank);
-        let mut taken: Vec<(f64, f64)> = Vec::new();
-        let mut written = Vec::new();
+        let mut occupied: Vec<(f64, f64)> = Vec::new();
+        let mut labelled = Vec::new();
         for tick in order {
-            let Some((middle, half)) = room(tick) else { continue };
-            if taken.iter().all(|other| (middle - other.0).abs() > half + other.1) {
-                taken.push((middle, half));
-                written.push((tick, middle));
+            let Some((middle, half)) = extent(tick) else { continue };
+            if occupied.iter().all(|other| (middle - other.0).abs() > half + other.1) {
+                occupied.push((middle, half));
+                labelled.push((tick, middle));
             }
         }
-        written
+        labelled
     }
 }
 

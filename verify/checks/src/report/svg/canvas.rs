@@ -120,7 +120,7 @@ pub(super) fn dot(at: [f64; 2], radius: f64) -> String {
     format!("M{x} {y}a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0 -{d} 0Z")
 }
 
-/// Dashes that tell lines apart without colour.
+/// Dashes that distinguish lines without colour.
 pub(super) fn dash(index: usize) -> &'static str {
     ["", "7 4", "2 4", "9 4 2 4"][index % 4]
 }

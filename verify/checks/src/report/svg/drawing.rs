@@ -37,10 +37,10 @@ pub(super) fn to_svg(drawing: &Drawing) -> String {
     scale_bar(&mut canvas, &view, &drawing.unit, below);
     let shown: Vec<&Layer> = drawing.layers.iter().filter(|l| !l.name.is_empty()).collect();
     let names: Vec<&str> = shown.iter().map(|layer| layer.name.as_str()).collect();
-    let room = WIDTH - 2.0 * MARGIN;
-    let legend = Legend::new(&names, room);
+    let width = WIDTH - 2.0 * MARGIN;
+    let legend = Legend::new(&names, width);
     let corner = [MARGIN, below + 24.0];
-    legend.draw(&mut canvas, &names, corner, room, |canvas, index, from, to| {
+    legend.draw(&mut canvas, &names, corner, width, |canvas, index, from, to| {
         swatch(canvas, shown[index], from, to);
     });
     canvas.finish(WIDTH, corner[1] + legend.height() + 4.0, &drawing.title)
@@ -61,9 +61,9 @@ fn view_of(drawing: &Drawing) -> View {
     if low[0] > high[0] {
         (low, high) = ([0.0; 2], [1.0; 2]);
     }
-    let (room, tallest) = (WIDTH - 2.0 * MARGIN, TALLEST - 2.0 * MARGIN);
+    let (widest, tallest) = (WIDTH - 2.0 * MARGIN, TALLEST - 2.0 * MARGIN);
     let (width, height) = (high[0] - low[0], high[1] - low[1]);
-    let scale = (room / width).min(tallest / height);
+    let scale = (widest / width).min(tallest / height);
     // A single point has no size: it is drawn in the middle of a unit square.
     let scale = if scale.is_finite() && scale > 0.0 { scale } else { 200.0 };
     let left = 0.5 * (WIDTH - width * scale);
@@ -80,7 +80,7 @@ fn shapes(canvas: &mut Canvas, view: &View, layer: &Layer) {
                 commands.extend(placed.iter().map(|&at| dot(at, radius(layer))));
             } else {
                 let closed = layer.closed || layer.style == LayerStyle::Filled;
-                // Closing a line that lost a point would invent an edge.
+                // An interrupted line is not closed.
                 commands += &polyline(&placed, closed && run.len() == line.len());
             }
         }

@@ -35,7 +35,7 @@ impl Legend {
         self.rows as f64 * ROW
     }
 
-    /// Writes the names; `swatch` draws what stands for the entry of a number
+    /// Draws all entries; `swatch` draws the sample of one entry, by its index,
     /// between two points.
     pub fn draw(
         &self,
@@ -49,19 +49,19 @@ impl Legend {
             let left = corner[0] + x;
             let y = corner[1] + (row as f64 + 0.5) * ROW;
             swatch(canvas, index, [left, y], [left + SWATCH, y]);
-            let room = width - x - SWATCH - 6.0;
+            let available = width - x - SWATCH - 6.0;
             let at = [left + SWATCH + 6.0, y + 4.5];
-            canvas.text("", at, Anchor::Start, &cut(name, room));
+            canvas.text("", at, Anchor::Start, &cut(name, available));
         }
     }
 }
 
-/// Shortens a name to the room there is.
-fn cut(name: &str, room: f64) -> String {
-    if text_width(name, 13.0) <= room {
+/// Shortens a name to a width in pixels.
+fn cut(name: &str, width: f64) -> String {
+    if text_width(name, 13.0) <= width {
         return name.to_string();
     }
     let mut short: String = name.to_string();
-    while short.pop().is_some() && text_width(&short, 13.0) + 13.0 > room {}
+    while short.pop().is_some() && text_width(&short, 13.0) + 13.0 > width {}
     short + "…"
 }

@@ -1,5 +1,6 @@
 //! Figures as small SVG texts whose colours follow the page, light or dark.
 
+mod area;
 mod axis;
 mod canvas;
 mod drawing;

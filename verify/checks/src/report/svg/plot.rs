@@ -1,5 +1,6 @@
 //! Curves over two axes.
 
+use super::area::Area;
 use super::axis::{Scale, Tick, Ticks, axis_title};
 use super::canvas::{Anchor, COLOURS, Canvas, dash, marker, polyline, text_width};
 use super::legend::Legend;
@@ -11,22 +12,7 @@ const BOX_HEIGHT: f64 = 245.0;
 const TOP: f64 = 10.0;
 const RIGHT: f64 = 16.0;
 
-/// The frame that the curves are drawn in.
-pub(super) struct Area {
-    pub x: Scale,
-    pub y: Scale,
-    pub left: f64,
-    pub right: f64,
-    pub top: f64,
-    pub bottom: f64,
-}
-
-impl Area {
-    pub fn place(&self, (x, y): (f64, f64)) -> Option<[f64; 2]> {
-        Some([self.x.position(x)?, self.y.position(y)?])
-    }
-}
-
+/// A plot as SVG.
 pub(super) fn to_svg(plot: &Plot) -> String {
     let (area, x_ticks, y_ticks) = area_of(plot);
     let mut canvas = Canvas::default();
@@ -39,17 +25,17 @@ pub(super) fn to_svg(plot: &Plot) -> String {
     }
     let names: Vec<&str> = plot.series.iter().map(|series| series.name.as_str()).collect();
     let named: &[&str] = if names.iter().all(|name| name.is_empty()) { &[] } else { &names };
-    let (left, room) = (14.0, WIDTH - 28.0);
-    let legend = Legend::new(named, room);
+    let (left, width) = (14.0, WIDTH - 28.0);
+    let legend = Legend::new(named, width);
     let corner = [left, area.bottom + 48.0];
-    legend.draw(&mut canvas, named, corner, room, |canvas, index, from, to| {
+    legend.draw(&mut canvas, named, corner, width, |canvas, index, from, to| {
         swatch(canvas, index, &plot.series[index], from, to);
     });
     let label = format!("{}: {} over {}", plot.title, plot.y.label, plot.x.label);
     canvas.finish(WIDTH, corner[1] + legend.height() + 4.0, &label)
 }
 
-/// Scales over all data and error bars, with room for the labels of the ticks.
+/// Scales over all data and error bars, with margins for the labels of the ticks.
 fn area_of(plot: &Plot) -> (Area, Ticks, Ticks) {
     let bottom = TOP + BOX_HEIGHT;
     let shown = |&&(x, y): &&(f64, f64)| {
@@ -89,10 +75,10 @@ fn axes(canvas: &mut Canvas, plot: &Plot, area: &Area, x_ticks: &Ticks, y_ticks:
         canvas.line("minor", [left, y], [left + 6.0, y]);
     }
     let width = |tick: &Tick| 0.5 * text_width(&tick.label, 12.0) + 3.0;
-    for (tick, x) in x_ticks.written(|tick| Some((area.x.position(tick.value)?, width(tick)))) {
+    for (tick, x) in x_ticks.labelled(|tick| Some((area.x.position(tick.value)?, width(tick)))) {
         canvas.text("tick", [x, bottom + 17.0], Anchor::Middle, &tick.label);
     }
-    for (tick, y) in y_ticks.written(|tick| Some((area.y.position(tick.value)?, 7.0))) {
+    for (tick, y) in y_ticks.labelled(|tick| Some((area.y.position(tick.value)?, 7.0))) {
         canvas.text("tick", [left - 6.0, y + 4.0], Anchor::End, &tick.label);
     }
     let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
@@ -107,7 +93,7 @@ fn curve(canvas: &mut Canvas, area: &Area, index: usize, series: &Series) {
     let colour = index % COLOURS;
     error_bars(canvas, area, colour, series);
     if series.style != SeriesStyle::Points {
-        // A lost point interrupts the line: it must not be bridged.
+        // A point that cannot be drawn interrupts the line.
         let mut commands = String::new();
         for run in series.points.split(|&point| area.place(point).is_none()) {
             let run: Vec<[f64; 2]> = run.iter().filter_map(|&point| area.place(point)).collect();

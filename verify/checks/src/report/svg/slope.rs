@@ -1,7 +1,7 @@
 //! Slope triangles on log-log axes.
 
+use super::area::Area;
 use super::canvas::{Anchor, Canvas, polyline};
-use super::plot::Area;
 use crate::study::Plot;
 
 const BASE: f64 = 62.0;
@@ -61,7 +61,7 @@ struct Triangle {
 }
 
 impl Triangle {
-    /// `part` is where along the curve it stands. None where it leaves the frame.
+    /// `part` is its position along the curve \[–\]. None where it leaves the frame.
     fn beside(
         area: &Area,
         curve: &[[f64; 2]],

@@ -1,9 +1,8 @@
 use super::*;
 use crate::report::sample;
-use crate::study::{Axis, Drawing, Layer, LayerStyle, Plot, Series, SeriesStyle};
+use crate::study::{Drawing, Layer, LayerStyle, Plot, Series, SeriesStyle, axis};
 
 fn plot(log: bool, points: Vec<(f64, f64)>) -> Figure {
-    let axis = |label: &str| Axis { label: label.into(), unit: "m".into(), log };
     let styles = [SeriesStyle::Line, SeriesStyle::Points, SeriesStyle::LineAndPoints];
     let series = styles.map(|style| Series {
         name: format!("{style:?}"),
@@ -14,8 +13,8 @@ fn plot(log: bool, points: Vec<(f64, f64)>) -> Figure {
     Figure::Plot(Plot {
         title: "title".into(),
         caption: String::new(),
-        x: axis("x"),
-        y: axis("y"),
+        x: axis("x", "m", log),
+        y: axis("y", "m", log),
         series: series.to_vec(),
         slopes: vec![1.0, -2.0, f64::NAN, 0.0],
     })
@@ -54,9 +53,9 @@ fn assert_sound(svg: &str) {
 }
 
 #[test]
-fn hopeless_data_still_give_a_picture() {
+fn degenerate_data_give_a_picture() {
     let (nan, infinite) = (f64::NAN, f64::INFINITY);
-    let hopeless = [
+    let degenerate = [
         vec![],
         vec![(1.0, 1.0)],
         vec![(0.0, 0.0)],
@@ -68,7 +67,7 @@ fn hopeless_data_still_give_a_picture() {
         vec![(1.0, 5e-324), (2.0, 1e-320)],
         vec![(1e9, 1.0), (1e9 + 1.0, 1.0 + 1e-8)],
     ];
-    for points in hopeless {
+    for points in degenerate {
         let line: Vec<[f64; 2]> = points.iter().map(|&(x, y)| [x, y]).collect();
         assert_sound(&to_svg(&plot(false, points.clone())));
         assert_sound(&to_svg(&plot(true, points)));
@@ -104,7 +103,7 @@ fn a_small_linear_axis_takes_the_power_into_its_title() {
 }
 
 #[test]
-fn a_lost_point_interrupts_the_line() {
+fn a_nan_interrupts_the_line() {
     let points = vec![(0.0, 0.0), (1.0, 1.0), (2.0, f64::NAN), (3.0, 1.0), (4.0, 0.0)];
     let svg = to_svg(&plot(false, points).without_bars());
     let line = svg.lines().find(|line| line.contains("class=\"line s0\"")).unwrap();
@@ -127,7 +126,7 @@ impl Figure {
 }
 
 #[test]
-fn where_labels_are_close_the_power_of_ten_is_written() {
+fn where_labels_are_close_some_are_left_out() {
     let svg = to_svg(&plot(true, vec![(0.65, 1.0), (4.6, 5.0)]));
     let written = |label: &str| svg.contains(&format!(">{label}</text>"));
     assert!(written("1") && written("2") && !written("0.9"), "{svg}");

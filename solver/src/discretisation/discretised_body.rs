@@ -1,0 +1,205 @@
+//! The discretisation of a body: its parts and how they are made.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::discretisation::consistency::{Correction, Layout, connected_bodies, make_consistent};
+use crate::discretisation::mls::{Approximation, PoorSupport};
+use crate::discretisation::nodes::{NodeCloud, node_cloud};
+use crate::discretisation::patches::sort_into_patches;
+use crate::discretisation::quadrature::{Quadrature, quadrature};
+use crate::discretisation::rows::{Evaluated, Requested, Rows};
+use crate::discretisation::surface_rule::SurfaceRule;
+use crate::error::Error;
+use crate::geometry::Extent;
+use crate::problem::{Dimension, EssentialCondition, Gradients, Problem, Recipe};
+use rayon::prelude::*;
+
+/// The body, discretised.
+#[derive(Debug, Clone)]
+pub struct Discretisation {
+    /// Space, or plane strain.
+    pub dimension: Dimension,
+    /// The nodes.
+    pub cloud: NodeCloud,
+    /// The shape functions.
+    pub approximation: Approximation,
+    /// Points and weights of volume integrals.
+    pub quadrature: Quadrature,
+    /// Supports of the quadrature points.
+    pub supports: Rows,
+    /// The boundary; without panels where neither gradients nor loads need it.
+    pub surface: SurfaceRule,
+    /// Quadrature points of patch p: `patches[p]..patches[p + 1]`; a patch
+    /// lies in one region.
+    pub patches: Vec<usize>,
+    /// Result of the correction of the gradients; `None` for plain ones.
+    pub correction: Option<Correction>,
+    /// Quadrature points whose influence radii had to be enlarged.
+    pub enlarged: usize,
+    /// Largest condition number of a moment matrix (local scaled basis).
+    pub worst_condition: f64,
+}
+
+/// Edge of the boundary panels over the smallest nodal spacing \[–\].
+const PANEL: f64 = 0.5;
+
+impl Discretisation {
+    /// Nodes and quadrature points of a problem with their supports. Points
+    /// are sorted by region and patch, neighbours in space close in memory.
+    pub fn new(problem: &Problem) -> Result<Discretisation, Error> {
+        problem.body.validate_body()?;
+        let dimension = problem.dimension;
+        // In a plane the body is its cross-section, whose ends are no boundary.
+        let body = problem.body.section(&dimension)?;
+        let recipe = &problem.recipe;
+        let cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
+        let mut quadrature = quadrature(&body, &problem.regions, &recipe.grid, &dimension)?;
+        let approximation = approximation_of(&cloud, recipe, &dimension);
+        let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
+        let spacing: Vec<f64> = quadrature.positions.par_iter().map(spacing_at).collect();
+        let (thickness, components) = (dimension.thickness(), dimension.components());
+        let patches = sort_into_patches(&mut quadrature, &spacing, thickness, components);
+        let Evaluated { rows: supports, enlarged, worst_condition } =
+            evaluate_all(&approximation, &quadrature.positions)?;
+        check_coverage(&cloud, &supports)?;
+        let surface = surface_of(problem, &cloud, &approximation)?;
+        let mut discretisation = Discretisation {
+            dimension,
+            cloud,
+            approximation,
+            quadrature,
+            supports,
+            surface,
+            patches,
+            correction: None,
+            enlarged,
+            worst_condition,
+        };
+        if let Gradients::Consistent { tolerance } = recipe.gradients {
+            discretisation.make_consistent(tolerance)?;
+        }
+        Ok(discretisation)
+    }
+
+    /// Scales the quadrature weights of each connected body to the volume that its
+    /// boundary encloses (method book, eq. 9.7) and makes Grad φ consistent.
+    fn make_consistent(&mut self, tolerance: f64) -> Result<(), Error> {
+        let (nodes, d) = (self.cloud.positions.len(), self.dimension.components());
+        let bodies = connected_bodies(&self.supports, nodes);
+        let mut areas = self.surface.strengths(nodes, |panel| panel.normal);
+        for body in 0..bodies.iter().max().map_or(0, |&last| last + 1) {
+            let owns = |node: u32| bodies[node as usize] == body;
+            let volume = self.surface.close(&mut areas, d, owns);
+            if volume > 0.0 {
+                self.scale_weights(volume, owns);
+            }
+        }
+        let targets = self.surface.scatter(nodes, &areas);
+        self.surface.store_areas(areas);
+        let layout = Layout {
+            nodes: &self.cloud.positions,
+            spacing: &self.cloud.spacing,
+            points: &self.quadrature.positions,
+            weights: &self.quadrature.weights,
+            components: d,
+        };
+        let correction = make_consistent(&mut self.supports, &layout, &targets, &bodies, tolerance);
+        self.correction = Some(correction.checked()?);
+        Ok(())
+    }
+
+    fn scale_weights(&mut self, volume: f64, owns: impl Fn(u32) -> bool) {
+        let supports = &self.supports;
+        let own: Vec<usize> =
+            (0..supports.len()).filter(|&q| owns(supports.nodes[supports.starts[q]])).collect();
+        let weights = &mut self.quadrature.weights;
+        let sum: f64 = own.iter().map(|&q| weights[q]).sum();
+        own.iter().for_each(|&q| weights[q] *= volume / sum);
+    }
+
+    /// Rows of φ and Grad φ at any points of the body \[m\].
+    pub fn rows_at(&self, positions: &[Vector3]) -> Result<Rows, Error> {
+        Rows::at(&self.approximation, positions, Requested::ValuesAndGradients)
+            .map(|evaluated| evaluated.rows)
+            .map_err(|(point, poor)| outside(positions[point], &poor))
+    }
+
+    /// Mean number of support nodes per quadrature point.
+    pub fn mean_support(&self) -> f64 {
+        self.supports.nodes.len() as f64 / self.supports.len() as f64
+    }
+}
+
+/// Shape functions with influence radii of dilation × spacing (method book, eq. 5.3).
+fn approximation_of(cloud: &NodeCloud, recipe: &Recipe, dimension: &Dimension) -> Approximation {
+    let radius = cloud.spacing.iter().map(|h| recipe.dilation * h).collect();
+    let (basis, weight_function) = (recipe.basis, recipe.weight_function);
+    Approximation::new(cloud.positions.clone(), radius, basis, weight_function, dimension)
+}
+
+/// The surface rule, if consistent gradients or tractions need it.
+fn surface_of(
+    problem: &Problem,
+    cloud: &NodeCloud,
+    approximation: &Approximation,
+) -> Result<SurfaceRule, Error> {
+    if problem.recipe.gradients == Gradients::Plain && problem.loads.tractions.is_empty() {
+        return Ok(SurfaceRule::default());
+    }
+    let dimension = &problem.dimension;
+    let panels = problem.body.boundary_panels(PANEL * cloud.smallest_spacing(), dimension)?;
+    let prescribed = prescribed_nodes(problem, cloud);
+    SurfaceRule::new(panels, cloud, approximation, &prescribed, dimension.components())
+        .map_err(|(position, poor)| outside(position, &poor))
+}
+
+/// Which nodes some condition selects.
+fn prescribed_nodes(problem: &Problem, cloud: &NodeCloud) -> Vec<bool> {
+    let selected = |node| problem.conditions.iter().any(|c| selects(c, cloud, node));
+    (0..cloud.positions.len()).map(selected).collect()
+}
+
+/// Whether a condition selects a node.
+pub fn selects(condition: &EssentialCondition, cloud: &NodeCloud, node: usize) -> bool {
+    (condition.extent == Extent::Volume || cloud.on_boundary[node])
+        && condition.part.contains(&cloud.positions[node])
+}
+
+fn outside(position: Vector3, poor: &PoorSupport) -> Error {
+    let (size, condition) = (poor.support_size, poor.condition);
+    let reason = format!("{size} nodes in its support, condition {condition:.1e}");
+    Error::ProbeOutside { position, reason }
+}
+
+fn evaluate_all(approximation: &Approximation, positions: &[Vector3]) -> Result<Evaluated, Error> {
+    let locate = |(point, poor): (usize, PoorSupport)| match poor.support_size
+        < approximation.smallest_support()
+    {
+        true => Error::SmallSupport {
+            point,
+            position: positions[point],
+            support_size: poor.support_size,
+            smallest: approximation.smallest_support(),
+        },
+        false => Error::SingularMomentMatrix {
+            point,
+            position: positions[point],
+            support_size: poor.support_size,
+            condition: poor.condition,
+            largest: approximation.largest_condition(),
+        },
+    };
+    Rows::at(approximation, positions, Requested::ValuesAndGradients).map_err(locate)
+}
+
+/// Every node must be covered. Horton 2007, section 2.3, also requires that each
+/// boundary node shares a support with an interior one; a body one spacing thick has
+/// no interior nodes and is sound where its moment matrices are.
+fn check_coverage(cloud: &NodeCloud, supports: &Rows) -> Result<(), Error> {
+    let mut covered = vec![false; cloud.positions.len()];
+    supports.nodes.iter().for_each(|&node| covered[node as usize] = true);
+    match covered.iter().position(|covered| !covered) {
+        Some(node) => Err(Error::UncoveredNode { node, position: cloud.positions[node] }),
+        None => Ok(()),
+    }
+}

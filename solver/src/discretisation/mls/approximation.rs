@@ -1,0 +1,252 @@
+//! Moving least squares on a cloud: φ and Grad φ at a point.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::discretisation::mls::inverse::{inverse, norm_1};
+use crate::discretisation::mls::regularised::{linear_part, regularise, restore_linear};
+use crate::discretisation::mls::support::{
+    PoorSupport, Scratch, Support, Weighed, dimension, monomials,
+};
+use crate::discretisation::neighbours::Neighbours;
+use crate::problem::{Basis, Dimension, WeightFunction};
+use nalgebra::{SMatrix, SVector};
+
+/// Nodes with their influence domains, ready to be evaluated anywhere.
+#[derive(Debug, Clone)]
+pub struct Approximation {
+    /// Reference positions \[node\] \[m\].
+    pub nodes: Vec<Vector3>,
+    /// \[node\] \[m\]
+    pub influence_radius: Vec<f64>,
+    /// Polynomial basis.
+    pub basis: Basis,
+    /// Weight function of all nodes.
+    pub weight_function: WeightFunction,
+    components: usize,
+    smallest_radius: f64,
+    largest_radius: f64,
+    neighbours: Neighbours,
+}
+
+/// Influence radii are enlarged at a point by at most this factor.
+pub const LARGEST_ENLARGEMENT: f64 = 2.0;
+
+impl Approximation {
+    /// From reference positions \[node\] \[m\] and influence radii \[node\] \[m\].
+    pub fn new(
+        nodes: Vec<Vector3>,
+        influence_radius: Vec<f64>,
+        basis: Basis,
+        weight_function: WeightFunction,
+        dimension: &Dimension,
+    ) -> Approximation {
+        let smallest_radius = influence_radius.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        let largest_radius = influence_radius.iter().fold(0.0f64, |a, &b| a.max(b));
+        let mean = influence_radius.iter().sum::<f64>() / influence_radius.len() as f64;
+        let neighbours = Neighbours::new(&nodes, 0.6 * mean);
+        let components = dimension.components();
+        Approximation {
+            nodes,
+            influence_radius,
+            basis,
+            weight_function,
+            components,
+            smallest_radius,
+            largest_radius,
+            neighbours,
+        }
+    }
+
+    /// Number of monomials in the basis.
+    pub fn basis_size(&self) -> usize {
+        match (self.basis, self.components) {
+            (Basis::Linear, d) => d + 1,
+            (Basis::Quadratic | Basis::ModifiedQuadratic { .. }, 2) => 6,
+            (Basis::Quadratic | Basis::ModifiedQuadratic { .. }, _) => 10,
+        }
+    }
+
+    /// Fewest nodes that a support may have (method book, eq. 6.6): twice the
+    /// linear basis where the rest is absent or regularised, one and a half
+    /// times the basis where it is quadratic.
+    pub fn smallest_support(&self) -> usize {
+        match self.basis {
+            Basis::Linear | Basis::ModifiedQuadratic { .. } => 2 * (self.components + 1),
+            Basis::Quadratic => self.basis_size() * 3 / 2,
+        }
+    }
+
+    /// Largest accepted condition number of the moment matrix; of its linear
+    /// part where the rest is regularised.
+    pub fn largest_condition(&self) -> f64 {
+        match self.basis {
+            Basis::Linear | Basis::ModifiedQuadratic { .. } => 1e4,
+            Basis::Quadratic => 1e6,
+        }
+    }
+
+    /// Mean influence radius of the nodes that cover X \[m\]; that of all nodes
+    /// where none does.
+    pub fn mean_radius(&self, X: &Vector3) -> f64 {
+        if self.smallest_radius == self.largest_radius {
+            return self.largest_radius;
+        }
+        let (mut sum, mut count) = (0.0, 0.0);
+        self.neighbours.for_each_within(X, self.largest_radius, |node, offset| {
+            let radius = self.influence_radius[node];
+            if offset.norm_squared() < radius * radius {
+                sum += radius;
+                count += 1.0;
+            }
+        });
+        match count > 0.0 {
+            true => sum / count,
+            false => self.influence_radius.iter().sum::<f64>() / self.influence_radius.len() as f64,
+        }
+    }
+
+    /// φ_a(X) = w_a pᵀ(X_a) A⁻¹(X) p(X) and its full derivatives (Lancaster,
+    /// Salkauskas 1981; Belytschko, Lu, Gu 1994, eqs. 9–18; method book,
+    /// eqs. 6.2 and 6.3). Where the support is poor the radii are enlarged in
+    /// steps of 10 %.
+    pub fn evaluate(&self, X: &Vector3) -> Result<Support, PoorSupport> {
+        let mut support = Support::default();
+        self.evaluate_into(X, &mut Scratch::default(), &mut support)?;
+        Ok(support)
+    }
+
+    /// As [`Approximation::evaluate`] into memory that is reused; after an error
+    /// the support is empty.
+    pub(crate) fn evaluate_into(
+        &self,
+        X: &Vector3,
+        scratch: &mut Scratch,
+        support: &mut Support,
+    ) -> Result<(), PoorSupport> {
+        let mut enlargement = 1.0;
+        loop {
+            support.clear(enlargement);
+            let result = match self.basis_size() {
+                3 => self.evaluate_with::<3>(X, enlargement, scratch, support),
+                4 => self.evaluate_with::<4>(X, enlargement, scratch, support),
+                6 => self.evaluate_with::<6>(X, enlargement, scratch, support),
+                _ => self.evaluate_with::<10>(X, enlargement, scratch, support),
+            };
+            enlargement *= 1.1;
+            if result.is_ok() || enlargement > LARGEST_ENLARGEMENT {
+                return result;
+            }
+        }
+    }
+
+    fn evaluate_with<const M: usize>(
+        &self,
+        X: &Vector3,
+        enlargement: f64,
+        scratch: &mut Scratch,
+        support: &mut Support,
+    ) -> Result<(), PoorSupport> {
+        let (s, total) = self.weigh(X, enlargement, scratch);
+        let near = &scratch.near[..];
+        let n = near.len();
+        if n < self.smallest_support() {
+            return Err(PoorSupport { support_size: n, condition: f64::INFINITY });
+        }
+        let mut A = SMatrix::<f64, M, M>::zeros();
+        for a in near {
+            let p = monomials::<M>(&a.scaled);
+            A.ger(a.weight, &p, &p, 1.0);
+        }
+        let poor = |condition| PoorSupport { support_size: n, condition };
+        let penalty = regularise(self.basis, self.components, &mut A, near, total, s);
+        let inverse = inverse(&A).ok_or(poor(f64::INFINITY))?;
+        let linear = penalty.and_then(|_| linear_part(&A, self.components + 1));
+        let condition = match (penalty, &linear) {
+            (None, _) => norm_1(&A) * norm_1(&inverse),
+            (Some(_), Some((_, condition))) => *condition,
+            (Some(_), None) => f64::INFINITY,
+        };
+        if condition.is_nan() || condition > self.largest_condition() {
+            return Err(poor(condition));
+        }
+        support.condition = condition;
+        // A regularised matrix may be ill conditioned: one step of iterative
+        // refinement reduces the residual.
+        let solve = |right: SVector<f64, M>| {
+            let x = inverse * right;
+            if penalty.is_some() { x + inverse * (right - A * x) } else { x }
+        };
+        let mut right = SVector::<f64, M>::zeros();
+        right[0] = 1.0;
+        let c = if penalty.is_some() { solve(right) } else { inverse.column(0).into_owned() };
+        let slopes = slope_right_sides(near, penalty, &c, s).map(solve);
+        support.fill(near, &c, &slopes);
+        if let Some((inverse, _)) = linear {
+            restore_linear::<M>(self.components, support, near, &inverse, s);
+        }
+        Ok(())
+    }
+
+    /// Writes the nodes that cover X and their weights to `scratch`, ascending.
+    /// Returns the root of their weighted mean squared distance s \[m\], by which
+    /// offsets are scaled (method book, eq. 6.1), and Σw.
+    fn weigh(&self, X: &Vector3, enlargement: f64, scratch: &mut Scratch) -> (f64, f64) {
+        let Scratch { found, near } = scratch;
+        found.clear();
+        near.clear();
+        self.neighbours.for_each_within(X, self.largest_radius * enlargement, |node, offset| {
+            let radius = self.influence_radius[node] * enlargement;
+            if offset.norm_squared() < radius * radius {
+                found.push(node as u32);
+            }
+        });
+        found.sort_unstable();
+        let (mut total, mut moment) = (0.0, 0.0);
+        for &node in found.iter() {
+            let offset = self.nodes[node as usize] - X;
+            let radius = self.influence_radius[node as usize] * enlargement;
+            let distance_squared = offset.norm_squared();
+            let distance = distance_squared.sqrt();
+            let (weight, slope) = self.weight_function.value_and_derivative(distance / radius);
+            let gradient = match distance > 1e-12 * radius {
+                true => offset * (-slope / (radius * distance)),
+                false => Vector3::zeros(),
+            };
+            total += weight;
+            moment += weight * distance_squared;
+            near.push(Weighed { node, offset, scaled: offset, weight, gradient });
+        }
+        let s = (moment / total).sqrt();
+        near.iter_mut().for_each(|a| a.scaled = a.offset / s);
+        (s, total)
+    }
+}
+
+/// e_{k+1}/s − A,_k c: with A⁻¹ they give the derivatives of the
+/// coefficients A⁻¹ p(X) along the directions k.
+fn slope_right_sides<const M: usize>(
+    near: &[Weighed],
+    penalty: Option<Vector3>,
+    c: &SVector<f64, M>,
+    s: f64,
+) -> [SVector<f64, M>; 3] {
+    let mut right = [SVector::<f64, M>::zeros(); 3];
+    for (k, column) in right.iter_mut().enumerate().take(dimension(M)) {
+        column[k + 1] = 1.0 / s;
+    }
+    for a in near {
+        let p = monomials::<M>(&a.scaled);
+        let value = c.dot(&p);
+        for (k, column) in right.iter_mut().enumerate().take(dimension(M)) {
+            column.axpy(-a.gradient[k] * value, &p, 1.0);
+        }
+    }
+    if let Some(slope) = penalty {
+        for (k, column) in right.iter_mut().enumerate().take(dimension(M)) {
+            for i in dimension(M) + 1..M {
+                column[i] -= slope[k] * c[i];
+            }
+        }
+    }
+    right
+}

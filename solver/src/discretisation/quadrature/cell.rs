@@ -1,0 +1,40 @@
+//! A cell of the background grid.
+
+use crate::algebra::tensor::Vector3;
+
+/// A square or cube of the grid.
+#[derive(Clone, Copy)]
+pub(super) struct Cell {
+    pub centre: Vector3,
+    pub edge: f64,
+}
+
+impl Cell {
+    /// n parts per direction.
+    pub fn divide(self, n: usize, components: usize) -> impl Iterator<Item = Cell> {
+        let edge = self.edge / n as f64;
+        let at = move |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) * edge;
+        let (layers, solid) = if components == 3 { (n, 1.0) } else { (1, 0.0) };
+        (0..n * n * layers).map(move |part| {
+            let shift = Vector3::new(at(part % n), at(part / n % n), solid * at(part / (n * n)));
+            Cell { centre: self.centre + shift, edge }
+        })
+    }
+
+    /// Halves along each direction.
+    pub fn children(self, components: usize) -> impl Iterator<Item = Cell> {
+        self.divide(2, components)
+    }
+
+    /// Centre and corners, the corners moved inwards slightly so that neighbours
+    /// along a shared face do not claim each other's region.
+    pub fn samples(self, components: usize) -> impl Iterator<Item = Vector3> {
+        let corner = Cell { centre: self.centre, edge: 2.0 * self.edge * (1.0 - 1e-6) };
+        corner.children(components).map(|child| child.centre).chain([self.centre])
+    }
+
+    /// \[m\]
+    pub fn half_diagonal(&self, components: usize) -> f64 {
+        0.5 * self.edge * (components as f64).sqrt()
+    }
+}

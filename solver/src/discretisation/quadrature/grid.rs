@@ -1,0 +1,295 @@
+//! From the background grid to quadrature points.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::discretisation::quadrature::cell::Cell;
+use crate::discretisation::quadrature::cut::cut;
+use crate::discretisation::quadrature::gauss::gauss_legendre;
+use crate::error::Error;
+use crate::geometry::Shape;
+use crate::problem::{BackgroundGrid, Dimension, InsideRule, Region};
+use rayon::prelude::*;
+
+/// Quadrature points of the whole body.
+#[derive(Debug, Clone, Default)]
+pub struct Quadrature {
+    /// \[point\] \[m\]
+    pub positions: Vec<Vector3>,
+    /// `quadrature_weight`, a reference volume \[point\] \[m³\].
+    pub weights: Vec<f64>,
+    /// Index of the region that each point belongs to \[point\].
+    pub regions: Vec<u16>,
+    /// Cells that gave points.
+    pub cells: usize,
+    /// Cells cut by the boundary or by a border between regions.
+    pub cut_cells: usize,
+}
+
+/// Halvings below a sub-cell when its inside volume is measured.
+const FRACTION_DEPTH: usize = 4;
+const FRACTION_DEPTH_PLANE: usize = 5;
+/// The boundary is flat in a cell where the signed distance differs by less than this
+/// fraction of its edge from that of a plane \[–\].
+const FLAT: f64 = 1e-9;
+/// Parts of a cell smaller than this fraction of it are dropped \[–\].
+const SMALLEST_FRACTION: f64 = 1e-4;
+
+struct PointCollector<'a> {
+    body: &'a Shape,
+    regions: &'a [Region],
+    grid: &'a BackgroundGrid,
+    /// 2 or 3.
+    components: usize,
+    /// Volume of a cell is edge^components × thickness.
+    thickness: f64,
+    out: Quadrature,
+}
+
+/// Lays the grid over the body and collects its points, by the centre rule (Horton
+/// 2007, section 2.3) or by volume fractions, with a point at the centroid of the
+/// inside part of each region in a cell (method book, eq. 7.2).
+pub fn quadrature(
+    body: &Shape,
+    regions: &[Region],
+    grid: &BackgroundGrid,
+    dimension: &Dimension,
+) -> Result<Quadrature, Error> {
+    let (min, max) = body.bounding_box().ok_or(Error::NoQuadraturePoints)?;
+    let (thickness, z) = match *dimension {
+        Dimension::Three => (1.0, 0.0),
+        Dimension::PlaneStrain { thickness, z } => (thickness, z),
+    };
+    let components = dimension.components();
+    let counts = [0, 1, 2].map(|k| match k < components {
+        // A grid that fits exactly must not get another layer from round-off.
+        true => ((max[k] - min[k]) / grid.cell - 1e-9).ceil().max(1.0) as usize,
+        false => 1,
+    });
+    let middle = (min + max) * 0.5;
+    let row_of_cells = |row: usize| {
+        let mut collector = PointCollector {
+            body,
+            regions,
+            grid,
+            components,
+            thickness,
+            out: Quadrature::default(),
+        };
+        for i in 0..counts[0] {
+            let mut centre = middle;
+            for (axis, index) in [i, row % counts[1], row / counts[1]].into_iter().enumerate() {
+                centre[axis] += grid.cell * (index as f64 + 0.5 - 0.5 * counts[axis] as f64);
+            }
+            if components == 2 {
+                centre.z = z;
+            }
+            collector.visit(Cell { centre, edge: grid.cell })?;
+        }
+        Ok(collector.out)
+    };
+    let rows: Vec<Result<Quadrature, Error>> =
+        (0..counts[1] * counts[2]).into_par_iter().map(row_of_cells).collect();
+    let all = join(rows.into_iter().collect::<Result<_, _>>()?);
+    if all.positions.is_empty() { Err(Error::NoQuadraturePoints) } else { Ok(all) }
+}
+
+/// All parts in their order.
+fn join(parts: Vec<Quadrature>) -> Quadrature {
+    let mut all = Quadrature::default();
+    for part in parts {
+        all.positions.extend(part.positions);
+        all.weights.extend(part.weights);
+        all.regions.extend(part.regions);
+        all.cells += part.cells;
+        all.cut_cells += part.cut_cells;
+    }
+    all
+}
+
+impl PointCollector<'_> {
+    /// Halves a cell where smaller ones are requested, drops it outside.
+    fn visit(&mut self, cell: Cell) -> Result<(), Error> {
+        let distance = self.body.signed_distance(&cell.centre);
+        let reach = cell.half_diagonal(self.components);
+        if distance > reach {
+            return Ok(());
+        }
+        let meets_boundary = distance > -reach;
+        let too_large = |limit: f64| cell.edge > limit * (1.0 + 1e-9);
+        let split = (meets_boundary && self.grid.boundary_cell.is_some_and(too_large))
+            || self.grid.refinements.iter().any(|refinement| {
+                too_large(refinement.size)
+                    && cell.samples(self.components).any(|X| refinement.part.contains(&X))
+            });
+        if split {
+            for child in cell.children(self.components) {
+                self.visit(child)?;
+            }
+            return Ok(());
+        }
+        self.leaf(cell, meets_boundary)
+    }
+
+    fn leaf(&mut self, cell: Cell, meets_boundary: bool) -> Result<(), Error> {
+        let mixed = self.regions.len() > 1 && self.is_mixed(&cell);
+        let before = self.out.positions.len();
+        match self.grid.inside {
+            InsideRule::Centre => {
+                if self.body.signed_distance(&cell.centre) > 0.0 {
+                    return Ok(());
+                }
+                self.whole(&cell)?;
+            }
+            InsideRule::VolumeFraction if meets_boundary || mixed => self.parts(&cell)?,
+            InsideRule::VolumeFraction => self.whole(&cell)?,
+        }
+        if self.out.positions.len() > before {
+            self.out.cells += 1;
+            self.out.cut_cells += (meets_boundary || mixed) as usize;
+        }
+        Ok(())
+    }
+
+    /// Gauss–Legendre points of a whole cell.
+    fn whole(&mut self, cell: &Cell) -> Result<(), Error> {
+        let rule = gauss_legendre(self.grid.gauss_points);
+        let layers: &[(f64, f64)] = if self.components == 3 { &rule } else { &[(0.0, 1.0)] };
+        for &(z, wz) in layers {
+            for &(y, wy) in &rule {
+                for &(x, wx) in &rule {
+                    let X = cell.centre + Vector3::new(x, y, z) * cell.edge;
+                    let weight = self.volume(cell) * wx * wy * wz;
+                    self.push(X, weight, self.region_at(&X)?);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// One point per sub-box and region at the centroid of what lies inside.
+    fn parts(&mut self, cell: &Cell) -> Result<(), Error> {
+        let depth = if self.components == 2 { FRACTION_DEPTH_PLANE } else { FRACTION_DEPTH };
+        for part in cell.divide(self.grid.gauss_points, self.components) {
+            let mut moments = vec![(0.0, Vector3::zeros()); self.regions.len()];
+            self.measure(&part, depth, &mut moments)?;
+            for (region, (volume, moment)) in moments.into_iter().enumerate() {
+                if volume > SMALLEST_FRACTION * self.volume(&part) {
+                    self.push(moment / volume, volume, region as u16);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the inside volume of a cell and its first moment, by region: halves it
+    /// where the boundary is not flat; the smallest cells are cut as if it were.
+    fn measure(
+        &self,
+        cell: &Cell,
+        depth: usize,
+        moments: &mut [(f64, Vector3)],
+    ) -> Result<(), Error> {
+        let distance = self.body.signed_distance(&cell.centre);
+        let reach = cell.half_diagonal(self.components);
+        if distance > reach {
+            return Ok(());
+        }
+        let is_cut = distance > -reach;
+        let mixed = depth > 0 && self.regions.len() > 1 && self.is_mixed(cell);
+        let one_plane = match (is_cut, mixed) {
+            (false, false) => Some((1.0, Vector3::zeros())),
+            (true, false) if depth > 0 => self.flat_cut(cell, distance),
+            _ => None,
+        };
+        let (fraction, shift) = match one_plane {
+            Some(part) => part,
+            None if depth > 0 => {
+                return cell
+                    .children(self.components)
+                    .try_for_each(|child| self.measure(&child, depth - 1, moments));
+            }
+            None => self.axis_cut(cell, distance),
+        };
+        if fraction > 0.0 {
+            let volume = fraction * self.volume(cell);
+            let centroid = cell.centre + shift;
+            let region = self.region_at(&centroid)? as usize;
+            moments[region].0 += volume;
+            moments[region].1 += centroid * volume;
+        }
+        Ok(())
+    }
+
+    /// Inside fraction of a cell and the shift of its centroid where the boundary is
+    /// flat, judged by the signed distance at centre and corners (method book,
+    /// eq. 7.3).
+    fn flat_cut(&self, cell: &Cell, distance: f64) -> Option<(f64, Vector3)> {
+        let near = |value: f64| value.abs() <= FLAT * cell.edge;
+        let half = 0.5 * cell.edge;
+        let ends: &[[f64; 3]] = match self.components {
+            2 => &[[1.0, 1.0, 0.0], [1.0, -1.0, 0.0]],
+            _ => &[[1.0, 1.0, 1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0], [1.0, -1.0, -1.0]],
+        };
+        let mut rises = [0.0; 4];
+        let mut slope = Vector3::zeros();
+        for (rise, end) in rises.iter_mut().zip(ends) {
+            let end = Vector3::from(*end);
+            let ahead = self.body.signed_distance(&(cell.centre + half * end));
+            let behind = self.body.signed_distance(&(cell.centre - half * end));
+            if !near(ahead + behind - 2.0 * distance) {
+                return None;
+            }
+            *rise = 0.5 * (ahead - behind);
+            slope += end * *rise;
+        }
+        // Half the change of the distance along each edge.
+        slope /= ends.len() as f64;
+        let straight =
+            rises.iter().zip(ends).all(|(rise, end)| near(slope.dot(&Vector3::from(*end)) - rise));
+        straight.then(|| {
+            let (fraction, shift) = cut(distance, &(2.0 * slope));
+            (fraction, shift * cell.edge)
+        })
+    }
+
+    /// Inside fraction of a small cell and the shift of its centroid, as if
+    /// the boundary were a plane whose normal is the nearest axis: exact for
+    /// boundaries along the grid, second order in the cell for others (method
+    /// book, eq. 7.4).
+    fn axis_cut(&self, cell: &Cell, distance: f64) -> (f64, Vector3) {
+        let fraction = (0.5 - distance / cell.edge).clamp(0.0, 1.0);
+        if fraction == 0.0 || fraction == 1.0 {
+            return (fraction, Vector3::zeros());
+        }
+        let mut normal = self.body.gradient(&cell.centre);
+        if self.components == 2 {
+            normal.z = 0.0;
+        }
+        let axis = normal.iamax();
+        let mut shift = Vector3::zeros();
+        shift[axis] = -normal[axis].signum() * 0.5 * (1.0 - fraction) * cell.edge;
+        (fraction, shift)
+    }
+
+    fn push(&mut self, X: Vector3, weight: f64, region: u16) {
+        self.out.positions.push(X);
+        self.out.weights.push(weight);
+        self.out.regions.push(region);
+    }
+
+    fn region_at(&self, X: &Vector3) -> Result<u16, Error> {
+        let found = self.regions.iter().position(|region| region.part.contains(X));
+        found.map(|index| index as u16).ok_or(Error::PointWithoutRegion { position: *X })
+    }
+
+    /// Whether the sample points of a cell belong to more than one region.
+    fn is_mixed(&self, cell: &Cell) -> bool {
+        let owner = |X: &Vector3| self.regions.iter().position(|region| region.part.contains(X));
+        let at_centre = owner(&cell.centre);
+        cell.samples(self.components).any(|X| owner(&X) != at_centre)
+    }
+
+    fn volume(&self, cell: &Cell) -> f64 {
+        cell.edge.powi(self.components as i32) * self.thickness
+    }
+}

@@ -1,0 +1,6 @@
+//! Quadrature over the boundary (method book, section 8).
+
+mod panel_fractions;
+mod rule;
+
+pub use rule::SurfaceRule;

@@ -1,0 +1,231 @@
+//! Candidates for boundary nodes of single shapes: corners, evenly divided
+//! edges, and patterns on faces.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::geometry::boundary::marching::contours;
+use crate::geometry::boundary::target_spacing::{TargetSpacing, lattice_cells};
+use crate::geometry::error::GeometryError;
+use crate::geometry::polygon::{anticlockwise, polygon_distance};
+use crate::geometry::primitives::perpendicular;
+use crate::geometry::shape::Shape;
+use crate::geometry::surface::Surface;
+use std::f64::consts::TAU;
+
+/// Candidates \[m\] in the order in which they are chosen.
+#[derive(Default)]
+pub(super) struct Features {
+    pub corners: Vec<Vector3>,
+    pub edges: Vec<Vector3>,
+    pub faces: Vec<Vector3>,
+}
+
+/// Of a section at height z.
+pub(super) fn of_section(
+    shape: &Shape,
+    z: f64,
+    target: &TargetSpacing,
+) -> Result<Features, GeometryError> {
+    let mut features = Features::default();
+    let at = |p: &[f64; 2]| Vector3::new(p[0], p[1], z);
+    match shape {
+        Shape::Polygon { points, .. } => {
+            features.corners = points.iter().map(at).collect();
+            for (n, a) in features.corners.iter().enumerate() {
+                let b = features.corners[(n + 1) % points.len()];
+                features.faces.extend(divide(&[*a, b], target, false));
+            }
+        }
+        Shape::Ellipsoid { centre, radii } => {
+            let fine =
+                (TAU * radii.x.max(radii.y) / (0.1 * target.smallest)).clamp(256.0, 1e6) as usize;
+            let curve: Vec<Vector3> = (0..fine)
+                .map(|n| {
+                    let (sin, cos) = (n as f64 * TAU / fine as f64).sin_cos();
+                    Vector3::new(centre.x + radii.x * cos, centre.y + radii.y * sin, z)
+                })
+                .collect();
+            features.faces = divide(&curve, target, true);
+        }
+        Shape::Labels(_) | Shape::Function(_) => {
+            let voxel = if let Shape::Labels(field) = shape { field.voxel() } else { f64::MAX };
+            for curve in contours(shape, z, voxel.min(0.5 * target.smallest))? {
+                let curve: Vec<Vector3> = curve.iter().map(at).collect();
+                features.faces.extend(divide(&curve, target, true));
+            }
+        }
+        _ => {}
+    }
+    Ok(features)
+}
+
+/// Of a solid in space. Faces get a pattern only if the spacing is uniform.
+pub(super) fn of_solid(shape: &Shape, target: &TargetSpacing) -> Features {
+    let mut features = Features::default();
+    match shape {
+        Shape::Box { min, max } => {
+            let square = [[min.x, min.y], [max.x, min.y], [max.x, max.y], [min.x, max.y]];
+            prism(&square, (min.z, max.z), target, &mut features);
+        }
+        Shape::Polygon { points, z } => prism(points, *z, target, &mut features),
+        Shape::Cylinder { base, axis, radius, height } => {
+            cylinder(base, axis, *radius, *height, target, &mut features);
+        }
+        Shape::Sphere { centre, radius } if target.uniform() => {
+            features.faces = fibonacci(centre, *radius, target.smallest);
+        }
+        Shape::Surface(surface) => sharp(surface, target, &mut features),
+        _ => {}
+    }
+    features
+}
+
+/// Points that divide a polyline evenly in units of the local spacing: all
+/// of a closed one, those between the ends of an open one.
+fn divide(curve: &[Vector3], target: &TargetSpacing, closed: bool) -> Vec<Vector3> {
+    let mut points = vec![curve[0]];
+    let mut sums = vec![0.0];
+    let mut sum = 0.0;
+    let last = if closed { curve.len() } else { curve.len() - 1 };
+    for n in 0..last {
+        let (a, b) = (curve[n], curve[(n + 1) % curve.len()]);
+        let parts = if target.uniform() {
+            1
+        } else {
+            ((b - a).norm() / (0.2 * target.smallest)).ceil().clamp(1.0, 1e5) as usize
+        };
+        for part in 0..parts {
+            let at = |s: f64| a + s / parts as f64 * (b - a);
+            let size = (target.at)(&at(part as f64 + 0.5));
+            sum += (b - a).norm() / (parts as f64 * size);
+            points.push(at(part as f64 + 1.0));
+            sums.push(sum);
+        }
+    }
+    let count = sum.round().max(if closed { 3.0 } else { 1.0 }) as usize;
+    let mut segment = 0;
+    (usize::from(!closed)..count)
+        .map(|n| {
+            let goal = sum * n as f64 / count as f64;
+            while sums[segment + 1] < goal && segment + 2 < sums.len() {
+                segment += 1;
+            }
+            let width = sums[segment + 1] - sums[segment];
+            let t = if width > 0.0 { (goal - sums[segment]) / width } else { 0.0 };
+            points[segment] + t * (points[segment + 1] - points[segment])
+        })
+        .collect()
+}
+
+fn prism(points: &[[f64; 2]], z: (f64, f64), target: &TargetSpacing, features: &mut Features) {
+    let points = anticlockwise(points);
+    let at = |p: [f64; 2], z: f64| Vector3::new(p[0], p[1], z);
+    for (n, &a) in points.iter().enumerate() {
+        let b = points[(n + 1) % points.len()];
+        features.corners.extend([at(a, z.0), at(a, z.1)]);
+        features.edges.extend(divide(&[at(a, z.0), at(a, z.1)], target, false));
+        for level in [z.0, z.1] {
+            features.edges.extend(divide(&[at(a, level), at(b, level)], target, false));
+        }
+        if target.uniform() {
+            let rise = divide(&[at(a, z.0), at(a, z.1)], target, false);
+            for foot in divide(&[at(a, z.0), at(b, z.0)], target, false) {
+                features.faces.extend(rise.iter().map(|r| Vector3::new(foot.x, foot.y, r.z)));
+            }
+        }
+    }
+    if target.uniform() {
+        caps(&points, z, target.smallest, features);
+    }
+}
+
+/// Lattice points inside a polygon, on both of its ends.
+fn caps(points: &[[f64; 2]], z: (f64, f64), spacing: f64, features: &mut Features) {
+    let bound = |axis: usize| {
+        let along = points.iter().map(move |p| p[axis]);
+        (along.clone().fold(f64::INFINITY, f64::min), along.fold(f64::NEG_INFINITY, f64::max))
+    };
+    let ((x0, x1), (y0, y1)) = (bound(0), bound(1));
+    let (nx, ny) = (lattice_cells(x1 - x0, spacing), lattice_cells(y1 - y0, spacing));
+    for j in 1..ny {
+        for i in 1..nx {
+            let x = x0 + (x1 - x0) * i as f64 / nx as f64;
+            let y = y0 + (y1 - y0) * j as f64 / ny as f64;
+            if polygon_distance(points, x, y) < -0.5 * spacing {
+                features.faces.extend([Vector3::new(x, y, z.0), Vector3::new(x, y, z.1)]);
+            }
+        }
+    }
+}
+
+fn cylinder(
+    base: &Vector3,
+    axis: &Vector3,
+    radius: f64,
+    height: f64,
+    target: &TargetSpacing,
+    features: &mut Features,
+) {
+    let (u, v) = perpendicular(axis);
+    let ring = |r: f64, s: f64, count: usize| -> Vec<Vector3> {
+        let angles = (0..count).map(|n| n as f64 * TAU / count as f64);
+        angles.map(|a| base + s * axis + r * (a.cos() * u + a.sin() * v)).collect()
+    };
+    let fine = (TAU * radius / (0.1 * target.smallest)).clamp(256.0, 1e6) as usize;
+    for s in [0.0, height] {
+        features.edges.extend(divide(&ring(radius, s, fine), target, true));
+    }
+    if !target.uniform() {
+        return;
+    }
+    let spacing = target.smallest;
+    let around = lattice_cells(TAU * radius, spacing).max(3);
+    let layers = lattice_cells(height, spacing);
+    for layer in 1..layers {
+        features.faces.extend(ring(radius, height * layer as f64 / layers as f64, around));
+    }
+    let rings = lattice_cells(radius, spacing);
+    for s in [0.0, height] {
+        features.faces.push(base + s * axis);
+        for n in 1..rings {
+            let r = radius * n as f64 / rings as f64;
+            features.faces.extend(ring(r, s, lattice_cells(TAU * r, spacing).max(3)));
+        }
+    }
+}
+
+/// A spiral of evenly distributed points, with the density of a hexagonal lattice
+/// a little wider than `spacing`.
+fn fibonacci(centre: &Vector3, radius: f64, spacing: f64) -> Vec<Vector3> {
+    let count = (2.0 * TAU * (radius / spacing).powi(2)).round().max(4.0) as usize;
+    let turn = 0.5 * TAU * (3.0 - 5_f64.sqrt());
+    (0..count)
+        .map(|n| {
+            let z = 1.0 - (2 * n + 1) as f64 / count as f64;
+            let (sin, cos) = (n as f64 * turn).sin_cos();
+            let r = (1.0 - z * z).sqrt();
+            centre + radius * Vector3::new(r * cos, r * sin, z)
+        })
+        .collect()
+}
+
+/// Corners where other than two sharp edges meet or two meet at an angle, and
+/// points along the sharp edges.
+fn sharp(surface: &Surface, target: &TargetSpacing, features: &mut Features) {
+    let edges = surface.sharp_edges();
+    let mut meeting: std::collections::BTreeMap<u32, Vec<Vector3>> = Default::default();
+    for &(a, b) in &edges {
+        let along = (surface.vertex(b) - surface.vertex(a)).normalize();
+        meeting.entry(a).or_default().push(along);
+        meeting.entry(b).or_default().push(-along);
+    }
+    for (vertex, directions) in meeting {
+        let straight = directions.len() == 2 && directions[0].dot(&directions[1]) < -0.866;
+        if !straight {
+            features.corners.push(surface.vertex(vertex));
+        }
+    }
+    for (a, b) in edges {
+        features.edges.extend(divide(&[surface.vertex(a), surface.vertex(b)], target, false));
+    }
+}

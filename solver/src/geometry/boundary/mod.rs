@@ -1,0 +1,15 @@
+//! The boundary of a solid: panels for integrals, points for nodes, outlines.
+
+mod composite;
+mod curve_panels;
+mod features;
+mod marching;
+mod panel;
+mod panels;
+mod points;
+mod solid_panels;
+mod target_spacing;
+
+pub use panel::Panel;
+pub(crate) use points::{BoundaryPoints, boundary_points, project};
+pub(crate) use target_spacing::{TargetSpacing, lattice_cells};

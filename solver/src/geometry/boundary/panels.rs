@@ -1,0 +1,129 @@
+//! The boundary as small panels, for surface integrals.
+
+use crate::algebra::tensor::Vector3;
+use crate::geometry::boundary::composite::composite_panels;
+use crate::geometry::boundary::curve_panels::{ellipse_panels, line_panels, segment_panels};
+use crate::geometry::boundary::marching;
+use crate::geometry::boundary::panel::Panel;
+use crate::geometry::boundary::solid_panels::{
+    box_panels, cylinder_panels, ellipsoid_panels, prism_panels, rectangle, triangle_panels,
+};
+use crate::geometry::dimension::Dimension;
+use crate::geometry::error::{GeometryError, at_most, positive};
+use crate::geometry::polygon::anticlockwise;
+use crate::geometry::primitives::perpendicular;
+use crate::geometry::shape::Shape;
+
+const MOST_PANELS: f64 = 1e8;
+
+impl Shape {
+    /// Panels with edges of at most `size` \[m\] that cover the boundary, in
+    /// a plane that of the cross-section without its ends. Areas and normals
+    /// are exact for flat faces, cylinders and spheres. Where members of a
+    /// union or difference meet, areas are reduced in proportion and centres
+    /// stay.
+    pub fn boundary_panels(
+        &self,
+        size: f64,
+        dimension: &Dimension,
+    ) -> Result<Vec<Panel>, GeometryError> {
+        positive("the panel size", size)?;
+        match dimension {
+            Dimension::Three => surface_panels(self, size, self.finite_bounds(dimension)?),
+            Dimension::PlaneStrain { thickness, z } => {
+                let section = self.section_at(*z)?;
+                let around = section.finite_bounds(dimension)?;
+                let mut panels = curve_panels(&section, size, *z, around)?;
+                panels.iter_mut().for_each(|panel| panel.area *= thickness);
+                Ok(panels)
+            }
+        }
+    }
+}
+
+/// Corners of the box outside which half-spaces need no panels \[m\].
+type Bounds = (Vector3, Vector3);
+
+/// The part of a plane that passes the box: its middle and half its edge.
+fn patch(point: &Vector3, normal: &Vector3, (lower, upper): Bounds) -> (Vector3, f64) {
+    let middle = 0.5 * (lower + upper);
+    (middle - (middle - point).dot(normal) * normal, 0.5 * (upper - lower).norm())
+}
+
+/// Panels whose area is a length, of a section.
+fn curve_panels(
+    shape: &Shape,
+    size: f64,
+    z: f64,
+    around: Bounds,
+) -> Result<Vec<Panel>, GeometryError> {
+    match shape {
+        Shape::Polygon { points, .. } => Ok(line_panels(&anticlockwise(points), size, z)),
+        Shape::Ellipsoid { centre, radii } => Ok(ellipse_panels(centre, radii, size, z)),
+        Shape::HalfSpace { point, normal } => {
+            let (middle, reach) = patch(point, normal, around);
+            let along = reach * Vector3::new(-normal.y, normal.x, 0.0);
+            let (a, b) = (middle - along, middle + along);
+            Ok(segment_panels([a.x, a.y], [b.x, b.y], size, z).collect())
+        }
+        Shape::Labels(field) => {
+            let curves = marching::contours(shape, z, (0.7 * size).min(field.voxel()))?;
+            Ok(curves.iter().flat_map(|curve| line_panels(curve, size, z)).collect())
+        }
+        Shape::Function(_) => {
+            let curves = marching::contours(shape, z, 0.7 * size)?;
+            Ok(curves.iter().flat_map(|curve| line_panels(curve, size, z)).collect())
+        }
+        Shape::Union(_) | Shape::Difference(..) => {
+            composite_panels(shape, |panel| panel.area, &|member| {
+                curve_panels(member, size, z, around)
+            })
+        }
+        _ => Err(GeometryError::Unbounded { shape: shape.name() }),
+    }
+}
+
+fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>, GeometryError> {
+    match shape {
+        Shape::Box { min, max } => Ok(box_panels(min, max, size)),
+        Shape::Cylinder { base, axis, radius, height } => {
+            Ok(cylinder_panels(base, axis, *radius, *height, size))
+        }
+        Shape::Sphere { centre, radius } => {
+            Ok(ellipsoid_panels(centre, &Vector3::repeat(*radius), size))
+        }
+        Shape::Ellipsoid { centre, radii } if radii.z.is_finite() => {
+            Ok(ellipsoid_panels(centre, radii, size))
+        }
+        Shape::Polygon { points, z } if (z.1 - z.0).is_finite() => {
+            Ok(prism_panels(points, *z, size))
+        }
+        Shape::HalfSpace { point, normal } => {
+            let (middle, reach) = patch(point, normal, around);
+            let (u, v) = perpendicular(normal);
+            let mut panels = Vec::new();
+            let corner = middle - reach * (u + v);
+            rectangle(corner, 2.0 * reach * u, 2.0 * reach * v, size, &mut panels);
+            Ok(panels)
+        }
+        Shape::Labels(field) => {
+            let triangles = marching::isosurface(shape, (size / 3_f64.sqrt()).min(field.voxel()))?;
+            Ok(triangle_panels(triangles.into_iter(), size))
+        }
+        Shape::Function(_) => {
+            let triangles = marching::isosurface(shape, size / 3_f64.sqrt())?;
+            Ok(triangle_panels(triangles.into_iter(), size))
+        }
+        Shape::Surface(surface) => Ok(triangle_panels(surface.corners(), size)),
+        Shape::Union(_) | Shape::Difference(..) => {
+            composite_panels(shape, |panel| panel.area.sqrt(), &|member| {
+                surface_panels(member, size, around)
+            })
+        }
+        _ => Err(GeometryError::Unbounded { shape: shape.name() }),
+    }
+    .and_then(|panels: Vec<Panel>| {
+        at_most("boundary panels", panels.len() as f64, MOST_PANELS)?;
+        Ok(panels)
+    })
+}

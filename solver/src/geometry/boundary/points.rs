@@ -1,0 +1,153 @@
+//! Positions of boundary nodes.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::geometry::boundary::features::{Features, of_section, of_solid};
+use crate::geometry::boundary::target_spacing::TargetSpacing;
+use crate::geometry::dimension::Dimension;
+use crate::geometry::error::{GeometryError, at_most, positive};
+use crate::geometry::point_hash::PointHash;
+use crate::geometry::shape::Shape;
+
+/// Points on the boundary \[m\]; the first `fixed` lie on corners and edges.
+pub(crate) struct BoundaryPoints {
+    pub points: Vec<Vector3>,
+    pub fixed: usize,
+}
+
+/// Closest that points of different origin may be \[spacing\].
+const CLOSEST: f64 = 0.6;
+/// Farther than this from every point, the boundary gets another \[spacing\].
+const FILL: f64 = 0.8;
+const MOST_POINTS: f64 = 2e7;
+
+impl Shape {
+    /// Points on the boundary about `spacing` \[m\] apart: corners, evenly
+    /// divided edges, then faces. In a plane they lie on the outline of the
+    /// cross-section.
+    pub fn boundary_points(
+        &self,
+        spacing: f64,
+        dimension: &Dimension,
+    ) -> Result<Vec<Vector3>, GeometryError> {
+        positive("the nodal spacing", spacing)?;
+        let target = TargetSpacing { at: &|_| spacing, smallest: spacing, largest: spacing };
+        Ok(boundary_points(self, &target, dimension)?.points)
+    }
+}
+
+/// As [`Shape::boundary_points`], with a spacing that may vary.
+pub(crate) fn boundary_points(
+    shape: &Shape,
+    target: &TargetSpacing,
+    dimension: &Dimension,
+) -> Result<BoundaryPoints, GeometryError> {
+    let section = shape.section(dimension)?;
+    refuse_too_many(&section, target, dimension)?;
+    let mut features = Features::default();
+    collect(&section, &section, target, dimension, &mut features)?;
+    let mut chosen = Chosen {
+        shape: &section,
+        target,
+        hash: PointHash::new(FILL * target.smallest, FILL * target.largest),
+        points: Vec::new(),
+    };
+    chosen.add(&features.corners, 0.3);
+    chosen.add(&features.edges, CLOSEST);
+    let fixed = chosen.points.len();
+    chosen.add(&features.faces, CLOSEST);
+    let panels = section.boundary_panels(0.3 * target.smallest, dimension)?;
+    let centres: Vec<Vector3> = panels.iter().map(|panel| panel.centre).collect();
+    chosen.add(&centres, FILL);
+    Ok(BoundaryPoints { points: chosen.points, fixed })
+}
+
+/// A rough count before anything is allocated.
+fn refuse_too_many(
+    shape: &Shape,
+    target: &TargetSpacing,
+    dimension: &Dimension,
+) -> Result<(), GeometryError> {
+    let (lower, upper) = shape.finite_bounds(dimension)?;
+    let n = (upper - lower) / target.smallest;
+    let count = match dimension {
+        Dimension::Three => 2.0 * (n.x * n.y + n.y * n.z + n.z * n.x),
+        Dimension::PlaneStrain { .. } => 2.0 * (n.x + n.y),
+    };
+    at_most("boundary nodes", count, MOST_POINTS)
+}
+
+struct Chosen<'a> {
+    shape: &'a Shape,
+    target: &'a TargetSpacing<'a>,
+    hash: PointHash,
+    points: Vec<Vector3>,
+}
+
+impl Chosen<'_> {
+    /// Moves candidates onto the boundary and keeps those at least `apart` times
+    /// the local spacing away from all kept before.
+    fn add(&mut self, candidates: &[Vector3], apart: f64) {
+        for candidate in candidates {
+            let size = (self.target.at)(candidate);
+            // First without the projection, which costs more.
+            if self.hash.any_within(candidate, 0.7 * apart * size) {
+                continue;
+            }
+            let X = project(self.shape, candidate);
+            if !self.hash.any_within(&X, apart * (self.target.at)(&X)) {
+                self.hash.insert(X);
+                self.points.push(X);
+            }
+        }
+    }
+}
+
+/// The point moved along the gradient onto the boundary; where it is on it
+/// already, to rounding, the same point.
+pub(crate) fn project(shape: &Shape, X: &Vector3) -> Vector3 {
+    let tolerance = 1e-10 * shape.size();
+    let mut at = *X;
+    for _ in 0..8 {
+        let distance = shape.signed_distance(&at);
+        if distance.abs() <= tolerance {
+            break;
+        }
+        at -= distance * shape.gradient(&at);
+    }
+    at
+}
+
+/// Features of the shape, or of the members of a composite as far as they
+/// lie on its boundary.
+fn collect(
+    shape: &Shape,
+    whole: &Shape,
+    target: &TargetSpacing,
+    dimension: &Dimension,
+    features: &mut Features,
+) -> Result<(), GeometryError> {
+    match shape {
+        Shape::Union(members) => {
+            return members.iter().try_for_each(|m| collect(m, whole, target, dimension, features));
+        }
+        Shape::Difference(body, hole) => {
+            collect(body, whole, target, dimension, features)?;
+            return collect(hole, whole, target, dimension, features);
+        }
+        _ => {}
+    }
+    let mut own = match dimension {
+        Dimension::Three => of_solid(shape, target),
+        Dimension::PlaneStrain { z, .. } => of_section(shape, *z, target)?,
+    };
+    for points in [&mut own.corners, &mut own.edges, &mut own.faces] {
+        // Outlines are chords and may be a little off their own curve.
+        points.iter_mut().for_each(|X| *X = project(shape, X));
+        points.retain(|X| whole.signed_distance(X).abs() < 1e-6 * target.smallest);
+    }
+    features.corners.append(&mut own.corners);
+    features.edges.append(&mut own.edges);
+    features.faces.append(&mut own.faces);
+    Ok(())
+}

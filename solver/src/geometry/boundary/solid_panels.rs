@@ -1,0 +1,139 @@
+//! Panels of single solids.
+
+use crate::algebra::tensor::Vector3;
+use crate::geometry::boundary::panel::{Panel, pieces};
+use crate::geometry::polygon::{anticlockwise, triangulate};
+use crate::geometry::primitives::perpendicular;
+use crate::geometry::triangles::{Triangle, area_vector, subdivide};
+use std::f64::consts::TAU;
+
+pub(super) fn rectangle(
+    corner: Vector3,
+    u: Vector3,
+    v: Vector3,
+    size: f64,
+    panels: &mut Vec<Panel>,
+) {
+    let (nu, nv) = (pieces(u.norm(), size), pieces(v.norm(), size));
+    let whole = u.cross(&v);
+    let area = whole.norm() / (nu * nv) as f64;
+    let normal = whole.normalize();
+    for j in 0..nv {
+        for i in 0..nu {
+            let (s, t) = ((i as f64 + 0.5) / nu as f64, (j as f64 + 0.5) / nv as f64);
+            panels.push(Panel { centre: corner + s * u + t * v, area, normal });
+        }
+    }
+}
+
+pub(super) fn box_panels(min: &Vector3, max: &Vector3, size: f64) -> Vec<Panel> {
+    let mut panels = Vec::new();
+    let edges = max - min;
+    for axis in 0..3 {
+        let along = |k: usize| {
+            let mut edge = Vector3::zeros();
+            edge[(axis + k) % 3] = edges[(axis + k) % 3];
+            edge
+        };
+        rectangle(*min, along(2), along(1), size, &mut panels);
+        rectangle(min + along(0), along(1), along(2), size, &mut panels);
+    }
+    panels
+}
+
+pub(super) fn prism_panels(points: &[[f64; 2]], z: (f64, f64), size: f64) -> Vec<Panel> {
+    let points = anticlockwise(points);
+    let mut panels = Vec::new();
+    let up = Vector3::new(0.0, 0.0, z.1 - z.0);
+    for (n, a) in points.iter().enumerate() {
+        let b = points[(n + 1) % points.len()];
+        let edge = Vector3::new(b[0] - a[0], b[1] - a[1], 0.0);
+        rectangle(Vector3::new(a[0], a[1], z.0), edge, up, size, &mut panels);
+    }
+    for [a, b, c] in triangulate(&points) {
+        let at = |z: f64| move |p: [f64; 2]| Vector3::new(p[0], p[1], z);
+        let caps = [[a, b, c].map(at(z.1)), [a, c, b].map(at(z.0))];
+        panels.extend(triangle_panels(caps.into_iter(), size));
+    }
+    panels
+}
+
+pub(super) fn cylinder_panels(
+    base: &Vector3,
+    axis: &Vector3,
+    radius: f64,
+    height: f64,
+    size: f64,
+) -> Vec<Panel> {
+    let (u, v) = perpendicular(axis);
+    let around = |n: usize, count: usize| {
+        let (sin, cos) = ((n as f64 + 0.5) * TAU / count as f64).sin_cos();
+        cos * u + sin * v
+    };
+    let mut panels = Vec::new();
+    let (count, layers) = (pieces(TAU * radius, size).max(8), pieces(height, size));
+    for n in 0..layers * count {
+        let normal = around(n % count, count);
+        let s = height * ((n / count) as f64 + 0.5) / layers as f64;
+        let area = TAU * radius * height / (count * layers) as f64;
+        panels.push(Panel { centre: base + s * axis + radius * normal, area, normal });
+    }
+    let rings = pieces(radius, size);
+    for ring in 0..rings {
+        let width = radius / rings as f64;
+        let (inner, outer) = (ring as f64 * width, (ring + 1) as f64 * width);
+        let count = pieces(TAU * outer, size).max(6);
+        let area = 0.5 * TAU * (outer * outer - inner * inner) / count as f64;
+        for n in 0..count {
+            let at = base + 0.5 * (inner + outer) * around(n, count);
+            panels.push(Panel { centre: at, area, normal: -axis });
+            panels.push(Panel { centre: at + height * axis, area, normal: *axis });
+        }
+    }
+    panels
+}
+
+/// Bands of latitude on the unit sphere with exact areas, mapped by Nanson's
+/// formula N dA = cof(D) n da with D the diagonal of the radii.
+pub(super) fn ellipsoid_panels(centre: &Vector3, radii: &Vector3, size: f64) -> Vec<Panel> {
+    let largest = radii.max();
+    let bands = pieces(0.5 * TAU * largest, size).max(4);
+    let cofactor = Vector3::repeat(radii.product()).component_div(radii);
+    let mut panels = Vec::new();
+    for band in 0..bands {
+        let polar = |n: f64| n * 0.5 * TAU / bands as f64;
+        let (top, bottom) = (polar(band as f64), polar(band as f64 + 1.0));
+        let (sin, cos) = polar(band as f64 + 0.5).sin_cos();
+        let count = pieces(TAU * sin * largest, size).max(6);
+        let area = (top.cos() - bottom.cos()) * TAU / count as f64;
+        for n in 0..count {
+            let (s, c) = ((n as f64 + 0.5) * TAU / count as f64).sin_cos();
+            let unit = Vector3::new(sin * c, sin * s, cos);
+            let mapped = cofactor.component_mul(&unit);
+            panels.push(Panel {
+                centre: centre + radii.component_mul(&unit),
+                area: area * mapped.norm(),
+                normal: mapped.normalize(),
+            });
+        }
+    }
+    panels
+}
+
+pub(super) fn triangle_panels(triangles: impl Iterator<Item = Triangle>, size: f64) -> Vec<Panel> {
+    let mut panels = Vec::new();
+    for triangle in triangles {
+        subdivide(triangle, size, &mut |t| {
+            let whole = area_vector(&t);
+            let area = whole.norm();
+            if area > 0.0 {
+                panels.push(Panel {
+                    centre: (t[0] + t[1] + t[2]) / 3.0,
+                    area,
+                    normal: whole / area,
+                });
+            }
+        });
+    }
+    panels
+}

@@ -1,0 +1,190 @@
+//! A scalar field on a regular grid, and distances on it.
+
+use crate::algebra::tensor::Vector3;
+
+/// Samples on a regular grid, first index fastest. Along an axis with one
+/// sample the field is constant.
+#[derive(Debug, Clone)]
+pub(crate) struct ScalarGrid {
+    pub size: [usize; 3],
+    /// Distance of neighbouring samples per axis \[m\].
+    pub step: Vector3,
+    pub values: Vec<f64>,
+}
+
+impl ScalarGrid {
+    pub fn index(&self, i: usize, j: usize, k: usize) -> usize {
+        i + self.size[0] * (j + self.size[1] * k)
+    }
+
+    fn strides(&self) -> [usize; 3] {
+        [1, self.size[0], self.size[0] * self.size[1]]
+    }
+
+    /// Position \[m\] of a sample from the first one.
+    pub fn local(&self, index: usize) -> Vector3 {
+        let (nx, ny) = (self.size[0], self.size[1]);
+        let ijk = [index % nx, index / nx % ny, index / (nx * ny)];
+        Vector3::from_fn(|axis, _| ijk[axis] as f64 * self.step[axis])
+    }
+
+    /// Trilinear value at `local` \[m\] from the first sample; outside the
+    /// grid the value on its border plus the distance to it.
+    pub fn sample(&self, local: &Vector3) -> f64 {
+        let mut outside = 0.0;
+        let mut cell = [0; 3];
+        let mut next = [0; 3];
+        let mut fraction = [0.0; 3];
+        let strides = self.strides();
+        for axis in 0..3 {
+            let last = self.size[axis] - 1;
+            if last == 0 {
+                continue;
+            }
+            let t = local[axis] / self.step[axis];
+            let inside = t.clamp(0.0, last as f64);
+            outside += ((t - inside) * self.step[axis]).powi(2);
+            let low = (inside as usize).min(last - 1);
+            (cell[axis], next[axis]) = (low * strides[axis], strides[axis]);
+            fraction[axis] = inside - low as f64;
+        }
+        let base = cell[0] + cell[1] + cell[2];
+        let along_x = |at: usize| {
+            self.values[at] * (1.0 - fraction[0]) + self.values[at + next[0]] * fraction[0]
+        };
+        let in_plane =
+            |at: usize| along_x(at) * (1.0 - fraction[1]) + along_x(at + next[1]) * fraction[1];
+        let value = in_plane(base) * (1.0 - fraction[2]) + in_plane(base + next[2]) * fraction[2];
+        value + outside.sqrt()
+    }
+
+    /// Signed distance to the zero level of the field, negative where it is
+    /// negative: from the crossings of grid lines next to the level, to the
+    /// nearest of the feet of those samples away from it.
+    pub fn distance_to_zero_level(&self) -> ScalarGrid {
+        let sign = |at: usize| if self.values[at] < 0.0 { -1.0 } else { 1.0 };
+        let known = (0..self.values.len())
+            .filter_map(|at| {
+                let distance = self.crossing_distance(at);
+                let normal = self.slope(at).try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+                let foot = self.local(at) - sign(at) * distance * normal;
+                distance.is_finite().then_some(KnownDistance { at, distance, foot })
+            })
+            .collect();
+        let mut distance = self.propagate(known);
+        distance.values.iter_mut().enumerate().for_each(|(at, d)| *d *= sign(at));
+        distance
+    }
+
+    /// Gradient by central differences, one-sided at the border.
+    fn slope(&self, at: usize) -> Vector3 {
+        let strides = self.strides();
+        Vector3::from_fn(|axis, _| {
+            let (stride, last) = (strides[axis], self.size[axis] - 1);
+            let position = at / stride % self.size[axis];
+            let low = if position > 0 { at - stride } else { at };
+            let high = if position < last { at + stride } else { at };
+            let steps = ((high - low) / stride).max(1) as f64;
+            (self.values[high] - self.values[low]) / (steps * self.step[axis])
+        })
+    }
+
+    /// Distance to the zero level of a sample next to it from the crossings
+    /// d on the grid lines, 1/φ² = Σ 1/d² (method book, eq. 4.3); infinite for
+    /// other samples.
+    fn crossing_distance(&self, at: usize) -> f64 {
+        let value = self.values[at];
+        let mut inverse = 0.0;
+        for (axis, stride) in self.strides().into_iter().enumerate() {
+            let position = at / stride % self.size[axis];
+            let mut nearest = f64::INFINITY;
+            let mut cross = |other: f64| {
+                if (other < 0.0) != (value < 0.0) {
+                    nearest = nearest.min(self.step[axis] * value / (value - other));
+                }
+            };
+            if position > 0 {
+                cross(self.values[at - stride]);
+            }
+            if position + 1 < self.size[axis] {
+                cross(self.values[at + stride]);
+            }
+            inverse += 1.0 / (nearest * nearest);
+        }
+        if inverse > 0.0 { 1.0 / inverse.sqrt() } else { f64::INFINITY }
+    }
+
+    /// Distance to the nearest foot; known distances stay. Each sample adopts
+    /// the foot of a neighbour if that is nearer (Danielsson 1980).
+    pub fn propagate(&self, known: Vec<KnownDistance>) -> ScalarGrid {
+        let count = self.size.iter().product();
+        let mut nearest = Nearest { distance: vec![f64::INFINITY; count], of: vec![NONE; count] };
+        for (n, sample) in known.iter().enumerate() {
+            nearest.distance[sample.at] = sample.distance;
+            nearest.of[sample.at] = n as u32;
+        }
+        for _round in 0..3 {
+            let changes = (0..8).filter(|order| self.sweep(*order, &known, &mut nearest)).count();
+            if changes == 0 {
+                break;
+            }
+        }
+        ScalarGrid { size: self.size, step: self.step, values: nearest.distance }
+    }
+
+    /// One pass in one of eight directions; whether it changed anything.
+    fn sweep(&self, order: usize, known: &[KnownDistance], nearest: &mut Nearest) -> bool {
+        let [nx, ny, nz] = self.size;
+        let strides = self.strides();
+        let turned =
+            |i: usize, n: usize, axis: usize| if order >> axis & 1 == 0 { i } else { n - 1 - i };
+        let mut changed = false;
+        for [i, j, k] in indices(self.size) {
+            let ijk = [turned(i, nx, 0), turned(j, ny, 1), turned(k, nz, 2)];
+            let at = self.index(ijk[0], ijk[1], ijk[2]);
+            let own = nearest.of[at];
+            if own != NONE && known[own as usize].at == at {
+                continue;
+            }
+            let here = Vector3::from_fn(|axis, _| ijk[axis] as f64 * self.step[axis]);
+            for (axis, passed) in [i, j, k].into_iter().enumerate() {
+                if passed == 0 {
+                    continue;
+                }
+                let back = order >> axis & 1 == 0;
+                let behind = if back { at - strides[axis] } else { at + strides[axis] };
+                let of = nearest.of[behind];
+                if of == NONE || of == nearest.of[at] {
+                    continue;
+                }
+                let distance = (here - known[of as usize].foot).norm();
+                if distance < nearest.distance[at] {
+                    (nearest.distance[at], nearest.of[at]) = (distance, of);
+                    changed = true;
+                }
+            }
+        }
+        changed
+    }
+}
+
+/// A sample whose distance is known, and the nearest point, its foot.
+pub(crate) struct KnownDistance {
+    pub at: usize,
+    pub distance: f64,
+    pub foot: Vector3,
+}
+
+const NONE: u32 = u32::MAX;
+
+struct Nearest {
+    distance: Vec<f64>,
+    /// Which known distance a sample's foot belongs to.
+    of: Vec<u32>,
+}
+
+/// All index triples below `size`, the first index fastest.
+pub(crate) fn indices(size: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    let [nx, ny, nz] = size;
+    (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
+}

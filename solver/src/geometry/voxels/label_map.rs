@@ -1,0 +1,110 @@
+//! Segmented images as geometry.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::{Matrix3, Vector3};
+use crate::geometry::error::GeometryError;
+
+/// A segmented image: one label per voxel, label 0 is outside.
+#[derive(Debug, Clone)]
+pub struct LabelMap {
+    /// Number of voxels along each index.
+    pub size: [usize; 3],
+    /// Centre of voxel (0, 0, 0) \[m\].
+    pub origin: Vector3,
+    /// Column k: step from one voxel centre to the next along index k \[m\].
+    pub directions: Matrix3,
+    /// Labels, first index fastest.
+    pub labels: Vec<u32>,
+    to_index: Matrix3,
+}
+
+impl LabelMap {
+    /// An image whose directions are perpendicular to one another, in any
+    /// orientation.
+    pub fn new(
+        size: [usize; 3],
+        origin: Vector3,
+        directions: Matrix3,
+        labels: Vec<u32>,
+    ) -> Result<Self, GeometryError> {
+        let expected = size.iter().product();
+        if labels.len() != expected || expected == 0 {
+            return Err(GeometryError::LabelCount { size, count: labels.len(), expected });
+        }
+        if !origin.iter().all(|c| c.is_finite()) {
+            return Err(GeometryError::NotFinite { name: "the label map origin" });
+        }
+        let determinant = directions.determinant();
+        let singular = GeometryError::SingularDirections { determinant };
+        let volume: f64 = (0..3).map(|k| directions.column(k).norm()).product();
+        if !(determinant.abs() > 1e-9 * volume && volume.is_finite()) {
+            return Err(singular);
+        }
+        for (first, second) in [(0, 1), (0, 2), (1, 2)] {
+            let (a, b) = (directions.column(first), directions.column(second));
+            let cosine = a.dot(&b) / (a.norm() * b.norm());
+            if cosine.abs() > 1e-4 {
+                return Err(GeometryError::SkewDirections { first, second, cosine });
+            }
+        }
+        let to_index = directions.try_inverse().ok_or(singular)?;
+        Ok(LabelMap { size, origin, directions, labels, to_index })
+    }
+
+    /// Edges of a voxel \[m\].
+    pub fn voxel(&self) -> Vector3 {
+        Vector3::from_fn(|k, _| self.directions.column(k).norm())
+    }
+
+    /// Centre of a voxel \[m\].
+    pub fn centre(&self, i: usize, j: usize, k: usize) -> Vector3 {
+        self.origin + self.directions * Vector3::new(i as f64, j as f64, k as f64)
+    }
+
+    /// Position in units of voxels; (0, 0, 0) is the centre of the first one.
+    pub(super) fn index_of(&self, X: &Vector3) -> Vector3 {
+        self.to_index * (X - self.origin)
+    }
+
+    /// The label of the voxel that contains `X`, 0 outside the image.
+    pub fn label_at(&self, X: &Vector3) -> u32 {
+        let index = self.index_of(X);
+        let mut voxel = [0; 3];
+        for axis in 0..3 {
+            let rounded = (index[axis] + 0.5).floor();
+            if !(rounded >= 0.0 && rounded < self.size[axis] as f64) {
+                return 0;
+            }
+            voxel[axis] = rounded as usize;
+        }
+        self.label(voxel)
+    }
+
+    fn label(&self, [i, j, k]: [usize; 3]) -> u32 {
+        self.labels[i + self.size[0] * (j + self.size[1] * k)]
+    }
+
+    /// The label at `X` if it is allowed, otherwise that of the nearest
+    /// allowed voxel centre up to four voxels away; 0 if there is none.
+    pub fn nearest_label_at(&self, X: &Vector3, allowed: &[u32]) -> u32 {
+        let here = self.label_at(X);
+        if allowed.contains(&here) {
+            return here;
+        }
+        let middle = self.index_of(X).map(|c| c.round() as i64);
+        let mut best = (f64::INFINITY, 0);
+        for offset in 0..9_i64.pow(3) {
+            let ijk = [offset % 9 - 4, offset / 9 % 9 - 4, offset / 81 - 4];
+            let at: [i64; 3] = std::array::from_fn(|axis| middle[axis] + ijk[axis]);
+            if (0..3).any(|axis| at[axis] < 0 || at[axis] >= self.size[axis] as i64) {
+                continue;
+            }
+            let [i, j, k] = at.map(|c| c as usize);
+            let distance = (self.centre(i, j, k) - X).norm();
+            if distance < best.0 && allowed.contains(&self.label([i, j, k])) {
+                best = (distance, self.label([i, j, k]));
+            }
+        }
+        best.1
+    }
+}

@@ -1,0 +1,133 @@
+#![allow(non_snake_case)]
+
+use super::*;
+use crate::algebra::tensor::{Matrix3, Vector3, rotation};
+use crate::geometry::{Dimension, GeometryError, Shape};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// A ball of radius 10 voxels of 1 mm, in an image turned by `turn`.
+fn voxel_ball(turn: Matrix3, voxel: Vector3) -> (Shape, Vector3) {
+    let size = voxel.map(|h| (2.0 * (10e-3 / h).ceil() + 7.0) as usize);
+    let size = [size.x, size.y, size.z];
+    let middle = Vector3::from_fn(|k, _| (size[k] as f64 / 2.0 - 0.37) * voxel[k]);
+    let mut labels = Vec::new();
+    for k in 0..size[2] {
+        for j in 0..size[1] {
+            for i in 0..size[0] {
+                let at = Vector3::new(i as f64, j as f64, k as f64).component_mul(&voxel);
+                labels.push(if (at - middle).norm() < 10e-3 { 7 } else { 0 });
+            }
+        }
+    }
+    let origin = Vector3::new(0.2, -0.1, 0.05);
+    let directions = turn * Matrix3::from_diagonal(&voxel);
+    let map = LabelMap::new(size, origin, directions, labels).unwrap();
+    let field = LabelField::new(Arc::new(map), &[7]).unwrap();
+    (Shape::Labels(Arc::new(field)), origin + turn * middle)
+}
+
+fn turn() -> Matrix3 {
+    rotation(&Vector3::new(1.0, -2.0, 0.5).normalize(), 0.8)
+}
+
+#[test]
+fn a_ball_of_voxels_has_the_volume_and_area_of_a_sphere() {
+    let area = 4.0 * PI * 1e-4;
+    for (turn, voxel) in [
+        (Matrix3::identity(), Vector3::repeat(1e-3)),
+        (turn(), Vector3::repeat(1e-3)),
+        (turn(), Vector3::new(1e-3, 1e-3, 2e-3)),
+    ] {
+        let (ball, _) = voxel_ball(turn, voxel);
+        let panels = ball.boundary_panels(2e-3, &Dimension::Three).unwrap();
+        let total: f64 = panels.iter().map(|p| p.area).sum();
+        let sum: Vector3 = panels.iter().map(|p| p.area * p.normal).sum();
+        let flux: f64 = panels.iter().map(|p| p.area * p.centre.dot(&p.normal)).sum();
+        assert!(sum.norm() < 1e-9 * area);
+        let Shape::Labels(field) = &ball else { unreachable!("voxel_ball makes labels") };
+        let count = field.map().labels.iter().filter(|label| **label == 7).count();
+        let volume = count as f64 * voxel.product();
+        assert!((flux / (3.0 * volume) - 1.0).abs() < 0.01, "{}", flux / 3.0 / volume);
+        assert!((total / area - 1.0).abs() < 0.02, "{}", total / area);
+    }
+}
+
+#[test]
+fn the_surface_of_a_voxel_ball_is_smooth() {
+    let (ball, centre) = voxel_ball(turn(), Vector3::repeat(1e-3));
+    for n in 0..200 {
+        let (a, b) = (0.17 * n as f64, (0.005 * n as f64 - 0.5) * 2.0);
+        let direction =
+            Vector3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
+        for radius in [7e-3, 10e-3, 15e-3] {
+            let X = centre + radius * direction;
+            let error = ball.signed_distance(&X) - (radius - 10e-3);
+            assert!(error.abs() < 0.4e-3, "{radius}: {error}");
+            let cosine = ball.gradient(&X).dot(&direction);
+            let least = if radius == 10e-3 { 0.95 } else { 0.8 };
+            assert!(cosine > least, "{radius}: {cosine}");
+        }
+    }
+}
+
+/// Five equal layers of a disc of 8 voxels of 1 mm.
+fn slab() -> Arc<LabelMap> {
+    let mut labels = Vec::new();
+    for n in 0..5 * 21 * 21 {
+        let (i, j) = ((n % 21) as f64 - 10.0, (n / 21 % 21) as f64 - 10.0);
+        labels.push(if i.hypot(j) < 8.0 { 3 } else { 0 });
+    }
+    let origin = Vector3::new(-10e-3, -10e-3, 0.0);
+    let directions = Matrix3::identity() * 1e-3;
+    Arc::new(LabelMap::new([21, 21, 5], origin, directions, labels).unwrap())
+}
+
+#[test]
+fn the_ends_of_a_slab_are_no_boundary_of_its_section() {
+    let field = LabelField::new(slab(), &[3]).unwrap();
+    let body = Shape::Labels(Arc::new(field));
+    let dimension = Dimension::PlaneStrain { thickness: 1e-3, z: 2e-3 };
+    let section = body.section(&dimension).unwrap();
+    let middle = Vector3::new(0.0, 0.0, 2e-3);
+    assert!((body.signed_distance(&middle) + 2.5e-3).abs() < 0.2e-3);
+    // The nearest voxels without the label start at 7.5 mm.
+    assert!((section.signed_distance(&middle) + 7.65e-3).abs() < 0.2e-3);
+    let panels = body.boundary_panels(1e-3, &dimension).unwrap();
+    let flux: f64 = panels.iter().map(|p| p.area * p.centre.dot(&p.normal)).sum();
+    let voxels = slab().labels.iter().filter(|l| **l == 3).count() as f64 / 5.0;
+    assert!((flux / (2.0 * voxels * 1e-9) - 1.0).abs() < 0.01, "{flux} of {voxels}");
+    let points = body.boundary_points(2e-3, &dimension).unwrap();
+    assert!((23..=27).contains(&points.len()), "{}", points.len());
+    let twice = section.section(&dimension).unwrap();
+    assert_eq!(twice.signed_distance(&middle), section.signed_distance(&middle));
+    let error = body.section(&Dimension::PlaneStrain { thickness: 1.0, z: 0.1 }).unwrap_err();
+    assert_eq!(error, GeometryError::SectionEmpty { shape: "label map", z: 0.1 });
+}
+
+#[test]
+fn a_label_is_that_of_the_voxel_around_a_point() {
+    let map = slab();
+    assert_eq!(map.label_at(&Vector3::zeros()), 3);
+    assert_eq!(map.label_at(&Vector3::new(9e-3, 9e-3, 0.0)), 0);
+    assert_eq!(map.label_at(&Vector3::new(0.0, 0.0, 1.0)), 0);
+    assert_eq!(map.nearest_label_at(&Vector3::new(8.6e-3, 0.0, 0.0), &[3]), 3);
+    assert_eq!(map.nearest_label_at(&Vector3::new(8.6e-3, 0.0, 0.0), &[4]), 0);
+}
+
+#[test]
+fn invalid_label_maps_are_refused() {
+    let unit = Matrix3::identity();
+    let origin = Vector3::zeros();
+    let short = LabelMap::new([2, 2, 2], origin, unit, vec![1; 7]).unwrap_err();
+    assert!(matches!(short, GeometryError::LabelCount { expected: 8, count: 7, .. }));
+    let mut flat = unit;
+    flat[(2, 2)] = 0.0;
+    let singular = LabelMap::new([1, 1, 1], origin, flat, vec![1]).unwrap_err();
+    assert_eq!(singular, GeometryError::SingularDirections { determinant: 0.0 });
+    let skew = Matrix3::new(1.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+    let skew = LabelMap::new([1, 1, 1], origin, skew, vec![1]).unwrap_err();
+    assert!(matches!(skew, GeometryError::SkewDirections { first: 0, second: 1, .. }));
+    let missing = LabelField::new(slab(), &[3, 4]).unwrap_err();
+    assert_eq!(missing, GeometryError::NoSuchLabel { label: 4 });
+}

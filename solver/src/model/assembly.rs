@@ -1,0 +1,124 @@
+//! The model of a body: its parts and how they are made.
+
+use crate::algebra::tensor::{Vector3, bounding_box};
+use crate::discretisation::Discretisation;
+use crate::discretisation::consistency::connected_bodies;
+use crate::error::Error;
+use crate::model::blocks::{Block, Sums, blocks};
+use crate::model::contact::ContactPlan;
+use crate::model::essential::Constraints;
+use crate::model::load::{LoadPattern, initial_velocity, load_patterns};
+use crate::model::mass::{fictitious_mass, lumped_mass};
+use crate::model::stiffness::stiffness_diagonal;
+use crate::model::time_step_bound::per_point_bound;
+use crate::problem::{Dimension, Motion, Problem, Relaxation, RelaxationMass};
+
+/// A discretised body with its materials, conditions and loads.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Displacement components per node: 3, or 2 in a plane.
+    pub components: usize,
+    /// Reference positions \[node\] \[m\].
+    pub positions: Vec<Vector3>,
+    /// Lumped mass \[node\] \[kg\].
+    pub lumped_mass: Vec<f64>,
+    /// Mass in the equation of motion \[node\] \[kg\]: the lumped one, or in a
+    /// static problem a fictitious one of the same total (see [`RelaxationMass`]).
+    pub inertia: Vec<f64>,
+    /// Total that mass scaling has added to it \[kg\].
+    pub added_mass: f64,
+    /// Diagonal of K at rest, the mean over the components of a node
+    /// \[node\] \[N/m\].
+    pub stiffness: Vec<f64>,
+    /// The quadrature points, block by block.
+    pub blocks: Vec<Block>,
+    /// The order in which the forces of the blocks are summed.
+    pub sums: Sums,
+    /// The external forces.
+    pub loads: Vec<LoadPattern>,
+    /// The essential conditions.
+    pub constraints: Constraints,
+    /// The obstacles, and the nodes that may touch them.
+    pub contact: ContactPlan,
+    /// Velocity at t = 0 \[component of node\] \[m/s\].
+    pub initial_velocity: Vec<f64>,
+    /// Per-point bound of the critical time step at rest, for the lumped masses \[s\].
+    pub per_point_bound: f64,
+    /// Diagonal of the box around all nodes \[m\].
+    pub extent: f64,
+    /// Reference positions of the quadrature points \[point\] \[m\].
+    pub point_positions: Vec<Vector3>,
+}
+
+impl Model {
+    /// Binds materials, conditions and loads to a discretisation.
+    pub fn new(problem: &Problem, discretisation: &Discretisation) -> Result<Model, Error> {
+        let quadrature = &discretisation.quadrature;
+        let density: Vec<f64> = quadrature
+            .regions
+            .iter()
+            .map(|&region| problem.regions[region as usize].material.density)
+            .collect();
+        let lumped_mass = lumped_mass(discretisation, &density, problem.recipe.mass)?;
+        let components = problem.dimension.components();
+        let blocks = blocks(problem, discretisation);
+        let stiffness = stiffness_diagonal(&blocks, components, lumped_mass.len());
+        let inertia = match problem.motion {
+            Motion::Dynamic { .. }
+            | Motion::Static(Relaxation { mass: RelaxationMass::Lumped, .. }) => {
+                lumped_mass.clone()
+            }
+            Motion::Static(_) | Motion::Equilibrium(_) => fictitious_mass(&stiffness, &lumped_mass),
+        };
+        let constraints = Constraints::new(problem, discretisation, &inertia)?;
+        check_rank(discretisation, &constraints)?;
+        let per_point_bound = per_point_bound(problem, discretisation, &lumped_mass);
+        let (lower, upper) = bounding_box(&discretisation.cloud.positions);
+        Ok(Model {
+            components,
+            positions: discretisation.cloud.positions.clone(),
+            sums: Sums::new(&blocks, lumped_mass.len()),
+            blocks,
+            stiffness,
+            inertia,
+            added_mass: 0.0,
+            loads: load_patterns(problem, discretisation, &density)?,
+            contact: ContactPlan::new(problem, discretisation, &constraints)?,
+            initial_velocity: initial_velocity(problem, discretisation),
+            point_positions: quadrature.positions.clone(),
+            extent: (upper - lower).norm(),
+            lumped_mass,
+            constraints,
+            per_point_bound,
+        })
+    }
+
+    /// Number of displacement components of all nodes.
+    pub fn size(&self) -> usize {
+        self.components * self.positions.len()
+    }
+
+    /// Bytes that one evaluation of the internal force reads from the blocks.
+    pub fn bytes_per_step(&self) -> usize {
+        self.blocks.iter().map(Block::bytes).sum()
+    }
+}
+
+/// Refuses a model with too few points. At rest a point has six strains, three in a
+/// plane; motions beyond all strains, the constrained components and the rigid motions
+/// of each body have no energy, whatever the supports (method book, eq. 22.2).
+fn check_rank(discretisation: &Discretisation, constraints: &Constraints) -> Result<(), Error> {
+    let (points, nodes) = (discretisation.supports.len(), discretisation.cloud.positions.len());
+    let (d, strains, rigid) = match discretisation.dimension {
+        Dimension::Three => (3, 6, 6),
+        Dimension::PlaneStrain { .. } => (2, 3, 3),
+    };
+    let constrained: usize = constraints.active(0.0).iter().map(|set| set.rows.len()).sum();
+    let bodies = connected_bodies(&discretisation.supports, nodes);
+    let bodies = bodies.iter().max().map_or(0, |&last| last as usize + 1);
+    let modes = (d * nodes).saturating_sub(constrained + strains * points + rigid * bodies);
+    match modes {
+        0 => Ok(()),
+        modes => Err(Error::TooFewPoints { points, strains, nodes, constrained, modes }),
+    }
+}

@@ -1,0 +1,231 @@
+//! The constraints of a body over time, their enforcement and their reactions.
+#![allow(non_snake_case)]
+
+use super::collocation::{Collocation, Scratch};
+use super::mean_gradient::fit_mean_gradient;
+use super::rows::{ConditionState, ConstraintRow, rows_of_component, selected_nodes};
+use crate::algebra::tensor::{Vector3, vector_at};
+use crate::discretisation::Discretisation;
+use crate::error::Error;
+use crate::problem::{Enforcement, EssentialCondition, Problem};
+
+/// The conditions of a problem, resolved to nodes and components.
+#[derive(Debug, Clone)]
+pub struct Constraints {
+    /// As stated in the problem.
+    pub conditions: Vec<EssentialCondition>,
+    /// Consecutive time intervals between releases; the last one has no end.
+    stages: Vec<Stage>,
+}
+
+#[derive(Debug, Clone)]
+struct Stage {
+    /// Active for t < `until` \[s\].
+    until: f64,
+    /// One set per constrained component.
+    sets: Vec<ConstraintSet>,
+}
+
+/// All constraints on one component of the displacement.
+#[derive(Debug, Clone)]
+pub struct ConstraintSet {
+    /// 0, 1, 2 for x, y, z.
+    pub component: usize,
+    /// In ascending order of nodes.
+    pub rows: Vec<ConstraintRow>,
+    /// `None`: the nodal parameter is set directly.
+    collocation: Option<Collocation>,
+}
+
+impl ConstraintSet {
+    fn new(
+        component: usize,
+        mut rows: Vec<ConstraintRow>,
+        problem: &Problem,
+        discretisation: &Discretisation,
+        mass: &[f64],
+    ) -> Result<ConstraintSet, Error> {
+        let collocation = match problem.recipe.enforcement {
+            Enforcement::Direct => None,
+            Enforcement::Collocation => {
+                fit_mean_gradient(&mut rows, component, &problem.conditions, discretisation);
+                let nodes: Vec<u32> = rows.iter().map(|row| row.node).collect();
+                let dependent = Error::DependentConstraints {
+                    component: ['x', 'y', 'z'][component],
+                    rows: rows.len(),
+                };
+                Some(Collocation::new(discretisation, mass, &nodes).ok_or(dependent)?)
+            }
+        };
+        Ok(ConstraintSet { component, rows, collocation })
+    }
+}
+
+/// Multipliers of the last enforcement, and scratch memory.
+#[derive(Debug, Default)]
+pub struct ConstraintForces {
+    /// \[set\]\[row\] \[kg·m\], the sets of `stage`.
+    multipliers: Vec<Vec<f64>>,
+    stage: usize,
+    states: Vec<ConditionState>,
+    scratch: Scratch,
+}
+
+/// What a condition exerts on the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reaction {
+    /// \[N\]
+    pub force: Vector3,
+    /// \[N·m\]
+    pub moment: Vector3,
+}
+
+impl Constraints {
+    /// Selects nodes and factors the collocation systems with the masses `mass`
+    /// \[node\] \[kg\]. Where two active conditions prescribe the same component of
+    /// a node, the first stated applies.
+    pub fn new(
+        problem: &Problem,
+        discretisation: &Discretisation,
+        mass: &[f64],
+    ) -> Result<Constraints, Error> {
+        let conditions = problem.conditions.clone();
+        let positions = &discretisation.cloud.positions;
+        let selected = selected_nodes(&conditions, discretisation)?;
+        let mut ends: Vec<f64> = conditions.iter().filter_map(|c| c.release).collect();
+        ends.push(f64::INFINITY);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        let stage = |until: f64| -> Result<Stage, Error> {
+            let active = |c: usize| conditions[c].release.is_none_or(|release| release >= until);
+            let mut sets = Vec::new();
+            for component in 0..problem.dimension.components() {
+                let rows = rows_of_component(&conditions, &selected, component, active, positions);
+                if !rows.is_empty() {
+                    sets.push(ConstraintSet::new(component, rows, problem, discretisation, mass)?);
+                }
+            }
+            Ok(Stage { until, sets })
+        };
+        let stages = ends.into_iter().map(stage).collect::<Result<_, _>>()?;
+        Ok(Constraints { conditions, stages })
+    }
+
+    /// The sets that are active at time `t` \[s\].
+    pub fn active(&self, t: f64) -> &[ConstraintSet] {
+        &self.stages[self.stage(t)].sets
+    }
+
+    /// Index of the interval between releases that contains `t` \[s\].
+    pub fn stage(&self, t: f64) -> usize {
+        self.stages.iter().position(|stage| t < stage.until).unwrap_or(self.stages.len() - 1)
+    }
+
+    /// Whether a component of a node is prescribed and never released.
+    pub fn always_constrained(&self, node: u32) -> bool {
+        let last = &self.stages[self.stages.len() - 1];
+        last.sets.iter().any(|set| set.rows.iter().any(|row| row.node == node))
+    }
+
+    /// Changes the predicted displacements `u` \[component of node\] \[m\] so that
+    /// they meet the conditions of time `t` \[s\] (method book, eqs. 15.1 and 15.2),
+    /// and calls `on_change(index, Δu)` for each changed entry. The multipliers m Δu
+    /// \[kg·m\] are stored in `forces`.
+    pub fn enforce(
+        &self,
+        t: f64,
+        positions: &[Vector3],
+        mass: &[f64],
+        u: &mut [f64],
+        forces: &mut ConstraintForces,
+        on_change: impl FnMut(usize, f64),
+    ) {
+        let mut states = std::mem::take(&mut forces.states);
+        states.clear();
+        states.extend(self.conditions.iter().map(|condition| ConditionState::at(condition, t)));
+        let target = |row: &ConstraintRow, component: usize| {
+            let condition = row.condition as usize;
+            let X = &positions[row.node as usize];
+            states[condition].target(&self.conditions[condition].prescribed, row, X, component)
+        };
+        self.enforce_targets(t, mass, u, forces, target, on_change);
+        forces.states = states;
+    }
+
+    /// Projects `u` onto the displacements that the conditions leave free: as
+    /// [`Constraints::enforce`] with zero prescribed displacements.
+    pub fn project(&self, t: f64, mass: &[f64], u: &mut [f64], forces: &mut ConstraintForces) {
+        self.enforce_targets(t, mass, u, forces, |_, _| 0.0, |_, _| ());
+    }
+
+    fn enforce_targets(
+        &self,
+        t: f64,
+        mass: &[f64],
+        u: &mut [f64],
+        forces: &mut ConstraintForces,
+        target: impl Fn(&ConstraintRow, usize) -> f64,
+        mut on_change: impl FnMut(usize, f64),
+    ) {
+        forces.stage = self.stage(t);
+        let components = u.len() / mass.len();
+        let sets = &self.stages[forces.stage].sets;
+        forces.multipliers.resize_with(sets.len(), Vec::new);
+        for (set, values) in sets.iter().zip(&mut forces.multipliers) {
+            let index = |node: u32| components * node as usize + set.component;
+            values.clear();
+            values.extend(set.rows.iter().map(|row| target(row, set.component)));
+            match &set.collocation {
+                Some(collocation) => {
+                    collocation.solve(values, &mut forces.scratch, |node| u[index(node)]);
+                    collocation.corrections(mass, values, |node, delta| {
+                        u[index(node)] += delta;
+                        on_change(index(node), delta);
+                    });
+                }
+                None => {
+                    for (row, value) in set.rows.iter().zip(values) {
+                        let delta = *value - u[index(row.node)];
+                        u[index(row.node)] = *value;
+                        *value = mass[row.node as usize] * delta;
+                        on_change(index(row.node), delta);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Force, and moment about `about` \[m\], of each condition on a body with
+    /// reference `positions` \[node\] \[m\] and nodal parameters `u` \[component of
+    /// node\] \[m\]: the multipliers of the last enforcement times `force_factor`
+    /// \[1/s²\] (method book, eqs. 15.3 and 15.4).
+    pub fn reactions(
+        &self,
+        forces: &ConstraintForces,
+        force_factor: f64,
+        about: &Vector3,
+        positions: &[Vector3],
+        u: &[f64],
+    ) -> Vec<Reaction> {
+        let components = u.len() / positions.len();
+        let zero = Reaction { force: Vector3::zeros(), moment: Vector3::zeros() };
+        let mut reactions = vec![zero; self.conditions.len()];
+        let sets = &self.stages[forces.stage].sets;
+        for (set, multipliers) in sets.iter().zip(&forces.multipliers) {
+            for (i, (row, multiplier)) in set.rows.iter().zip(multipliers).enumerate() {
+                let node = row.node as usize;
+                // Collocation prescribes the field, so the force acts there.
+                let displacement = match &set.collocation {
+                    Some(collocation) => collocation.displacement(i, u, components),
+                    None => vector_at(u, node, components),
+                };
+                let mut force = Vector3::zeros();
+                force[set.component] = multiplier * force_factor;
+                let reaction = &mut reactions[row.condition as usize];
+                reaction.force += force;
+                reaction.moment += (positions[node] + displacement - about).cross(&force);
+            }
+        }
+        reactions
+    }
+}

@@ -1,0 +1,10 @@
+//! Essential conditions: prescribed displacements and how they are enforced
+//! (method book, section 15).
+
+mod collocation;
+mod constraints;
+mod mean_gradient;
+mod rows;
+
+pub use constraints::{ConstraintForces, ConstraintSet, Constraints, Reaction};
+pub use rows::ConstraintRow;

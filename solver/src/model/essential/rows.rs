@@ -1,0 +1,106 @@
+//! What the conditions prescribe: for which component of which node, and how much.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::{Matrix3, Vector3, rotation};
+use crate::discretisation::{Discretisation, selects};
+use crate::error::Error;
+use crate::problem::{EssentialCondition, Prescribed};
+
+/// One constrained component of one node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConstraintRow {
+    /// The node.
+    pub node: u32,
+    /// Index into [`Constraints::conditions`](super::Constraints::conditions).
+    pub condition: u32,
+    /// Displacement at amplitude 1 \[m\]; 0 for a rotation, which is not linear in
+    /// its amplitude.
+    pub displacement: f64,
+}
+
+/// The nodes that each condition selects \[condition\].
+pub(super) fn selected_nodes(
+    conditions: &[EssentialCondition],
+    discretisation: &Discretisation,
+) -> Result<Vec<Vec<u32>>, Error> {
+    let cloud = &discretisation.cloud;
+    let select = |condition: &EssentialCondition| {
+        let selected = |&node: &u32| selects(condition, cloud, node as usize);
+        let nodes: Vec<u32> = (0..cloud.positions.len() as u32).filter(selected).collect();
+        match nodes.is_empty() {
+            true => Err(Error::EmptySelection { name: condition.name.clone() }),
+            false => Ok(nodes),
+        }
+    };
+    conditions.iter().map(select).collect()
+}
+
+/// The rows of one component, in ascending order of nodes. A node that several
+/// active conditions prescribe belongs to the first of them.
+pub(super) fn rows_of_component(
+    conditions: &[EssentialCondition],
+    selected: &[Vec<u32>],
+    component: usize,
+    active: impl Fn(usize) -> bool,
+    positions: &[Vector3],
+) -> Vec<ConstraintRow> {
+    let mut owner = vec![None; positions.len()];
+    for (index, condition) in conditions.iter().enumerate() {
+        let prescribes = match condition.prescribed {
+            Prescribed::Displacement(values) => values[component].is_some(),
+            Prescribed::Rotation { .. } | Prescribed::Field(_) => true,
+        };
+        if !prescribes || !active(index) {
+            continue;
+        }
+        for &node in &selected[index] {
+            owner[node as usize].get_or_insert(index as u32);
+        }
+    }
+    let row = |(node, condition): (usize, Option<u32>)| {
+        let condition = condition?;
+        let displacement = match &conditions[condition as usize].prescribed {
+            Prescribed::Displacement(values) => values[component].unwrap_or(0.0),
+            Prescribed::Field(field) => field.at(&positions[node])[component],
+            Prescribed::Rotation { .. } => 0.0,
+        };
+        Some(ConstraintRow { node: node as u32, condition, displacement })
+    };
+    owner.into_iter().enumerate().filter_map(row).collect()
+}
+
+/// What a condition prescribes at one instant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ConditionState {
+    amplitude: f64,
+    /// R − I of a rotation, otherwise 0.
+    R_minus_I: Matrix3,
+}
+
+impl ConditionState {
+    /// The state at time `t` \[s\].
+    pub fn at(condition: &EssentialCondition, t: f64) -> ConditionState {
+        let amplitude = condition.amplitude.at(t);
+        let R_minus_I = match condition.prescribed {
+            Prescribed::Displacement(_) | Prescribed::Field(_) => Matrix3::zeros(),
+            Prescribed::Rotation { axis, angle, .. } => {
+                rotation(&axis, amplitude * angle) - Matrix3::identity()
+            }
+        };
+        ConditionState { amplitude, R_minus_I }
+    }
+
+    /// The prescribed displacement component \[m\] at reference position `X`.
+    pub fn target(
+        &self,
+        prescribed: &Prescribed,
+        row: &ConstraintRow,
+        X: &Vector3,
+        component: usize,
+    ) -> f64 {
+        match prescribed {
+            Prescribed::Displacement(_) | Prescribed::Field(_) => self.amplitude * row.displacement,
+            Prescribed::Rotation { point, .. } => (self.R_minus_I * (X - point))[component],
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Outcome and cost of a run.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::model::Model;
+use crate::motion::internal_force::SmallestJacobian;
+
+/// Outcome and cost of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// Steps, or corrections of Newton's method.
+    pub steps: usize,
+    /// Time reached \[s\].
+    pub time: f64,
+    /// Smallest and largest time step \[s\].
+    pub time_steps: (f64, f64),
+    /// Critical step in the reference configuration \[s\].
+    pub critical_time_step: f64,
+    /// All evaluations of the internal force.
+    pub force_evaluations: usize,
+    /// Those of them for critical time steps.
+    pub lanczos_evaluations: usize,
+    /// Smallest J of all quadrature points and steps.
+    pub smallest_jacobian: SmallestJacobian,
+    /// Estimated error \[m\] and relative residual of a static solution.
+    pub relaxation: Option<Convergence>,
+    /// Cost of Newton's method, which has no time steps: they are 0.
+    pub newton: Option<NewtonCounts>,
+    /// Whether the observer ended the run early.
+    pub stopped: bool,
+}
+
+/// J of a nearly incompressible point below which a finished run is in doubt \[–\].
+const COLLAPSED: f64 = 0.3;
+
+/// A nearly incompressible point that has lost most of its volume: the body has
+/// folded there between its nodes, and the forces balance all the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CollapsedPoint {
+    /// Index of the quadrature point.
+    pub point: usize,
+    /// Reference position \[m\].
+    pub position: Vector3,
+    /// J = det F \[–\]
+    pub jacobian: f64,
+}
+
+impl std::fmt::Display for CollapsedPoint {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let CollapsedPoint { point, position: X, jacobian } = self;
+        write!(
+            f,
+            "J fell to {jacobian:.3} at quadrature point {point} at ({:.6}, {:.6}, {:.6} m), whose material is nearly \
+             incompressible: the body has folded between its nodes or collapsed at an edge, and results near \
+             this point cannot be trusted; use a finer cloud, or a smaller load",
+            X.x, X.y, X.z
+        )
+    }
+}
+
+impl Summary {
+    /// The point that casts doubt on a finished run, if there is one.
+    pub fn collapsed_point(&self, model: &Model) -> Option<CollapsedPoint> {
+        let SmallestJacobian { jacobian, point } = self.smallest_jacobian;
+        let block = model.blocks.iter().find(|block| block.points.contains(&point))?;
+        let resists = block.law.projected_fraction() > 0.0;
+        (resists && jacobian < COLLAPSED).then(|| CollapsedPoint {
+            point,
+            position: model.point_positions[point],
+            jacobian,
+        })
+    }
+}
+
+/// Cost and outcome of Newton's method.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct NewtonCounts {
+    /// Load increments.
+    pub increments: usize,
+    /// Corrections, including those of failed increments.
+    pub iterations: usize,
+    /// Products with the tangent operator; each takes 1.3 to 1.8 times as long as
+    /// an evaluation of the internal force and is counted as one.
+    pub products: usize,
+    /// All evaluations of the internal force.
+    pub evaluations: usize,
+    /// Largest unbalanced nodal force over the largest nodal force \[–\].
+    pub residual: f64,
+}
+
+/// How well dynamic relaxation has converged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Convergence {
+    /// Estimated largest error of a displacement component \[m\].
+    pub estimated_error: f64,
+    /// Largest unbalanced nodal force over the largest nodal force \[–\].
+    pub residual: f64,
+}

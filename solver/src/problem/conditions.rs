@@ -1,0 +1,126 @@
+//! What acts on the body: prescribed displacements, loads and obstacles.
+
+use crate::algebra::tensor::Vector3;
+use crate::geometry::{Extent, Field, Selector, Shape};
+use crate::problem::amplitude::Amplitude;
+
+/// A prescribed displacement on a selection of nodes.
+#[derive(Debug, Clone)]
+pub struct EssentialCondition {
+    /// Name in reports and messages.
+    pub name: String,
+    /// Whether it acts on boundary nodes only.
+    pub extent: Extent,
+    /// Which of those nodes it acts on.
+    pub part: Selector,
+    /// The displacement at amplitude 1.
+    pub prescribed: Prescribed,
+    /// The factor over time.
+    pub amplitude: Amplitude,
+    /// Enforced while t < `release` \[s\]; for ever if `None`.
+    pub release: Option<f64>,
+}
+
+impl EssentialCondition {
+    /// All components of a displacement \[m\] on the nodes of the boundary that `part`
+    /// selects, for ever.
+    pub fn on_surface(
+        name: &str,
+        part: Selector,
+        displacement: Vector3,
+        amplitude: Amplitude,
+    ) -> EssentialCondition {
+        EssentialCondition {
+            name: name.to_string(),
+            extent: Extent::Surface,
+            part,
+            prescribed: Prescribed::Displacement([0, 1, 2].map(|k| Some(displacement[k]))),
+            amplitude,
+            release: None,
+        }
+    }
+}
+
+/// What is prescribed at amplitude 1.
+#[derive(Debug, Clone)]
+pub enum Prescribed {
+    /// A displacement \[m\] per component; `None` leaves a component free.
+    Displacement([Option<f64>; 3]),
+    /// u = (R(amplitude · angle) − I)(X − point).
+    Rotation {
+        /// A point on the axis \[m\].
+        point: Vector3,
+        /// Unit vector along the axis.
+        axis: Vector3,
+        /// \[rad\]
+        angle: f64,
+    },
+    /// All components of a displacement field \[m\], at the nodes' own positions.
+    Field(Field),
+}
+
+/// Every load, and the velocity at the start.
+#[derive(Debug, Clone, Default)]
+pub struct Loads {
+    /// Forces per mass; they add up.
+    pub body_forces: Vec<BodyForce>,
+    /// Forces per reference area; they add up.
+    pub tractions: Vec<Traction>,
+    /// Velocity at t = 0 \[m/s\], the first part that contains a node.
+    pub initial_velocities: Vec<(Selector, Vector3)>,
+}
+
+/// A force per mass \[N/kg\] on the whole body.
+#[derive(Debug, Clone)]
+pub struct BodyForce {
+    /// At amplitude 1 \[N/kg\].
+    pub acceleration: Field,
+    /// The factor over time.
+    pub amplitude: Amplitude,
+}
+
+/// A dead traction: force per reference area \[Pa\] of fixed direction.
+#[derive(Debug, Clone)]
+pub struct Traction {
+    /// Name in reports and messages.
+    pub name: String,
+    /// Which part of the boundary.
+    pub part: Selector,
+    /// At amplitude 1 \[Pa\].
+    pub traction: Vector3,
+    /// The factor over time.
+    pub amplitude: Amplitude,
+}
+
+/// A rigid obstacle that nodes may not enter.
+#[derive(Debug, Clone)]
+pub struct Obstacle {
+    /// Name in reports and messages.
+    pub name: String,
+    /// The solid, or the cavity.
+    pub shape: Shape,
+    /// The shape is grown by this much first \[m\].
+    pub offset: f64,
+    /// Where the body is.
+    pub side: ObstacleSide,
+    /// What happens along the surface.
+    pub friction: Friction,
+}
+
+/// On which side of the obstacle's surface the body lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ObstacleSide {
+    /// The shape is solid; the body stays outside.
+    Outside,
+    /// The shape is a cavity, as in a skull; the body stays inside.
+    Inside,
+}
+
+/// What happens along the surface of an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Friction {
+    /// Nodes slide freely.
+    Frictionless,
+    /// Nodes that touch do not slide while they touch.
+    NoSlip,
+}

@@ -1,0 +1,72 @@
+//! What is to be solved: plain data, read from a case file or written by hand.
+
+mod amplitude;
+mod conditions;
+pub mod defaults;
+mod motion;
+mod recipe;
+
+pub use crate::geometry::{Dimension, Field};
+pub use amplitude::Amplitude;
+pub use conditions::{
+    BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed, Traction,
+};
+pub use motion::{Motion, Newton, Relaxation, RelaxationMass, StepControl};
+pub use recipe::{
+    BackgroundGrid, Basis, Cloud, Enforcement, GradientStorage, Gradients, InsideRule, MassRule,
+    Recipe, Refinement, VolumetricProjection, WeightFunction,
+};
+
+use crate::geometry::{Selector, Shape};
+use crate::material::Material;
+
+/// A whole problem: body, discretisation recipe, conditions, loads, motion.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    /// Space, or plane strain.
+    pub dimension: Dimension,
+    /// The solid that deforms.
+    pub body: Shape,
+    /// Parts of the body with a material each; the first that contains a
+    /// point owns it, and the last should contain everything.
+    pub regions: Vec<Region>,
+    /// How the body is discretised.
+    pub recipe: Recipe,
+    /// Prescribed displacements; where two claim a component of a node, the
+    /// first one counts.
+    pub conditions: Vec<EssentialCondition>,
+    /// Body forces, tractions and initial velocities.
+    pub loads: Loads,
+    /// Rigid obstacles.
+    pub obstacles: Vec<Obstacle>,
+    /// Dynamic or static, with the settings of the method.
+    pub motion: Motion,
+}
+
+impl Problem {
+    /// A body of one material in three dimensions without conditions, loads
+    /// and obstacles, to be relaxed to a static solution.
+    pub fn new(body: Shape, material: Material, recipe: Recipe) -> Problem {
+        Problem {
+            dimension: Dimension::Three,
+            body,
+            regions: vec![Region { name: "body".into(), part: Selector::All, material }],
+            recipe,
+            conditions: Vec::new(),
+            loads: Loads::default(),
+            obstacles: Vec::new(),
+            motion: Motion::Static(Relaxation::default()),
+        }
+    }
+}
+
+/// A part of the body made of one material.
+#[derive(Debug, Clone)]
+pub struct Region {
+    /// Name in reports and messages.
+    pub name: String,
+    /// Which part of the body.
+    pub part: Selector,
+    /// Its law and density.
+    pub material: Material,
+}

@@ -1,0 +1,83 @@
+//! The one way from a problem to its solution that leaves nothing out.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::discretisation::{Discretisation, Warning};
+use crate::error::Error;
+use crate::model::Model;
+use crate::model::essential::Reaction;
+use crate::model::zero_energy::refuse_zero_energy_modes;
+use crate::motion::energy::{Energies, energies};
+use crate::motion::internal_force::Workspace;
+use crate::motion::mass_scaling::raise_masses;
+use crate::motion::observe::Observer;
+use crate::motion::simulate::simulate;
+use crate::motion::state::State;
+use crate::motion::summary::Summary;
+use crate::problem::{Motion, Problem};
+
+/// A problem that is set up, and the state that it has reached.
+///
+/// The parts are public, so that a study can look at each and run them one by one:
+/// [`Discretisation::new`], [`Model::new`], [`raise_masses`],
+/// [`refuse_zero_energy_modes`], [`State::new`], [`simulate`].
+#[derive(Debug)]
+pub struct Simulation {
+    /// Nodes, quadrature points, shape functions.
+    pub discretisation: Discretisation,
+    /// Masses, stiffness, conditions, loads, obstacles.
+    pub model: Model,
+    /// Displacements and velocities.
+    pub state: State,
+    motion: Motion,
+}
+
+impl Simulation {
+    /// Discretises the body, binds materials, conditions and loads, raises masses where the
+    /// motion asks for that, and refuses a recipe whose quadrature leaves zero-energy modes.
+    pub fn new(problem: &Problem) -> Result<Simulation, Error> {
+        let discretisation = Discretisation::new(problem)?;
+        let model = Model::new(problem, &discretisation)?;
+        let model = raise_masses(model, problem, &discretisation)?;
+        refuse_zero_energy_modes(problem, &discretisation, &model)?;
+        let state = State::new(&model);
+        Ok(Simulation { discretisation, model, state, motion: problem.motion.clone() })
+    }
+
+    /// What to know before the result is trusted.
+    pub fn warnings(&self) -> Vec<Warning> {
+        self.discretisation.warnings()
+    }
+
+    /// Runs to the end of the motion, or to static equilibrium, and notifies `observer`
+    /// after every step. After an error [`Simulation::state`] is the last one reached.
+    pub fn run(&mut self, observer: &mut dyn Observer) -> Result<Summary, Error> {
+        simulate(&self.model, &self.motion, &mut self.state, observer)
+    }
+
+    /// The displacement field \[m\] at reference positions \[m\]. Shape functions do not
+    /// interpolate: this, not a nodal parameter, is the displacement of a point.
+    pub fn displacements_at(&self, positions: &[Vector3]) -> Result<Vec<Vector3>, Error> {
+        let rows = self.discretisation.rows_at(positions)?;
+        let (u, components) = (&self.state.displacement, self.model.components);
+        Ok((0..positions.len()).map(|i| rows.interpolate(i, u, components)).collect())
+    }
+
+    /// Force \[N\] and moment about `about` \[m\] that each condition exerts on the body, in
+    /// the order of the problem's conditions.
+    pub fn reactions(&self, about: &Vector3) -> Vec<Reaction> {
+        let (model, state) = (&self.model, &self.state);
+        model.constraints.reactions(
+            &state.constraint_forces,
+            state.force_factor,
+            about,
+            &model.positions,
+            &state.displacement,
+        )
+    }
+
+    /// Energies \[J\] half a step before the time of the state.
+    pub fn energies(&self) -> Energies {
+        energies(&self.model, &self.state, &mut Workspace::new(&self.model))
+    }
+}

@@ -1,0 +1,119 @@
+//! Figures and the bounds that they must keep.
+
+use super::nan_as_null;
+use serde::{Deserialize, Serialize};
+
+/// Where a bound comes from. The three kinds never mix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A closed form or a theorem.
+    Exact,
+    /// A published or finite-element value with its own uncertainty.
+    Reference,
+    /// An earlier figure of the same code.
+    Regression,
+}
+
+impl Kind {
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Exact => "exact",
+            Kind::Reference => "reference",
+            Kind::Regression => "regression",
+        }
+    }
+}
+
+/// What a value must satisfy to pass.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// Value ≤ limit.
+    AtMost(#[serde(deserialize_with = "nan_as_null::number")] f64),
+    /// Value ≥ limit.
+    AtLeast(#[serde(deserialize_with = "nan_as_null::number")] f64),
+    /// Lower limit ≤ value ≤ upper limit.
+    Between(
+        #[serde(deserialize_with = "nan_as_null::number")] f64,
+        #[serde(deserialize_with = "nan_as_null::number")] f64,
+    ),
+}
+
+impl Bound {
+    /// Whether `value` keeps the bound; NaN never does.
+    pub fn holds(&self, value: f64) -> bool {
+        match *self {
+            Bound::AtMost(limit) => value <= limit,
+            Bound::AtLeast(limit) => value >= limit,
+            Bound::Between(low, high) => value >= low && value <= high,
+        }
+    }
+}
+
+/// One measured figure against its bound.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Check {
+    /// Unique and stable: `study/case/quantity`.
+    pub id: String,
+    /// Id of the study that it belongs to.
+    pub study: String,
+    /// What is measured, for people.
+    pub quantity: String,
+    /// Where the bound comes from.
+    pub kind: Kind,
+    /// The measured figure, in `unit`.
+    #[serde(deserialize_with = "nan_as_null::number")]
+    pub value: f64,
+    /// What the value must satisfy, in `unit`.
+    pub bound: Bound,
+    /// SI, or `1` for a pure number.
+    pub unit: String,
+    /// Whether the value keeps the bound.
+    pub pass: bool,
+    /// Source of the bound, such as a citation.
+    pub source: String,
+    /// Text of the smallest input file that reproduces the failure, for a check
+    /// that fails.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reproduce: Option<String>,
+    /// Error bar of the reference that the value is measured against, in the
+    /// unit of the value: smaller changes are neither better nor worse.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference_error: Option<f64>,
+}
+
+impl Check {
+    /// Judges `value`; `id` is `study/…`.
+    pub fn new(
+        id: &str,
+        quantity: &str,
+        kind: Kind,
+        value: f64,
+        bound: Bound,
+        unit: &str,
+        source: &str,
+    ) -> Check {
+        Check {
+            id: id.to_string(),
+            study: id.split('/').next().unwrap_or(id).to_string(),
+            quantity: quantity.to_string(),
+            kind,
+            value,
+            bound,
+            unit: unit.to_string(),
+            pass: bound.holds(value),
+            source: source.to_string(),
+            reproduce: None,
+            reference_error: None,
+        }
+    }
+
+    /// File of a report with the input that reproduces a failure, relative to the
+    /// report's folder; None where the check passes or has no such input.
+    pub fn failure_file(&self) -> Option<String> {
+        let shown = !self.pass && self.reproduce.is_some();
+        shown.then(|| format!("failures/{}.toml", self.id.replace('/', "-")))
+    }
+}

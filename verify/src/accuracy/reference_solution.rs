@@ -1,0 +1,96 @@
+//! The reference solution of a case.
+
+use super::difference::{Difference, difference};
+use super::finest::{FinestField, finest};
+use super::group::Group;
+use crate::bundled::REFERENCES;
+use crate::reference::agreement::rms_of_points;
+use crate::reference::{ReferenceError, ReferenceValues, agreements, read_reference};
+use crate::scene::Case;
+
+/// Values with error bars that a run is compared with.
+#[derive(Debug, Clone)]
+pub struct ReferenceSolution {
+    /// Instants of the values \[s\].
+    pub times: Vec<f64>,
+    /// In the order of the quantities of the case.
+    pub quantities: Vec<ReferenceValues>,
+    /// Where they come from, for reports.
+    pub source: String,
+}
+
+impl ReferenceSolution {
+    /// From a stored reference of two finite-element codes; the error says why it cannot
+    /// be used.
+    pub fn from_file(
+        case: &Case,
+        text: &str,
+        name: &str,
+    ) -> Result<ReferenceSolution, ReferenceError> {
+        let file = read_reference(case, text)?;
+        let codes: Vec<&str> = file.solutions.iter().map(|s| s.code.as_str()).collect();
+        Ok(ReferenceSolution {
+            times: file.times_s.clone(),
+            quantities: agreements(case, &file).iter().map(|a| a.reference()).collect(),
+            source: format!("finite elements ({}), {name}", codes.join(" and ")),
+        })
+    }
+
+    /// The bundled reference of this problem, whatever the name of the file.
+    pub fn bundled(case: &Case) -> Option<ReferenceSolution> {
+        let hash = format!("\"{}\"", case.problem_hash);
+        let (name, text) = REFERENCES.iter().find(|(_, text)| text.contains(&hash))?;
+        let mut reference =
+            ReferenceSolution::from_file(case, text, &format!("bundled reference {name}")).ok()?;
+        if let Ok(Some(finest)) = finest(case) {
+            reference.refine(finest);
+        }
+        Some(reference)
+    }
+
+    /// Replaces a quantity by that of a finer mesh.
+    fn refine(&mut self, finest: FinestField) {
+        let known = self.quantities.iter_mut().find(|q| q.quantity.name == finest.quantity);
+        let Some(known) = known.filter(|known| known.values.len() == finest.values.len()) else {
+            return;
+        };
+        known.error = rms_of_points(&finest.errors, known.quantity.family.components());
+        known.values = finest.values;
+        known.errors = finest.errors;
+        self.source += &format!("; {} on a finer mesh ({})", finest.quantity, finest.source);
+    }
+
+    /// What is compared where the user names nothing: the first group with a reference.
+    pub fn group(&self, case: &Case) -> Option<Group> {
+        let own: Vec<Vec<f64>> = self.quantities.iter().map(|q| q.values.clone()).collect();
+        Group::ALL
+            .into_iter()
+            .find(|group| difference(case, *group, &self.quantities, &own).is_some())
+    }
+
+    /// The difference of computed values.
+    pub fn difference(
+        &self,
+        case: &Case,
+        group: Group,
+        computed: &[Vec<f64>],
+    ) -> Option<Difference> {
+        difference(case, group, &self.quantities, computed)
+    }
+
+    /// Root mean square difference of two runs over the largest value of the kind \[–\].
+    pub fn difference_between(
+        &self,
+        case: &Case,
+        group: Group,
+        one: &[Vec<f64>],
+        other: &[Vec<f64>],
+    ) -> Option<f64> {
+        let replaced = |(known, values): (&ReferenceValues, &Vec<f64>)| ReferenceValues {
+            values: values.clone(),
+            ..known.clone()
+        };
+        let other: Vec<ReferenceValues> = self.quantities.iter().zip(other).map(replaced).collect();
+        difference(case, group, &other, one).map(|difference| difference.rms)
+    }
+}

@@ -1,0 +1,8 @@
+//! The commands that run a case many times.
+
+mod args;
+pub mod budget;
+mod ranges;
+pub mod runs;
+pub mod sweep;
+pub mod tune;

@@ -1,0 +1,84 @@
+//! From a prepared problem to its final state.
+
+use super::prepare::{Prepared, prepare};
+use super::record::{Recorder, Recording};
+use crate::machine::cpu_seconds;
+use crate::scene::Case;
+use mtled::error::Error;
+use mtled::motion::observe::Observer;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
+use mtled::motion::summary::Summary;
+use mtled::problem::Problem;
+use std::time::Instant;
+
+/// The end of a run.
+#[derive(Debug)]
+pub struct Integrated {
+    /// Displacements and velocities at the end.
+    pub state: State,
+    /// Steps, smallest J and convergence.
+    pub summary: Summary,
+    /// Wall time of the integration \[s\].
+    pub solve_seconds: f64,
+    /// CPU time of the integration, all threads of the process \[s\].
+    pub cpu_seconds: f64,
+}
+
+/// A solved problem.
+#[derive(Debug)]
+pub struct Solved {
+    /// Discretisation and model.
+    pub prepared: Prepared,
+    /// Displacements and velocities at the end.
+    pub state: State,
+    /// Steps, smallest J and convergence.
+    pub summary: Summary,
+    /// Wall time of the integration \[s\].
+    pub solve_seconds: f64,
+    /// CPU time of the integration, all threads of the process \[s\].
+    pub cpu_seconds: f64,
+}
+
+impl Solved {
+    /// Joins the end of a run to its model.
+    pub fn new(prepared: Prepared, end: Integrated) -> Solved {
+        let Integrated { state, summary, solve_seconds, cpu_seconds } = end;
+        Solved { prepared, state, summary, solve_seconds, cpu_seconds }
+    }
+}
+
+/// Runs a prepared problem, which stays with the caller if the run fails.
+pub fn integrate_prepared(
+    problem: &Problem,
+    prepared: &Prepared,
+    observer: &mut dyn Observer,
+) -> Result<Integrated, Error> {
+    let (start, cpu) = (Instant::now(), cpu_seconds());
+    let mut state = State::new(&prepared.model);
+    let summary = simulate(&prepared.model, &problem.motion, &mut state, observer)?;
+    Ok(Integrated {
+        state,
+        summary,
+        solve_seconds: start.elapsed().as_secs_f64(),
+        cpu_seconds: cpu_seconds() - cpu,
+    })
+}
+
+/// Runs a prepared problem.
+pub fn integrate(
+    problem: &Problem,
+    prepared: Prepared,
+    observer: &mut dyn Observer,
+) -> Result<Solved, Error> {
+    let end = integrate_prepared(problem, &prepared, observer)?;
+    Ok(Solved::new(prepared, end))
+}
+
+/// Solves a case and records its probes.
+pub fn solve_case(case: &Case) -> Result<(Solved, Recording), Error> {
+    let prepared = prepare(&case.problem)?;
+    let mut recorder = Recorder::new(case, &prepared, 0)?;
+    let solved = integrate(&case.problem, prepared, &mut recorder)?;
+    Ok((solved, recorder.finish()))
+}

@@ -1,0 +1,114 @@
+//! A case: the problem of a case file with its probes and outputs.
+
+use crate::scene::diagnostic::{Diagnostic, Location};
+use crate::scene::document::Document;
+use mtled::algebra::tensor::Vector3;
+use mtled::problem::Problem;
+
+/// A case file without mistakes.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Stem of the file name.
+    pub name: String,
+    /// One line that names the problem.
+    pub title: String,
+    /// What is solved and why.
+    pub description: String,
+    /// Where the problem and its reference values come from.
+    pub source: String,
+    /// What is solved.
+    pub problem: Problem,
+    /// Where displacements are recorded.
+    pub probes: Vec<Probe>,
+    /// What is written.
+    pub outputs: Outputs,
+    /// SHA-256 of the file and of every file it refers to, in hexadecimal.
+    pub hash: String,
+    /// Fingerprint of what is solved, whatever the recipe
+    /// ([`problem_hash`](crate::scene::problem_hash())).
+    pub problem_hash: String,
+    pub(super) document: Document,
+}
+
+/// Where displacements are recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probe {
+    /// Name in results.
+    pub name: String,
+    /// What is recorded.
+    pub kind: ProbeKind,
+}
+
+/// What a probe records.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ProbeKind {
+    /// A reference position \[m\].
+    Point(Vector3),
+    /// Equally spaced reference positions from `min` to `max` \[m\].
+    Lattice {
+        /// Lower corner \[m\].
+        min: Vector3,
+        /// Upper corner \[m\].
+        max: Vector3,
+        /// Positions along x, y and z.
+        counts: [usize; 3],
+    },
+    /// The centre of mass of the region of this name.
+    CentreOfMass {
+        /// Name of the region.
+        region: String,
+    },
+}
+
+impl ProbeKind {
+    /// The reference positions \[m\] of a point or lattice, x fastest; none for
+    /// a centre of mass.
+    pub fn positions(&self) -> Vec<Vector3> {
+        match self {
+            ProbeKind::Point(point) => vec![*point],
+            ProbeKind::Lattice { min, max, counts } => lattice(min, max, counts),
+            ProbeKind::CentreOfMass { .. } => Vec::new(),
+        }
+    }
+}
+
+fn lattice(min: &Vector3, max: &Vector3, counts: &[usize; 3]) -> Vec<Vector3> {
+    let at = |axis: usize, index: usize| {
+        let fraction = index as f64 / (counts[axis].max(2) - 1) as f64;
+        min[axis] + (max[axis] - min[axis]) * fraction
+    };
+    let (nx, ny) = (counts[0], counts[1]);
+    (0..nx * ny * counts[2])
+        .map(|n| Vector3::new(at(0, n % nx), at(1, n / nx % ny), at(2, n / (nx * ny))))
+        .collect()
+}
+
+/// What is written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outputs {
+    /// Number of VTU frames.
+    pub frames: usize,
+    /// Number of samples of histories.
+    pub history: usize,
+    /// Moments of reactions are taken about this point \[m\].
+    pub moment_about: Vector3,
+}
+
+impl Case {
+    /// Place of a key path such as `prescribe[0].where`; a table of an array can be
+    /// named too, as in `prescribe.top`.
+    pub fn locate(&self, key: &str) -> Option<Location> {
+        self.document.locate(key)
+    }
+
+    /// The file as it was read.
+    pub fn text(&self) -> &str {
+        self.document.text()
+    }
+
+    /// A mistake that shows only after reading, such as a condition that
+    /// selects no node, located like the others.
+    pub fn diagnostic(&self, key: &str, message: String) -> Diagnostic {
+        self.document.diagnostic(key, message)
+    }
+}

@@ -1,0 +1,149 @@
+//! Prescribed displacements, loads and obstacles.
+
+use crate::scene::format::choice::choice;
+use crate::scene::format::geometry::{SelectorFormat, ShapeFormat, Triple};
+use mtled::geometry::Extent;
+use mtled::problem::{Friction, ObstacleSide};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A prescribed displacement: `displacement` or `rotation`, not both.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PrescribeFormat {
+    pub name: String,
+    /// Whether nodes are taken from the boundary only or from everywhere.
+    pub of: ExtentFormat,
+    #[serde(rename = "where")]
+    pub part: SelectorFormat,
+    pub displacement: Option<DisplacementFormat>,
+    pub rotation: Option<RotationFormat>,
+    #[serde(default)]
+    pub amplitude: AmplitudeFormat,
+    /// Enforced before this time [s]; for ever if left out.
+    pub release: Option<f64>,
+}
+
+choice! {
+    /// Candidates of a selection.
+    ExtentFormat for Extent {
+        /// Nodes on the boundary of the body only.
+        "surface" Surface,
+        /// Every node of the body.
+        "volume" Volume,
+    }
+}
+
+/// A displacement at amplitude 1 [m]; a component that is left out is free.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DisplacementFormat {
+    pub x: Option<f64>,
+    pub y: Option<f64>,
+    pub z: Option<f64>,
+}
+
+/// A rotation about an axis; the amplitude multiplies the angle.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RotationFormat {
+    /// A point on the axis [m].
+    pub point: Triple,
+    /// Direction of the axis, of any length.
+    pub axis: Triple,
+    /// Angle at amplitude 1 [rad].
+    pub angle: f64,
+}
+
+/// A factor over time; constant if left out.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum AmplitudeFormat {
+    /// 1 from the start.
+    #[default]
+    Constant,
+    /// From 0 to 1 in a straight line, then 1.
+    Linear {
+        /// [s]
+        duration: f64,
+    },
+    /// 10s³ − 15s⁴ + 6s⁵ with s = t/duration, then 1.
+    Smooth {
+        /// [s]
+        duration: f64,
+    },
+    /// Straight lines through rows of time [s] and factor, constant outside.
+    Table(Vec<(f64, f64)>),
+}
+
+/// A force per mass on the whole body.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyForceFormat {
+    /// [m/s²]
+    pub acceleration: Triple,
+    #[serde(default)]
+    pub amplitude: AmplitudeFormat,
+}
+
+/// A traction of fixed direction on a part of the boundary.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TractionFormat {
+    pub name: String,
+    #[serde(rename = "where")]
+    pub part: SelectorFormat,
+    /// Force per reference area [Pa].
+    pub traction: Triple,
+    #[serde(default)]
+    pub amplitude: AmplitudeFormat,
+}
+
+/// A velocity at t = 0.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialVelocityFormat {
+    #[serde(rename = "where")]
+    pub part: SelectorFormat,
+    /// [m/s]
+    pub velocity: Triple,
+}
+
+/// A rigid obstacle.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObstacleFormat {
+    pub name: String,
+    pub shape: ShapeFormat,
+    /// The shape is grown by this much first [m].
+    #[serde(default)]
+    pub offset: f64,
+    #[serde(default)]
+    pub side: SideFormat,
+    #[serde(default)]
+    pub friction: FrictionFormat,
+}
+
+choice! {
+    /// Where the body lives.
+    #[derive(Default)]
+    SideFormat for ObstacleSide {
+        /// The shape is solid, the body stays outside.
+        #[default]
+        "outside" Outside,
+        /// The shape is a cavity, the body stays inside.
+        "inside" Inside,
+    }
+}
+
+choice! {
+    /// What happens along the surface of an obstacle.
+    #[derive(Default)]
+    FrictionFormat for Friction {
+        /// Nodes slide freely.
+        #[default]
+        "frictionless" Frictionless,
+        /// Nodes that touch do not slide.
+        "no_slip" NoSlip,
+    }
+}

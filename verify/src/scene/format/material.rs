@@ -1,0 +1,60 @@
+//! Constitutive laws and their parameters.
+
+use crate::scene::format::choice::choice;
+use mtled::material::VolumetricTerm;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A constitutive law with its parameters: exactly one pair of elastic
+/// constants, or A, B and poisson_ratio for mooney_rivlin.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialFormat {
+    pub law: LawFormat,
+    /// Per reference volume [kg/m³].
+    pub density: f64,
+    /// E [Pa], with poisson_ratio.
+    pub young_modulus: Option<f64>,
+    /// ν [–], -1 < ν < 0.5.
+    pub poisson_ratio: Option<f64>,
+    /// First Lamé modulus λ [Pa], with shear_modulus.
+    pub lame_modulus: Option<f64>,
+    /// μ [Pa], with lame_modulus or bulk_modulus.
+    pub shear_modulus: Option<f64>,
+    /// K [Pa], with shear_modulus.
+    pub bulk_modulus: Option<f64>,
+    /// Mooney-Rivlin A [Pa].
+    #[serde(rename = "A")]
+    pub a: Option<f64>,
+    /// Mooney-Rivlin B [Pa].
+    #[serde(rename = "B")]
+    pub b: Option<f64>,
+    /// Volumetric energy of neo_hookean_isochoric; quadratic if left out.
+    pub volumetric: Option<VolumetricFormat>,
+}
+
+choice! {
+    /// A constitutive law.
+    LawFormat {
+        /// ψ = A(I−3) + B(II−3) + C(III⁻²−1) + D(III−1)².
+        "mooney_rivlin" MooneyRivlin,
+        /// ψ = μ/2 (I₁−3) − μ ln J + λ/2 (ln J)².
+        "neo_hookean_log_j" NeoHookeanLogJ,
+        /// ψ = μ/2 (J^(−2/3) I₁ − 3) + U(J).
+        "neo_hookean_isochoric" NeoHookeanIsochoric,
+        /// ψ = λ/2 (tr E)² + μ E:E.
+        "st_venant_kirchhoff" StVenantKirchhoff,
+        /// ψ = λ/2 (tr ε)² + μ ε:ε, small displacements only.
+        "linear_elastic" LinearElastic,
+    }
+}
+
+choice! {
+    /// Volumetric energy U(J) of neo_hookean_isochoric.
+    VolumetricFormat for VolumetricTerm {
+        /// U = K/2 (J−1)².
+        "quadratic" Quadratic,
+        /// U = K/4 (J² − 1 − 2 ln J).
+        "simo_taylor" SimoTaylor,
+    }
+}

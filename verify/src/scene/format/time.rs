@@ -1,0 +1,97 @@
+//! Time integration, probes and output.
+
+use crate::scene::format::choice::choice;
+use crate::scene::format::geometry::Triple;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// How the body moves. `end`, `damping` and `mass_scaling` belong to method "dynamic";
+/// `solver`, `load_end`, `load_steps`, `tolerance` and `max_steps` to "static".
+/// Newton's method takes `load_end` and `tolerance` only.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TimeFormat {
+    pub method: MethodFormat,
+    /// How a static solution is found; by relaxation if left out.
+    pub solver: Option<SolverFormat>,
+    /// Simulated time of a dynamic run [s].
+    pub end: Option<f64>,
+    /// Mass-proportional damping [1/s]; 0 if left out.
+    pub damping: Option<f64>,
+    /// Step over the critical step [–], in (0, 1]; 0.94 if left out, 0.8 for
+    /// motion without damping.
+    pub safety_factor: Option<f64>,
+    /// The critical step is found again after this many steps at the latest.
+    pub reevaluate_every: Option<usize>,
+    /// Factor by which heavier nodes lengthen the critical step of a slow
+    /// dynamic run [–]; refused if it takes more than 10 % of the body's mass.
+    pub mass_scaling: Option<f64>,
+    /// A step to be used instead [s]; refused if it is not stable.
+    pub fixed_step: Option<f64>,
+    /// Amplitudes run up to this time [s] in a static run; 1 if left out.
+    pub load_end: Option<f64>,
+    /// Steps over which the load is applied.
+    pub load_steps: Option<usize>,
+    /// Requested relative error of the largest displacement [–], 1e-4 if left
+    /// out; of solver "newton" the largest unbalanced nodal force over the
+    /// largest nodal force, 1e-10 if left out.
+    pub tolerance: Option<f64>,
+    /// A static run that needs more steps has failed.
+    pub max_steps: Option<usize>,
+}
+
+choice! {
+    /// Central differences in time, or a static solution.
+    MethodFormat {
+        "dynamic" Dynamic,
+        "static" Static,
+    }
+}
+
+choice! {
+    /// The way to a static solution.
+    SolverFormat {
+        /// Damped explicit motion until it rests; with contact too.
+        "relaxation" Relaxation,
+        /// Newton's method with conjugate gradients, to round-off; no contact.
+        "newton" Newton,
+    }
+}
+
+/// Where displacements are recorded: one of `point`, `lattice`,
+/// `centre_of_mass`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ProbeFormat {
+    pub name: String,
+    /// A reference position [m].
+    pub point: Option<Triple>,
+    pub lattice: Option<LatticeFormat>,
+    /// Name of a region.
+    pub centre_of_mass: Option<String>,
+}
+
+/// Equally spaced reference positions, ends included.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LatticeFormat {
+    /// [m]
+    pub min: Triple,
+    /// [m]
+    pub max: Triple,
+    /// Positions along x, y and z.
+    pub counts: [usize; 3],
+}
+
+/// What is written.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OutputFormat {
+    /// Number of VTU frames; 20 if left out. A static run that ends early has
+    /// fewer, and solver "newton" one for each part of the load.
+    pub frames: Option<usize>,
+    /// Number of samples of histories; 200 if left out.
+    pub history: Option<usize>,
+    /// Moments of reactions are taken about this point [m]; the origin if left out.
+    pub moment_about: Option<Triple>,
+}

@@ -1,0 +1,173 @@
+//! The manufactured solutions and the errors of one cloud.
+#![allow(non_snake_case)]
+
+use crate::exact::manufactured::{Family, FieldKind, Manufactured};
+use crate::run::{Solved, integrate, prepare};
+use crate::specimens::manufactured::{
+    DENSITY, Orientation, Oriented, RecipeKind, YOUNG_MODULUS, manufactured_problem,
+};
+use crate::studies::workbench::Workbench;
+use anyhow::Result;
+use mtled::algebra::tensor::{Matrix3, Vector3};
+use mtled::material::ElasticConstants;
+use mtled::motion::internal_force::projected_mean_stress;
+use mtled::motion::observe::Unobserved;
+use mtled::problem::Problem;
+
+/// Clouds per size, which differ in the seed of their jitter.
+pub const CLOUDS: u64 = 5;
+/// Displacements are compared at the centres of this many cells per edge, the same for every cloud.
+const PROBES: usize = 12;
+
+/// One solution in one material.
+#[derive(Debug, Clone, Copy)]
+pub struct Scenario {
+    /// Part of the ids of its checks.
+    pub name: &'static str,
+    pub label: &'static str,
+    pub field: FieldKind,
+    pub family: Family,
+    pub poisson_ratio: f64,
+    pub recipe: RecipeKind,
+    pub orientation: Orientation,
+}
+
+/// Errors of one cloud, each in L2 over that of the solution \[–\].
+#[derive(Debug, Clone, Copy)]
+pub struct Errors {
+    pub displacement: f64,
+    /// Of F − I at the quadrature points.
+    pub gradient: f64,
+    /// Of −tr σ/3 at the quadrature points.
+    pub pressure: f64,
+    /// Of the pressure less its mean over the body, which the incompressible limit determines.
+    pub pressure_deviation: f64,
+    /// Σ w (det F_h − det F)/V: the gain of volume where the boundary data are known at the nodes only.
+    pub volume: f64,
+    pub points: usize,
+}
+
+/// All clouds of one size.
+#[derive(Debug, Clone)]
+pub struct Level {
+    pub nodes_per_edge: usize,
+    /// \[m\]
+    pub spacing: f64,
+    /// \[cloud\]
+    pub errors: Vec<Errors>,
+}
+
+const fn scenario(
+    name: &'static str,
+    label: &'static str,
+    field: FieldKind,
+    family: Family,
+    poisson_ratio: f64,
+) -> Scenario {
+    Scenario {
+        name,
+        label,
+        field,
+        family,
+        poisson_ratio,
+        recipe: RecipeKind::Default,
+        orientation: Orientation::Along,
+    }
+}
+
+const fn finer(name: &'static str, label: &'static str, scenario: Scenario) -> Scenario {
+    Scenario { name, label, recipe: RecipeKind::Finer, ..scenario }
+}
+
+/// The general field where the material is compressible, the one of bounded pressure where it is
+/// nearly incompressible; the Mooney–Rivlin law of Horton 2007 is unstable at ν = 0.3.
+pub const SCENARIOS: [Scenario; 8] = {
+    use Family::{Isochoric, LogJ, MooneyRivlin};
+    use FieldKind::{General, NearlyIsochoric};
+    [
+        scenario("log_j-nu300", "log-J", General, LogJ, 0.3),
+        scenario("isochoric-nu300", "isochoric", General, Isochoric, 0.3),
+        scenario("log_j-nu490", "log-J", NearlyIsochoric, LogJ, 0.49),
+        scenario("isochoric-nu490", "isochoric", NearlyIsochoric, Isochoric, 0.49),
+        scenario("mooney_rivlin-nu490", "Mooney–Rivlin", NearlyIsochoric, MooneyRivlin, 0.49),
+        scenario("log_j-nu499", "log-J", NearlyIsochoric, LogJ, 0.499),
+        scenario("isochoric-nu499", "isochoric", NearlyIsochoric, Isochoric, 0.499),
+        scenario("mooney_rivlin-nu499", "Mooney–Rivlin", NearlyIsochoric, MooneyRivlin, 0.499),
+    ]
+};
+
+/// Only in the full suite.
+pub const FINER: [Scenario; 4] = [
+    finer("log_j-nu300-finer", "log-J, 2 cells", SCENARIOS[0]),
+    finer("isochoric-nu300-finer", "isochoric, 2 cells", SCENARIOS[1]),
+    finer("log_j-nu490-finer", "log-J, 2 cells", SCENARIOS[2]),
+    finer("log_j-nu499-finer", "log-J, 2 cells", SCENARIOS[5]),
+];
+
+/// Errors of the cloud with this number.
+pub fn errors(
+    bench: &Workbench,
+    scenario: &Scenario,
+    nodes_per_edge: usize,
+    cloud: u64,
+) -> Result<Errors> {
+    let constants = ElasticConstants::from_young_poisson(YOUNG_MODULUS, scenario.poisson_ratio)?;
+    let (field, family) = (scenario.field, scenario.family);
+    let solution = Manufactured { field, family, constants, density: DENSITY };
+    let oriented = Oriented::new(solution, scenario.orientation);
+    let problem =
+        manufactured_problem(oriented, nodes_per_edge, bench.seed(cloud), scenario.recipe)?;
+    let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
+    let displacement = displacement_error(&oriented, &solved)?;
+    Ok(Errors { displacement, ..errors_at_points(&oriented, &problem, &solved) })
+}
+
+/// ‖u_h − u‖/‖u‖ by the midpoint rule on a grid of its own.
+fn displacement_error(solution: &Oriented, solved: &Solved) -> Result<f64> {
+    let centre = |index: usize| ((index % PROBES) as f64 + 0.5) / PROBES as f64;
+    let positions: Vec<Vector3> = (0..PROBES.pow(3))
+        .map(|n| Vector3::new(centre(n), centre(n / PROBES), centre(n / PROBES / PROBES)))
+        .map(|X| solution.turn * X)
+        .collect();
+    let rows = solved.prepared.discretisation.rows_at(&positions)?;
+    let (mut error, mut size) = (0.0, 0.0);
+    for (i, X) in positions.iter().enumerate() {
+        let exact = solution.displacement(X);
+        error += (rows.interpolate(i, &solved.state.displacement, 3) - exact).norm_squared();
+        size += exact.norm_squared();
+    }
+    Ok(f64::sqrt(error / size))
+}
+
+/// ‖F_h − F‖/‖F − I‖, ‖p_h − p‖/‖p‖ and the parts of p_h − p by the quadrature of the solver; the
+/// error of the displacement is left NaN.
+fn errors_at_points(solution: &Oriented, problem: &Problem, solved: &Solved) -> Errors {
+    let discretisation = &solved.prepared.discretisation;
+    let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
+    let law = problem.regions[0].material.law;
+    let pressure = |F: &Matrix3| -law.cauchy(F).trace() / 3.0;
+    let projected = projected_mean_stress(&solved.prepared.model, &solved.state.displacement);
+    let (mut error, mut size, mut pressure_error, mut pressure_size) = (0.0, 0.0, 0.0, 0.0);
+    let (mut surplus, mut gain, mut volume) = (0.0, 0.0, 0.0);
+    for (i, (X, weight)) in quadrature.positions.iter().zip(&quadrature.weights).enumerate() {
+        let computed = rows.deformation_gradient(i, &solved.state.displacement, 3);
+        let exact = solution.deformation_gradient(X);
+        error += weight * (computed - exact).norm_squared();
+        size += weight * (exact - Matrix3::identity()).norm_squared();
+        let difference = pressure(&computed) - projected[i] - pressure(&exact);
+        pressure_error += weight * difference.powi(2);
+        pressure_size += weight * pressure(&exact).powi(2);
+        surplus += weight * difference;
+        gain += weight * (computed.determinant() - exact.determinant());
+        volume += weight;
+    }
+    let deviation = pressure_error - surplus.powi(2) / volume;
+    Errors {
+        displacement: f64::NAN,
+        gradient: f64::sqrt(error / size),
+        pressure: f64::sqrt(pressure_error / pressure_size),
+        pressure_deviation: f64::sqrt(deviation.max(0.0) / pressure_size),
+        volume: gain / volume,
+        points: quadrature.weights.len(),
+    }
+}
