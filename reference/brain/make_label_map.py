@@ -45,7 +45,7 @@ SET = {
     "ventricle_radius": 2.5,   # closing; bridges the septum, so the frontal horns merge
     "ventricle_sigma": 0.7,
     "ventricle_min_area": 30,  # mm^2
-    "tumour_offset": [21.0, 51.0],  # wanted tumour centre minus slice centroid (RAS)
+    "tumour_offset": [21.0, 51.0],  # target tumour centre minus slice centroid (RAS)
     "tumour_semi_axes": [12.0, 10.0],
     "tumour_min_gap_outline": 6.0,
     "tumour_min_gap_ventricles": 3.0,
@@ -154,15 +154,15 @@ def ellipse(shape, centre, origin):
 
 
 def place_tumour(outline, ventricles, origin):
-    """Feasible ellipse closest to the wanted centre: (mask, centre, shift), mm."""
-    wanted = centroid(outline, origin) + SET["tumour_offset"]
+    """Feasible ellipse closest to the target centre: (mask, centre, shift), mm."""
+    target = centroid(outline, origin) + SET["tumour_offset"]
     steps = np.mgrid[-60:61, -60:61].reshape(2, -1).T * 0.5
     for shift in steps[np.argsort(np.hypot(*steps.T), kind="stable")]:
-        mask = ellipse(outline.shape, wanted + shift, origin)
+        mask = ellipse(outline.shape, target + shift, origin)
         inside = not (mask & (~outline | ventricles)).any()
         if (inside and gap(mask, outline, origin) >= SET["tumour_min_gap_outline"]
                 and gap(mask, ventricles, origin) >= SET["tumour_min_gap_ventricles"]):
-            return mask, wanted + shift, shift
+            return mask, target + shift, shift
     sys.exit("the tumour does not fit")
 
 

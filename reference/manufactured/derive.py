@@ -1,9 +1,9 @@
 """Body forces of the manufactured solutions, derived from the strain energies.
 
 A displacement field u(X) on the unit cube and a strain energy psi(F) give
-P = d psi / d F and the body force per mass that keeps u in balance,
-b = -Div P / rho. Everything is differentiated symbolically and evaluated with
-40 digits at a few points; Rust compares its own closed forms with the result.
+P = d psi / d F and the body force per mass that balances u, b = -Div P / rho.
+Everything is differentiated symbolically and evaluated with 40 digits at a few
+points; tests compare the implementations in Rust and NumPy with the result.
 
     python derive.py            writes body_force.json
     python derive.py --check    compares with it instead
@@ -100,13 +100,13 @@ def rows():
     for field, law, ratio in CASES:
         at = derive(field, law, ratio)
         for point in POINTS:
-            place = [mpmath.mpf(sp.Rational(s).p) / sp.Rational(s).q for s in point]
-            u, F, b = at(place)
+            position = [mpmath.mpf(sp.Rational(s).p) / sp.Rational(s).q for s in point]
+            u, F, b = at(position)
             yield {
                 "field": field,
                 "law": law,
                 "poisson_ratio": float(ratio),
-                "position": [float(s) for s in place],
+                "position": [float(s) for s in position],
                 "displacement": u,
                 "deformation_gradient": F,
                 "body_force": b,

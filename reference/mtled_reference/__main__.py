@@ -1,4 +1,4 @@
-"""Command line: solve a case with one code, merge solutions, regenerate all."""
+"""Solves cases by finite elements, merges the solutions, and times runs of the race."""
 
 import argparse
 import signal
@@ -6,17 +6,21 @@ import sys
 from pathlib import Path
 
 from . import CODES, FINEST, LEVELS
-from .case import read_case
-from .reference_file import merge_into
+from .race.reference_solution import write_reference_solution
+from .race.timing import race
+from .regenerate import regenerate
+from .shared.case import read_case
+from .shared.reference_file import merge_into
+from .solve import solve, solve_mesh_here
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Runs a command; 0 on success, 2 with a message on stderr on failure."""
+    """Runs a command; returns 0, or 2 with a message on stderr if it fails."""
     options = _parser().parse_args(arguments)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that children end too
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # ends child processes too
     try:
         options.run(options)
-    except Exception as error:  # the boundary of the program: every failure is reported
+    except Exception as error:  # every failure ends in one line on stderr
         if options.traceback:
             raise
         print(f"mtled_reference: {type(error).__name__}: {error}", file=sys.stderr)
@@ -26,73 +30,81 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="mtled_reference", description=__doc__)
-    parser.add_argument("--traceback", action="store_true", help="show where an error arose")
+    parser.add_argument("--traceback", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(required=True)
-
-    solve = commands.add_parser("solve", help="solve a case with one code")
-    solve.add_argument("case", type=Path)
-    solve.add_argument("--code", choices=sorted(CODES), required=True)
-    solve.add_argument("--mesh", type=int, choices=LEVELS, action="append", dest="meshes")
-    solve.add_argument("--out", type=Path, required=True)
-    solve.set_defaults(run=_solve)
-
-    one = commands.add_parser("solve-mesh", help="solve one mesh in this process")
-    one.add_argument("case", type=Path)
-    one.add_argument("--code", choices=sorted(CODES), required=True)
-    one.add_argument("--mesh", type=int, choices=(*LEVELS, FINEST), required=True)
-    one.add_argument("--out", type=Path, required=True)
-    one.set_defaults(run=_solve_mesh)
-
-    race = commands.add_parser("race", help="one run of the race, in this process")
-    race.add_argument("problem")
-    race.add_argument("--cases", type=Path, required=True, help="folder of the case files")
-    race.add_argument("--code", choices=sorted(CODES), required=True)
-    race.add_argument("--element", required=True, help="such as P2 or Q1/P0")
-    race.add_argument("--cells", type=int, required=True, help="along an edge of the body")
-    race.add_argument("--out", type=Path, required=True)
-    race.set_defaults(run=_race)
-
-    truth = commands.add_parser("race-truth", help="the field of the block for the race")
-    truth.add_argument("case", type=Path)
-    truth.add_argument("--solved", type=Path, required=True, help=f"by solve-mesh --mesh {FINEST}")
-    truth.add_argument("--refinement", type=float, default=1.5)
-    truth.add_argument("--out", type=Path, required=True)
-    truth.set_defaults(run=_race_truth)
-
-    merge = commands.add_parser("merge", help="write DIR/CASE.json from solutions")
-    merge.add_argument("case", type=Path)
-    merge.add_argument("--data", type=Path, required=True)
-    merge.add_argument("solutions", type=Path, nargs="+")
-    merge.set_defaults(run=_merge)
-
-    every = commands.add_parser("all", help="solve cases with both codes and merge them")
-    every.add_argument("--cases", type=Path, required=True, help="folder of the case files")
-    every.add_argument("--data", type=Path, required=True, help="folder of the reference files")
-    every.add_argument("--only", action="append", help="name of a case; repeat for several")
-    every.add_argument("--code", choices=sorted(CODES), action="append", dest="codes")
-    every.add_argument("--jobs", type=int, default=2, help="processes at a time")
-    for code in CODES:
-        every.add_argument(f"--{code}-python", help=f"interpreter with {code}, e.g. 'python3 -s'")
-    every.set_defaults(run=_all)
+    _add_solving(commands)
+    _add_race(commands)
+    _add_references(commands)
     return parser
 
 
-def _solve(options) -> None:
-    from .solve import solve
+def _add_solving(commands) -> None:
+    """The commands that solve a case."""
+    command = commands.add_parser("solve", help="solve a case with one code")
+    command.add_argument("case", type=Path)
+    command.add_argument("--code", choices=CODES, required=True)
+    command.add_argument("--mesh", type=int, choices=LEVELS, action="append", dest="meshes")
+    command.add_argument("--out", type=Path, required=True)
+    command.set_defaults(run=_solve)
 
+    command = commands.add_parser("solve-mesh", help="solve one mesh in this process")
+    command.add_argument("case", type=Path)
+    command.add_argument("--code", choices=CODES, required=True)
+    command.add_argument("--mesh", type=int, choices=(*LEVELS, FINEST), required=True)
+    command.add_argument("--out", type=Path, required=True)
+    command.set_defaults(run=_solve_mesh)
+
+
+def _add_race(commands) -> None:
+    """The commands of the race."""
+    command = commands.add_parser("race", help="one run of the race, in this process")
+    command.add_argument("problem")
+    command.add_argument("--cases", type=Path, required=True, help="folder of the case files")
+    command.add_argument("--code", choices=CODES, required=True)
+    command.add_argument("--element", required=True, help="such as P2 or Q1/P0")
+    command.add_argument("--cells", type=int, required=True, help="along an edge of the body")
+    command.add_argument("--out", type=Path, required=True)
+    command.set_defaults(run=_race)
+
+    command = commands.add_parser("race-reference", help="the reference solution of the race")
+    command.add_argument("case", type=Path)
+    output = f"output of solve-mesh --mesh {FINEST}"
+    command.add_argument("--solved", type=Path, required=True, help=output)
+    ratio = "size of the next coarser mesh over that of the finest"
+    command.add_argument("--refinement", type=float, default=1.5, help=ratio)
+    command.add_argument("--out", type=Path, required=True)
+    command.set_defaults(run=_race_reference)
+
+
+def _add_references(commands) -> None:
+    """The commands that write reference files."""
+    command = commands.add_parser("merge", help="write DIR/CASE.json from solutions")
+    command.add_argument("case", type=Path)
+    command.add_argument("--data", type=Path, required=True)
+    command.add_argument("solutions", type=Path, nargs="+")
+    command.set_defaults(run=_merge)
+
+    command = commands.add_parser("all", help="solve cases with both codes and merge them")
+    command.add_argument("--cases", type=Path, required=True, help="folder of the case files")
+    command.add_argument("--data", type=Path, required=True, help="folder of the reference files")
+    command.add_argument("--only", action="append", help="name of a case; repeat for several")
+    command.add_argument("--code", choices=CODES, action="append", dest="codes")
+    command.add_argument("--jobs", type=int, default=2, help="processes at a time")
+    for code in CODES:
+        command.add_argument(f"--{code}-python", help=f"interpreter with {code}, e.g. 'python3 -s'")
+    command.set_defaults(run=_all)
+
+
+def _solve(options) -> None:
     meshes = sorted(set(options.meshes or LEVELS))
     solve(options.case, options.code, meshes, options.out)
 
 
 def _solve_mesh(options) -> None:
-    from .solve import solve_mesh_here
-
     solve_mesh_here(options.case, options.code, options.mesh, options.out)
 
 
 def _race(options) -> None:
-    from .race import race
-
     race(
         options.problem,
         options.cases,
@@ -103,10 +115,8 @@ def _race(options) -> None:
     )
 
 
-def _race_truth(options) -> None:
-    from .race import write_truth
-
-    write_truth(options.case, options.solved, options.refinement, options.out)
+def _race_reference(options) -> None:
+    write_reference_solution(options.case, options.solved, options.refinement, options.out)
 
 
 def _merge(options) -> None:
@@ -114,8 +124,6 @@ def _merge(options) -> None:
 
 
 def _all(options) -> None:
-    from .regenerate import regenerate
-
     interpreters = {code: getattr(options, f"{code.replace('-', '_')}_python") for code in CODES}
     paths = sorted(options.cases.glob("*.toml"))
     unknown = set(options.only or []) - {path.stem for path in paths}

@@ -1,17 +1,16 @@
-"""All cases with both codes, some processes at a time, merged into reference files."""
+"""Solves all cases with both codes in parallel processes and merges the solutions."""
 
 import json
-import os
 import shlex
 import subprocess
-import sys
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from .case import read_case
-from .reference_file import merge_into
+from .process import environment, module_command, this_python
+from .shared.case import read_case
+from .shared.reference_file import merge_into
 
 
 def regenerate(
@@ -49,11 +48,9 @@ def regenerate(
 
 def _solve(case: Path, code: str, out: Path, interpreter: str | None) -> int:
     """Exit code of the command `solve` in the interpreter of the code."""
-    python = shlex.split(interpreter) if interpreter else [sys.executable]
-    command = [*python, "-m", __package__, "solve", str(case), "--code", code, "--out", str(out)]
-    paths = [str(Path(__file__).resolve().parent.parent), os.environ.get("PYTHONPATH", "")]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, paths))}
-    return subprocess.run(command, env=environment, stdout=subprocess.DEVNULL).returncode
+    python = shlex.split(interpreter) if interpreter else this_python()
+    command = module_command(python, "solve", case, "--code", code, "--out", out)
+    return subprocess.run(command, env=environment(), stdout=subprocess.DEVNULL).returncode
 
 
 def _rows(case: str, solutions: list[dict]) -> list[dict]:

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mtled_reference.brain_body import Skull, read_body
-from mtled_reference.brain_image import signed_distance
-from mtled_reference.brain_outline import area, level_polygons, smooth_curve
-from mtled_reference.brain_triangles import Sizes, triangulate
-from mtled_reference.case import read_case
+from mtled_reference.brain.body import Skull, read_body
+from mtled_reference.brain.image import signed_distance
+from mtled_reference.brain.outline import area, level_polygons, smooth_curve
+from mtled_reference.brain.triangles import Sizes, signed_areas, triangulate
+from mtled_reference.shared.case import read_case
 
 CASE = Path(__file__).parents[1] / "cases" / "brain_slice.toml"
 
@@ -39,7 +39,7 @@ def test_the_outline_encloses_the_area_of_the_voxels(body):
     assert area(body.outline.polygon(1e-4)) == pytest.approx(voxels, rel=1e-3)
 
 
-def test_the_distance_is_that_to_the_outline(body):
+def test_signed_distance_is_measured_to_the_outline(body):
     distance = signed_distance(body.image, [1, 2, 3])
     x, y = body.image.axes()
     far = np.array([[x[i], y[j]] for i, j in [(20, 60), (40, 150), (90, 20)]])
@@ -50,10 +50,10 @@ def test_the_distance_is_that_to_the_outline(body):
 
 def test_the_craniotomy_ends_on_its_sphere(case, body):
     sphere = case.prescriptions[0].selector["sphere"]
-    ends = body.outline.at(np.array(body.held))
+    ends = body.outline.at(np.array(body.craniotomy))
     distance = np.linalg.norm(ends - np.array(sphere["centre"])[:2], axis=1)
     assert distance == pytest.approx([sphere["radius"]] * 2, abs=1e-9)
-    middle = body.outline.at(np.mean(body.held))
+    middle = body.outline.at(np.mean(body.craniotomy))
     assert np.linalg.norm(middle - np.array(sphere["centre"])[:2]) < sphere["radius"]
 
 
@@ -67,14 +67,12 @@ def test_the_skull_is_three_millimetres_away(case, body):
 
 def test_triangles_fill_the_regions(case, body):
     triangles = triangulate(body, Sizes(0.02, 0.008, 0.006, 0.004))
-    corner = triangles.points[triangles.corners]
-    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    size = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    assert size.min() > 0.0
+    areas = signed_areas(triangles.points, triangles.corners)
+    assert areas.min() > 0.0
     for index, label in ((0, 2), (1, 3)):
         voxels = np.count_nonzero(body.image.labels == label) * body.image.voxel**2
-        assert size[triangles.region == index].sum() == pytest.approx(voxels, rel=0.08)
-    ends = triangles.points[triangles.curve_edges[triangles.held]]
+        assert areas[triangles.region == index].sum() == pytest.approx(voxels, rel=0.08)
+    ends = triangles.points[triangles.curve_edges[triangles.constrained]]
     sphere = case.prescriptions[0].selector["sphere"]
     reach = np.linalg.norm(ends - np.array(sphere["centre"])[:2], axis=-1)
     assert reach.max() == pytest.approx(sphere["radius"], abs=1e-9)

@@ -5,12 +5,12 @@ import pytest
 import scipy.sparse as sp
 import scipy.sparse.linalg
 
-from mtled_reference.brain_contact import Wall
-from mtled_reference.brain_motion import Motion
+from mtled_reference.brain.contact import Wall
+from mtled_reference.brain.motion import Motion
 
 
 class Spring:
-    """Two components: an oscillator of 1 kg and k₂ = 9 N/m, and one that is held."""
+    """Two components: an oscillator of 1 kg with a stiffening spring, and a prescribed one."""
 
     mass = sp.identity(2, format="csr")
 
@@ -36,7 +36,7 @@ class NoWall:
 
 
 def moved(steps: int) -> np.ndarray:
-    """Where the spring is at 2 s when its held end follows t³ and is let go at 1 s."""
+    """The displacements at 2 s if the prescribed end follows t³ and is released at 1 s."""
     motion = Motion(Spring(), NoWall(), 0.7, np.array([1]), lambda t: np.array([t**3]), 1.0)
     state = motion.at_rest()
     for n in range(steps):
@@ -50,15 +50,15 @@ def test_halved_steps_quarter_the_error():
     assert order == pytest.approx(2.0, abs=0.25)
 
 
-def test_a_held_spring_pushes_back_with_its_inertia():
+def test_reactions_include_the_inertia_of_a_prescribed_spring():
     motion = Motion(Spring(), NoWall(), 0.7, np.array([1]), lambda t: np.array([t**3]), 1.0)
     state = motion.at_rest()
     for n in range(180):
         state = motion.step(state, 0.9 * (n + 1) / 180)
     acceleration, velocity = 6.0 * 0.9, 3.0 * 0.9**2
     expected = acceleration + 0.7 * velocity + Spring().force(state.u)[1]
-    assert state.support[1] == pytest.approx(expected, rel=1e-3)
-    assert state.support[0] == 0.0
+    assert state.reactions[1] == pytest.approx(expected, rel=1e-3)
+    assert state.reactions[0] == 0.0
 
 
 class FlatSkull:
@@ -68,7 +68,7 @@ class FlatSkull:
         return points[:, 1].copy(), np.tile([0.0, 1.0], (len(points), 1))
 
 
-def test_a_pressed_edge_feels_penalty_times_depth_times_area():
+def test_contact_force_is_penalty_times_depth_times_area():
     edge = np.array([[[0.0, 0.0], [0.2, 0.0], [0.1, 0.0]]])
     wall = Wall(FlatSkull(), np.array([[0, 1, 2]]), [0.0, 0.5, 1.0], edge, 3, 0.05, 1e4)
     u = np.array([0.0, -1e-3, 0.0, -1e-3, 0.0, -1e-3])

@@ -1,4 +1,4 @@
-"""Meshes of the cases and solutions that are known."""
+"""Meshes of the cases, and cases with known solutions."""
 
 from pathlib import Path
 
@@ -7,16 +7,17 @@ import pytest
 
 skfem = pytest.importorskip("skfem")
 
-from mtled_reference.case import read_case
-from mtled_reference.hexahedra_cases import MESHES, CaseMesh, case_mesh
-from mtled_reference.measure import Measurements
-from mtled_reference.scikit_fem_dynamics import solve_dynamic
-from mtled_reference.scikit_fem_measure import Observer
-from mtled_reference.scikit_fem_mesh import Block, carried_over, mesh_of_blocks
-from mtled_reference.scikit_fem_model import Model
-from mtled_reference.scikit_fem_newton import Factorisation, solve_static
-from mtled_reference.scikit_fem_solve import solve_mesh
-from mtled_reference.selection import bounding_box
+from mtled_reference.scikit_fem.case_meshes import MESHES, CaseMesh, case_mesh
+from mtled_reference.scikit_fem.dynamics import solve_dynamic
+from mtled_reference.scikit_fem.factorisation import Factorisation
+from mtled_reference.scikit_fem.hexahedra import box_block
+from mtled_reference.scikit_fem.mesh import Block, interpolated, mesh_of_blocks
+from mtled_reference.scikit_fem.model import Model
+from mtled_reference.scikit_fem.newton import solve_static
+from mtled_reference.scikit_fem.record import Recorder
+from mtled_reference.scikit_fem.solve import solve_mesh
+from mtled_reference.shared.case import read_case
+from mtled_reference.shared.selection import bounding_box
 
 CASES = Path(__file__).parent.parent / "cases"
 
@@ -26,7 +27,7 @@ def silent(fraction: float, message: str) -> None:
 
 
 def volume(shape: dict, dimension: int) -> float:
-    """Volume of a body [m³], or area of a slice [m²]."""
+    """Volume of a body [m³], or area of a plane one [m²]."""
     ((kind, content),) = shape.items()
     if kind == "box":
         return float(np.prod(np.subtract(content["max"], content["min"])[:dimension]))
@@ -39,7 +40,7 @@ def volume(shape: dict, dimension: int) -> float:
 
 
 @pytest.mark.parametrize("name", MESHES)
-def test_a_mesh_fills_the_body_and_every_element_is_sound(name):
+def test_a_mesh_fills_the_body_with_positive_volumes(name):
     case = read_case(CASES / f"{name}.toml")
     division = case_mesh(case, 1)
     mesh = mesh_of_blocks(division.blocks)
@@ -62,7 +63,7 @@ def test_meshes_are_refined_by_a_constant_ratio(name):
         assert elements[1] ** 2 == elements[0] * elements[2]
 
 
-def test_the_held_cap_has_its_area():
+def test_the_fixed_cap_has_the_exact_area():
     case = read_case(CASES / "sphere_gravity.toml")
     division = case_mesh(case, 1)
     model = Model(case, mesh_of_blocks(division.blocks), division.symmetry)
@@ -76,7 +77,7 @@ def test_a_uniaxial_stretch_is_exact():
     values = solve_mesh(case, 0, silent)["mesh"]["values"]
     mu, lame = case.regions[0].material.shear_modulus, case.regions[0].material.lame_modulus
     stretch, lateral = 1.2, 1.0
-    for _ in range(50):  # Newton for the lateral stretch at which its stress vanishes
+    for _ in range(50):  # Newton's method for a lateral stress of zero
         J = stretch * lateral**2
         stress = mu * lateral + (lame * np.log(J) - mu) / lateral
         slope = mu - (lame * np.log(J) - mu) / lateral**2 + 2.0 * lame / lateral**2
@@ -95,12 +96,12 @@ def values_of(name: str, division: CaseMesh) -> dict:
     case = read_case(CASES / f"{name}.toml")
     model = Model(case, mesh_of_blocks(division.blocks), division.symmetry)
     solved = solve_static(model, 4, silent, Factorisation())
-    values = Measurements()
-    Observer(model).record(values, solved.displacements, solved.reactions, solved.strain_energy)
-    return values.values
+    recorder = Recorder(model)
+    recorder.record(solved.displacements, solved.reactions, solved.strain_energy)
+    return recorder.measurements.values
 
 
-def test_a_quadratic_field_is_carried_to_a_finer_mesh():
+def test_a_quadratic_field_is_interpolated_exactly_on_a_finer_mesh():
     stretch = np.array([[1.0, 0.3, 0.0], [0.0, 0.8, 0.1], [0.2, 0.0, -1.2]])  # left-handed
 
     def blocks(n: int) -> list[Block]:
@@ -116,23 +117,21 @@ def test_a_quadratic_field_is_carried_to_a_finer_mesh():
     ]
     places = [basis.doflocs for basis in bases]
     fields = [np.stack([x**2 + y * z, x - 3.0 * z * y], axis=1) for x, y, z in places]
-    carried = carried_over(coarse, fine, tuple(bases), fields[0])
-    assert carried == pytest.approx(fields[1], abs=1e-12)
+    values = interpolated(coarse, fine, tuple(bases), fields[0])
+    assert values == pytest.approx(fields[1], abs=1e-12)
 
 
-def test_the_slow_solver_gives_the_same(monkeypatch):
+def test_both_direct_solvers_give_the_same(monkeypatch):
     case = read_case(CASES / "uniaxial_bar.toml")
     fast = solve_mesh(case, 0, silent)["mesh"]["values"]
-    monkeypatch.setattr("mtled_reference.scikit_fem_newton.pypardiso", None)
+    monkeypatch.setattr("mtled_reference.scikit_fem.factorisation.pypardiso", None)
     slow = solve_mesh(case, 0, silent)["mesh"]["values"]
     for key, value in fast.items():
         assert np.array(slow[key]) == pytest.approx(np.array(value), abs=1e-10), key
 
 
 @pytest.mark.parametrize("name", ["cube_compression", "bonded_block"])
-def test_a_quarter_stands_for_the_whole(name):
-    from mtled_reference.hexahedra import box_block
-
+def test_a_quarter_with_symmetry_gives_the_values_of_the_whole(name):
     edge = 0.1
     quarter = box_block([edge / 2, edge / 2, 0.0], [edge] * 3, (1, 1, 2))
     whole = box_block([0.0] * 3, [edge] * 3, (2, 2, 2))
@@ -148,11 +147,12 @@ def test_energy_is_conserved_without_damping():
     case = read_case(CASES / "falling_beam.toml")
     division = case_mesh(case, 0)
     model = Model(case, mesh_of_blocks(division.blocks), division.symmetry)
-    values = Measurements()
-    solve_dynamic(model, Observer(model), values, 80, silent, Factorisation())
-    kinetic = np.ravel(values.values["kinetic_energy"])
-    strain = np.ravel(values.values["strain_energy"])
-    fall = np.array(values.values["displacement/centre of mass"])[:, 2]
+    recorder = Recorder(model)
+    solve_dynamic(model, recorder, 80, silent, Factorisation())
+    values = recorder.measurements.values
+    kinetic = np.ravel(values["kinetic_energy"])
+    strain = np.ravel(values["strain_energy"])
+    fall = np.array(values["displacement/centre of mass"])[:, 2]
     mass = 1000.0 * 0.12 * 0.03 * 0.02
     total = kinetic + strain + mass * 9.81 * fall
     assert np.abs(total).max() < 0.01 * kinetic.max()

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mtled_reference.case import Amplitude, Rotation, read_case
-from mtled_reference.measure import Measurements, resultant, rounded
-from mtled_reference.problem_hash import canonical_text, problem_hash
-from mtled_reference.reference_file import merge_into, reference, write
-from mtled_reference.selection import inside, selected
+
+from mtled_reference.shared.case import Amplitude, Rotation, read_case
+from mtled_reference.shared.measurements import Measurements, resultant, rounded
+from mtled_reference.shared.problem_hash import canonical_text, problem_hash
+from mtled_reference.shared.reference_file import merge_into, reference, write
+from mtled_reference.shared.selection import inside, selected
 
 CASES = Path(__file__).parent.parent / "cases"
 
@@ -24,19 +25,19 @@ def test_every_case_is_read(path):
     assert case.is_static or case.time.end > 0.0
 
 
-def test_the_canonical_text_is_as_stated():
+def test_canonical_text():
     document = tomllib.loads('b = [1, 2.5]\na = "é"\nc = { x = true }')
     text = canonical_text(document, Path())
     assert text == "{s1:as2:és1:b[n3ff0000000000000n4004000000000000]s1:c{s1:xb1}}"
 
 
-def test_files_count_by_their_content(tmp_path):
+def test_files_are_hashed_by_their_content(tmp_path):
     (tmp_path / "map").write_bytes(b"abc")
     text = canonical_text({"file": "map"}, tmp_path)
     assert text == "{s4:filef" + hashlib.sha256(b"abc").hexdigest() + "}"
 
 
-def test_the_hash_sees_the_problem_and_nothing_else():
+def test_the_hash_depends_on_the_problem_only():
     document = tomllib.loads((CASES / "falling_beam.toml").read_text())
     hashed = problem_hash(document, CASES)
     changed = document | {"title": "other", "discretisation": {}}
@@ -44,6 +45,19 @@ def test_the_hash_sees_the_problem_and_nothing_else():
     assert problem_hash(changed, CASES) == hashed
     changed["time"] = document["time"] | {"end": 0.3}
     assert problem_hash(changed, CASES) != hashed
+
+
+def test_hashes_are_those_that_rust_computes():
+    rows = json.loads((Path(__file__).parent / "problem_hash.json").read_text(encoding="utf-8"))
+    for row in rows:
+        assert problem_hash(tomllib.loads(row["toml"]), Path()) == row["hash"], row["what"]
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
+def test_the_stored_reference_belongs_to_the_case(path):
+    stored = json.loads((CASES.parent / "data" / f"{path.stem}.json").read_text(encoding="utf-8"))
+    case = read_case(path)
+    assert stored["problem_hash"] == problem_hash(case.document, case.folder)
 
 
 def test_minus_zero_is_zero():

@@ -1,0 +1,1 @@
+"""The case brain_slice with both codes: its geometry, contact and motion."""

@@ -1,0 +1,1 @@
+"""The cases with FEniCSx (DOLFINx): tetrahedra, triangles and a few structured meshes."""

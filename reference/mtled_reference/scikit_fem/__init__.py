@@ -1,0 +1,1 @@
+"""The cases with scikit-fem: hexahedra and quadrilaterals of order 2."""

@@ -1,0 +1,1 @@
+"""What both codes share: case files, materials, selections, results and their files."""

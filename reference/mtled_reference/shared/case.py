@@ -1,0 +1,282 @@
+"""A case file (TOML) read into plain records. SI units."""
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .materials import Material, material_from_table
+
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Amplitude:
+    """A factor over time: constant, linear, smooth or a table of rows."""
+
+    kind: str = "constant"
+    duration: float = 1.0
+    rows: tuple = ()
+
+    def __call__(self, t: float) -> float:
+        """The factor at time t [s] (smooth: 10s³ − 15s⁴ + 6s⁵, s = t/duration)."""
+        if self.kind == "constant":
+            return 1.0
+        if self.kind == "table":
+            times, factors = zip(*self.rows)
+            return float(np.interp(t, times, factors))
+        s = min(max(t / self.duration, 0.0), 1.0)
+        return s if self.kind == "linear" else s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """A rotation by `angle` [rad] about an axis through `point` [m]."""
+
+    point: Triple
+    axis: Triple
+    angle: float
+
+    def displacements(self, positions: np.ndarray, factor: float) -> np.ndarray:
+        """Displacements [m] of positions (n, 3) at `factor` times the angle."""
+        arm = positions - np.asarray(self.point)
+        axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
+        sine, cosine = np.sin(factor * self.angle), np.cos(factor * self.angle)
+        along = np.outer(arm @ axis, axis)
+        return (cosine - 1.0) * (arm - along) + sine * np.cross(axis, arm)
+
+
+@dataclass(frozen=True)
+class Prescription:
+    """A prescribed displacement [m] or rotation, until `release` [s]."""
+
+    name: str
+    of: str
+    selector: object
+    displacement: tuple
+    rotation: Rotation | None
+    amplitude: Amplitude
+    release: float
+
+    def components(self, dimension: int) -> list[int]:
+        """Indices of the prescribed components."""
+        if self.rotation is not None:
+            return list(range(dimension))
+        return [i for i in range(dimension) if self.displacement[i] is not None]
+
+    def values(self, positions: np.ndarray, factor: float) -> np.ndarray:
+        """Displacements [m] of positions (n, 3) when the amplitude is `factor`;
+        0 in components that are free."""
+        if self.rotation is not None:
+            return self.rotation.displacements(positions, factor)
+        full = np.array([component or 0.0 for component in self.displacement])
+        return np.tile(factor * full, (len(positions), 1))
+
+
+@dataclass(frozen=True)
+class Region:
+    """A part of the body with one material. Where regions overlap the first one counts."""
+
+    name: str
+    selector: object
+    material: Material
+
+
+@dataclass(frozen=True)
+class BodyForce:
+    """A force per mass [m/s²] on the whole body."""
+
+    acceleration: Triple
+    amplitude: Amplitude
+
+
+@dataclass(frozen=True)
+class Traction:
+    """A dead force per reference area [Pa] on a part of the boundary."""
+
+    name: str
+    selector: object
+    traction: Triple
+    amplitude: Amplitude
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """A rigid obstacle: a shape grown by `offset` [m]."""
+
+    name: str
+    shape: dict
+    offset: float
+    side: str
+    friction: str
+
+
+@dataclass(frozen=True)
+class Time:
+    """Method (static or dynamic), end of the motion or of loading [s], damping [1/s]."""
+
+    method: str
+    end: float
+    load_end: float
+    damping: float
+
+
+@dataclass(frozen=True)
+class Probe:
+    """Where displacements are recorded: reference positions (n, 3) [m], or the
+    centre of mass of a region."""
+
+    name: str
+    positions: np.ndarray | None
+    centre_of_mass: str | None
+
+
+@dataclass(frozen=True)
+class Case:
+    """One problem as its file states it."""
+
+    name: str
+    folder: Path
+    document: dict
+    dimension: int
+    thickness: float
+    plane_z: float
+    shape: dict
+    regions: list[Region]
+    prescriptions: list[Prescription]
+    body_forces: list[BodyForce]
+    tractions: list[Traction]
+    obstacles: list[Obstacle]
+    time: Time
+    probes: list[Probe]
+    moment_about: np.ndarray
+
+    @property
+    def is_static(self) -> bool:
+        return self.time.method == "static"
+
+    def positions(self, points: np.ndarray) -> np.ndarray:
+        """Points (n, 2) of the slice or (n, 3) as positions (n, 3) in space [m]."""
+        points = np.asarray(points, dtype=float)
+        if points.shape[-1] == 3:
+            return points
+        z = np.full(points.shape[:-1] + (1,), self.plane_z)
+        return np.concatenate([points, z], axis=-1)
+
+    def acceleration(self, t: float) -> np.ndarray:
+        """Sum of the body forces per mass [m/s²] at time t [s]."""
+        total = np.zeros(3)
+        for force in self.body_forces:
+            total += force.amplitude(t) * np.asarray(force.acceleration)
+        return total
+
+
+def read_case(path: str | Path) -> Case:
+    """The case in the TOML file at `path`."""
+    path = Path(path)
+    with path.open("rb") as file:
+        document = tomllib.load(file)
+    if document.get("initial_velocity"):
+        raise ValueError("initial_velocity is not solved by the references")
+    plane = document.get("plane", {})
+    plane_strain = document.get("dimension", "3d") == "plane_strain"
+    about = document.get("output", {}).get("moment_about", [0.0, 0.0, 0.0])
+    return Case(
+        name=path.stem,
+        folder=path.parent,
+        document=document,
+        dimension=2 if plane_strain else 3,
+        thickness=float(plane["thickness"]) if plane_strain else 1.0,
+        plane_z=float(plane.get("z", 0.0)),
+        shape=document["geometry"]["shape"],
+        regions=_regions(document),
+        prescriptions=[_prescription(row) for row in document.get("prescribe", [])],
+        body_forces=[
+            BodyForce(tuple(row["acceleration"]), _amplitude(row))
+            for row in document.get("body_force", [])
+        ],
+        tractions=[
+            Traction(row["name"], row["where"], tuple(row["traction"]), _amplitude(row))
+            for row in document.get("traction", [])
+        ],
+        obstacles=[_obstacle(row) for row in document.get("obstacle", [])],
+        time=_time(document["time"]),
+        probes=[_probe(row) for row in document.get("probe", [])],
+        moment_about=np.array(about, dtype=float),
+    )
+
+
+def _regions(document: dict) -> list[Region]:
+    materials = {
+        name: material_from_table(name, table) for name, table in document["material"].items()
+    }
+    rows = document.get("region", [])
+    if not rows:
+        (material,) = materials.values()
+        return [Region("body", "all", material)]
+    return [Region(row["name"], row["where"], materials[row["material"]]) for row in rows]
+
+
+def _amplitude(row: dict) -> Amplitude:
+    amplitude = row.get("amplitude", "constant")
+    if amplitude == "constant":
+        return Amplitude()
+    ((kind, content),) = amplitude.items()
+    if kind == "table":
+        return Amplitude("table", rows=tuple(map(tuple, content)))
+    return Amplitude(kind, duration=float(content["duration"]))
+
+
+def _prescription(row: dict) -> Prescription:
+    displacement = row.get("displacement", {})
+    rotation = row.get("rotation")
+    return Prescription(
+        name=row["name"],
+        of=row["of"],
+        selector=row["where"],
+        displacement=tuple(displacement.get(axis) for axis in "xyz"),
+        rotation=Rotation(tuple(rotation["point"]), tuple(rotation["axis"]), rotation["angle"])
+        if rotation
+        else None,
+        amplitude=_amplitude(row),
+        release=float(row.get("release", np.inf)),
+    )
+
+
+def _obstacle(row: dict) -> Obstacle:
+    return Obstacle(
+        row["name"],
+        row["shape"],
+        float(row.get("offset", 0.0)),
+        row.get("side", "outside"),
+        row.get("friction", "frictionless"),
+    )
+
+
+def _time(table: dict) -> Time:
+    return Time(
+        table["method"],
+        float(table.get("end", 0.0)),
+        float(table.get("load_end", 1.0)),
+        float(table.get("damping", 0.0)),
+    )
+
+
+def _probe(row: dict) -> Probe:
+    if "centre_of_mass" in row:
+        return Probe(row["name"], None, row["centre_of_mass"])
+    if "point" in row:
+        return Probe(row["name"], np.array([row["point"]], dtype=float), None)
+    lattice = row["lattice"]
+    axes = [
+        np.linspace(low, high, count)
+        for low, high, count in zip(lattice["min"], lattice["max"], lattice["counts"])
+    ]
+    return Probe(row["name"], lattice_positions(*axes), None)
+
+
+def lattice_positions(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Positions (n, 3) of all combinations of the coordinates, x varying fastest."""
+    z, y, x = np.meshgrid(z, y, x, indexing="ij")
+    return np.column_stack([x.ravel(), y.ravel(), z.ravel()])

@@ -1,0 +1,5 @@
+"""How a solution fails."""
+
+
+class NotConverged(RuntimeError):
+    """Newton's method did not reach its tolerance."""
