@@ -89,7 +89,7 @@ knobs! {
     Jitter, "jitter", Some("jitter"), ["discretisation", "jitter"], Number,
         "Largest random move of nodes over their spacing; a lattice becomes jittered";
     Cloud, "cloud", None, ["discretisation", "seed"], Number,
-        "Another cloud of the same spacing: added to the seed of a jittered or graded cloud; \
+        "Another cloud of the same spacing: added to the random seed of a jittered or graded cloud; \
          a lattice is jittered by a tenth; 0 changes nothing";
     SafetyFactor, "safety_factor", Some("safety-factor"), ["time", "safety_factor"], Number,
         "Time step over the critical one";

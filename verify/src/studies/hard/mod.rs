@@ -146,7 +146,7 @@ fn add_outcomes(bench: &Workbench, study: &mut Study, pairs: &[(&HardCase, &Case
         };
         study.checks.push(bench.regression(
             &format!("hard_cases/{}/outcome", case.id),
-            &format!("{}: {outcome} is not a known outcome", case.label),
+            &format!("{}: outcomes that are not known ones (now {outcome})", case.label),
             f64::from(!case.ends.contains(&outcome.as_str())),
             "1",
             &format!("known: {}", case.ends.join(" or ")),

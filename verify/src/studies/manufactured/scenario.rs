@@ -14,7 +14,7 @@ use mtled::motion::internal_force::projected_mean_stress;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::Problem;
 
-/// Clouds per size, which differ in the seed of their jitter.
+/// Clouds per size, which differ in the random seed of their jitter.
 pub const CLOUDS: u64 = 5;
 /// Displacements are compared at the centres of this many cells per edge, the same for every cloud.
 const PROBES: usize = 12;
