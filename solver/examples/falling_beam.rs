@@ -14,7 +14,7 @@ struct History(Vec<(f64, Energies)>);
 
 impl Observer for History {
     fn observe(&mut self, view: &mut View) -> Continue {
-        if view.state.step % 100 == 0 {
+        if view.state.step.is_multiple_of(100) {
             self.0.push((view.state.time, view.energies()));
         }
         Continue::Yes

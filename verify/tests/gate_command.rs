@@ -145,7 +145,7 @@ fn a_file_that_is_not_a_baseline_is_refused_before_the_run() {
     for (file, words) in [
         ("nowhere.json", "there is no baseline nowhere.json"),
         ("bad.json", "has schema version 9"),
-        ("text.json", "text.json is no baseline"),
+        ("text.json", "text.json is not a baseline"),
     ] {
         let (code, out, err) = folder.verify(&["--baseline", file]);
         assert_eq!((code, out.as_str()), (2, ""), "{err}");

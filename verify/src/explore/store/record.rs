@@ -15,7 +15,7 @@ pub type Figures = BTreeMap<String, f64>;
 /// One run. Only `timings` may differ from one time to the next.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunRecord {
-    /// [`SCHEMA_VERSION`] of the program that wrote it.
+    /// Version of the layout that the program wrote.
     pub schema_version: u32,
     /// Hash of everything that decides the result, in hexadecimal.
     pub key: String,

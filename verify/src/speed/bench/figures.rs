@@ -11,7 +11,7 @@ pub const SCHEMA_VERSION: u32 = 2;
 /// work on several.
 #[derive(Debug, Clone, Serialize)]
 pub struct Figures {
-    /// [`SCHEMA_VERSION`].
+    /// Version of the layout.
     pub schema_version: u32,
     /// Program and machine.
     pub provenance: Provenance,
