@@ -66,14 +66,7 @@ impl Simulation {
     /// Force \[N\] and moment about `about` \[m\] that each condition exerts on the body, in
     /// the order of the problem's conditions.
     pub fn reactions(&self, about: &Vector3) -> Vec<Reaction> {
-        let (model, state) = (&self.model, &self.state);
-        model.constraints.reactions(
-            &state.constraint_forces,
-            state.force_factor,
-            about,
-            &model.positions,
-            &state.displacement,
-        )
+        self.state.reactions(&self.model, about)
     }
 
     /// Energies \[J\] half a step before the time of the state.

@@ -30,14 +30,7 @@ impl View<'_> {
     /// Force and moment about `about` \[m\] that each condition exerts on the
     /// body, in the order of the problem's conditions.
     pub fn reactions(&self, about: &Vector3) -> Vec<Reaction> {
-        let (model, state) = (self.model, self.state);
-        model.constraints.reactions(
-            &state.constraint_forces,
-            state.force_factor,
-            about,
-            &model.positions,
-            &state.displacement,
-        )
+        self.state.reactions(self.model, about)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
 use crate::model::contact::ContactState;
-use crate::model::essential::ConstraintForces;
+use crate::model::essential::{ConstraintForces, Reaction};
 
 /// Displacements and velocities at one instant, and the work so far.
 #[derive(Debug)]
@@ -55,6 +55,14 @@ impl State {
             contact: ContactState::default(),
             work: Work::default(),
         }
+    }
+
+    /// Force \[N\] and moment about `about` \[m\] that each condition exerts on the body, in
+    /// the order of the problem's conditions.
+    pub fn reactions(&self, model: &Model, about: &Vector3) -> Vec<Reaction> {
+        let (forces, factor) = (&self.constraint_forces, self.force_factor);
+        let (positions, u) = (&model.positions, &self.displacement);
+        model.constraints.reactions(forces, factor, about, positions, u)
     }
 
     /// Nodal parameter of a node as a vector; z is 0 in a plane \[m\].
