@@ -3,6 +3,32 @@
 use crate::algebra::tensor::Vector3;
 use crate::geometry::GeometryError;
 
+/// An equilibrium that a body leaves at the slightest touch, or has left by itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Instability {
+    /// Steps before it was noticed.
+    pub step: usize,
+    /// The node that moved most.
+    pub node: usize,
+    /// Its reference position \[m\].
+    pub position: Vector3,
+    /// The motion, its largest component 1 \[component of node\] \[–\].
+    pub mode: Vec<f64>,
+}
+
+impl std::fmt::Display for Instability {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Instability { step, node, position, .. } = self;
+        write!(
+            f,
+            "unstable: at step {step} the tangent has a negative mode, largest at node {node} at ({}): the body \
+             buckles, topples or folds, and what it comes to rest in is an equilibrium that it leaves at the \
+             slightest touch, or another one than small loads lead to; support it, or reduce the load",
+            show(position)
+        )
+    }
+}
+
 /// An error of the solver. Positions are reference positions \[m\].
 #[allow(missing_docs, reason = "the messages name every field")]
 #[derive(Debug, Clone, thiserror::Error)]
@@ -38,14 +64,16 @@ pub enum Error {
     TooFewPoints { points: usize, strains: usize, nodes: usize, constrained: usize, modes: usize },
     #[error("{points} quadrature points for {nodes} nodes leave at least {modes} motions with hardly any strain \
              energy at these points (hourglassing), {fraction:.1e} of the true one at the least, the worst about \
-             node {node} at ({}): \
-             use smaller cells: 1.26 per nodal spacing give two points per node", show(.position))]
+             node {node} at ({}), with {density:.2} points per spacing squared or cubed: \
+             use smaller cells there, or let the grid follow the nodes (leave out its cell and refine): \
+             1.26 cells per nodal spacing give two points per node", show(.position))]
     ZeroEnergyModes {
         points: usize,
         nodes: usize,
         modes: usize,
         fraction: f64,
         node: usize,
+        density: f64,
         position: Vector3,
     },
     #[error(
@@ -55,6 +83,43 @@ pub enum Error {
     DivergedCorrection { iterations: usize, residual: f64 },
     #[error("condition \"{name}\" selects no node")]
     EmptySelection { name: String },
+    #[error("condition \"{second}\" prescribes another displacement {component} than condition \"{first}\" for {nodes} nodes \
+             that both select, at node {node} ({}) {:.4e} m and {:.4e} m at t = {time:.6} s: \
+             change one of them, or its selection", show(.position), .displacements[1], .displacements[0])]
+    ContradictingConditions {
+        first: String,
+        second: String,
+        component: char,
+        nodes: usize,
+        node: usize,
+        position: Vector3,
+        time: f64,
+        displacements: [f64; 2],
+    },
+    #[error("{nodes} nodes are inside obstacle \"{name}\" at the start, node {node} at ({}) by {depth:.4e} m: \
+             move the obstacle, change its side, or give it another offset", show(.position))]
+    NodesInObstacle { name: String, nodes: usize, node: usize, position: Vector3, depth: f64 },
+    #[error("condition \"{condition}\" moves {nodes} nodes into obstacle \"{obstacle}\", node {node} at ({}) by {depth:.4e} m \
+             at t = {time:.6} s: change the displacement, or move the obstacle", show(.position))]
+    DrivenIntoObstacle {
+        condition: String,
+        obstacle: String,
+        nodes: usize,
+        node: usize,
+        position: Vector3,
+        depth: f64,
+        time: f64,
+    },
+    #[error("obstacle \"{name}\" is empty: its offset or what is cut out of it leaves nothing")]
+    EmptyObstacle { name: String },
+    #[error(
+        "initial velocity {index} sets that of no node: its part holds none, or an earlier one has them"
+    )]
+    EmptyInitialVelocity { index: usize },
+    #[error(
+        "region \"{name}\" has no quadrature point and so no centre of mass: use smaller cells there, or another region"
+    )]
+    EmptyRegion { name: String },
     #[error("traction \"{name}\" selects no part of the boundary")]
     EmptyTraction { name: String },
     #[error(
@@ -80,10 +145,33 @@ pub enum Error {
             show(.position))]
     Inverted { step: usize, time: f64, point: usize, position: Vector3, jacobian: f64 },
     #[error(
-        "dynamic relaxation has not converged after {steps} steps: estimated error {error:.2e} m of a tolerance of \
-             {tolerance:.2e} m, residual {residual:.2e} of the largest force"
+        "dynamic relaxation has not converged after {steps} steps{}: estimated error {error:.2e} m of a tolerance of \
+             {tolerance:.2e} m, residual {residual:.2e} of the largest force; node {node} at ({}) still moves most, \
+             by {moving:.2e} m a step{}",
+        if *.stalled { " and no longer gets nearer" } else { "" },
+        show(.position),
+        not_held(*.free)
     )]
-    NotConverged { steps: usize, error: f64, tolerance: f64, residual: f64 },
+    NotConverged {
+        steps: usize,
+        stalled: bool,
+        error: f64,
+        tolerance: f64,
+        residual: f64,
+        node: usize,
+        position: Vector3,
+        moving: f64,
+        free: usize,
+    },
+    #[error("{then}{}", not_held(*.free))]
+    NotHeld { free: usize, then: Box<Error> },
+    #[error("{instability}; then: {then}")]
+    Unstable { instability: Instability, then: Box<Error> },
+    #[error(
+        "no equilibrium exists: nothing holds the body along {axis}, and the loads push it there with {force:.3e} N; \
+             prescribe that component somewhere, or add an obstacle"
+    )]
+    NothingHolds { axis: char, force: f64 },
     #[error(
         "newton's method does not treat contact: use dynamic relaxation for a body with obstacles"
     )]
@@ -115,7 +203,17 @@ pub enum Error {
     TooMuchAddedMass { factor: f64, fraction: f64, most: f64 },
 }
 
+/// What a message says of rigid motions that nothing prevents.
+fn not_held(free: usize) -> String {
+    match free {
+        0 => String::new(),
+        free => format!(
+            "; conditions and closed contacts leave {free} rigid motions of the body free: hold it at more nodes"
+        ),
+    }
+}
+
 /// Coordinates in metres for a message.
-fn show(position: &Vector3) -> String {
+pub(crate) fn show(position: &Vector3) -> String {
     format!("{:.6}, {:.6}, {:.6} m", position.x, position.y, position.z)
 }

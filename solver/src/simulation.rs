@@ -46,7 +46,8 @@ impl Simulation {
 
     /// What to know before the result is trusted.
     pub fn warnings(&self) -> Vec<Warning> {
-        self.discretisation.warnings()
+        let of_problem = self.model.warnings.iter().cloned();
+        self.discretisation.warnings().into_iter().chain(of_problem).collect()
     }
 
     /// Runs to the end of the motion, or to static equilibrium, and notifies `observer`

@@ -4,12 +4,14 @@ mod common;
 
 use common::*;
 use mtled::algebra::tensor::{Vector3, rotation};
-use mtled::geometry::{Selector, Shape};
+use mtled::geometry::{DistanceFunction, Selector, Shape};
 use mtled::model::Model;
 use mtled::model::contact::gap;
-use mtled::motion::observe::View;
+use mtled::model::rigid_motions::free_rigid_motions;
+use mtled::motion::observe::{Unobserved, View};
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
+use mtled::motion::summary::Summary;
 use mtled::problem::*;
 
 /// A block one millimetre above a floor, damped so that it rests after half a
@@ -81,7 +83,8 @@ fn on_a_slope(friction: Friction) -> Problem {
     };
     let mut problem = with_law(square(5), neo_hookean(30000.0, 0.3));
     problem.body = Shape::Polygon {
-        points: vec![corner(0.0, 0.0), corner(EDGE, 0.0), corner(EDGE, EDGE), corner(0.0, EDGE)],
+        points: vec![corner(0.0, 0.0), corner(EDGE, 0.0), corner(EDGE, EDGE), corner(0.0, EDGE)]
+            .into(),
         z: (0.0, EDGE),
     };
     gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
@@ -166,4 +169,50 @@ fn nodes_far_from_the_obstacle_are_not_touched() {
 fn a_scene_without_obstacles_has_an_empty_contact_plan() {
     let (_, model) = build(&cube(3));
     assert!(model.contact.obstacles.is_empty() && model.contact.nodes.is_empty());
+}
+
+/// A cube of half the edge that gravity presses onto a floor whose distance function rises
+/// by `slope` per length.
+fn pressed_onto(slope: f64, safety_factor: f64) -> (Model, State, Summary) {
+    let mut problem = with_law(jittered(cube(4), 0.2, 1), neo_hookean(30000.0, 0.3));
+    gravity(&mut problem, Vector3::new(0.0, 0.0, -9.81));
+    problem.conditions.push(condition("x", face(0, 0.0), [Some(0.0), None, None]));
+    problem.conditions.push(condition("y", face(1, 0.0), [None, Some(0.0), None]));
+    let reach = Vector3::repeat(10.0 * EDGE);
+    let rise = DistanceFunction::new(-reach, reach, move |x: &Vector3| slope * (x.z + 0.001));
+    problem.obstacles.push(obstacle(
+        Shape::Function(rise),
+        ObstacleSide::Outside,
+        Friction::Frictionless,
+    ));
+    let step = StepControl { safety_factor, ..StepControl::default() };
+    problem.motion = Motion::Static(Relaxation { step, tolerance: 1e-6, ..Relaxation::default() });
+    let (_, model) = build(&problem);
+    let mut state = State::new(&model);
+    let summary = simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();
+    (model, state, summary)
+}
+
+#[test]
+fn a_node_pressed_against_an_obstacle_comes_to_rest_on_its_surface_whatever_its_distance_function()
+{
+    for slope in [0.7, 1.0, 1.4] {
+        for safety_factor in [0.94, 0.5] {
+            let (model, state, _) = pressed_onto(slope, safety_factor);
+            for &node in &state.contact.touching {
+                let z =
+                    model.positions[node as usize].z + state.displacement[3 * node as usize + 2];
+                assert!((z + 0.001).abs() < 1e-9, "slope {slope}, step {safety_factor}: {z}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_estimated_error_of_a_body_in_contact_is_that_of_a_body_at_rest() {
+    let (model, state, summary) = pressed_onto(1.0, 0.94);
+    let estimated = summary.relaxation.unwrap().estimated_error;
+    assert!(estimated <= 1e-6 * largest(&state.displacement), "{estimated:e} m");
+    let free = free_rigid_motions(&model, state.time, &state.displacement);
+    assert_eq!(free, 0, "the floor and two sides hold the block");
 }

@@ -257,7 +257,8 @@ fn unconverged(load_steps: usize, tolerance: f64, max_steps: usize) -> (f64, f64
     let settings = Relaxation { load_steps, tolerance, max_steps, ..Relaxation::default() };
     problem.motion = Motion::Static(settings);
     let (result, _, state, _) = failure(&problem);
-    let Error::NotConverged { steps, error, tolerance, residual } = result else {
+    let Error::NotConverged { steps, stalled: false, error, tolerance, residual, .. } = result
+    else {
         panic!("{result}")
     };
     assert_eq!((steps, state.step), (max_steps, max_steps));

@@ -351,3 +351,97 @@ fn the_stiffness_of_a_node_is_the_mean_diagonal_of_the_tangent_at_rest() {
         }
     }
 }
+
+/// A cube whose top is moved aside, and nothing else: the whole body follows.
+fn shifted() -> Problem {
+    let mut problem = collocated(jittered(cube(4), 0.2, 1));
+    let by = [Some(0.04 * EDGE), Some(0.0), Some(0.01 * EDGE)];
+    problem.conditions.push(condition("top", face(2, EDGE), by));
+    problem.conditions[0].amplitude = Amplitude::Smooth { duration: 1.0 };
+    problem
+}
+
+#[test]
+fn a_body_that_only_shifts_converges_without_stress_to_compare_with() {
+    let relaxed = solve(&shifted());
+    assert!(relaxed.summary.steps < 2000, "{} steps", relaxed.summary.steps);
+    let solved = solve_by(&shifted(), newton());
+    let residual = solved.summary.newton.unwrap().residual;
+    assert!(residual < 1e-6, "{residual:e}");
+}
+
+/// A strip of soft tissue that stands on its lower edge, six times as high as wide.
+fn standing(young_modulus: f64) -> Problem {
+    let law = neo_hookean(young_modulus, 0.3);
+    let mut problem = with_law(jittered(square(5), 0.3, 2), law);
+    problem.body = mtled::geometry::Shape::Box {
+        min: Vector3::zeros(),
+        max: Vector3::new(EDGE, 6.0 * EDGE, EDGE),
+    };
+    problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
+    gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
+    problem
+}
+
+/// Young's modulus \[Pa\] below which the strip buckles under its weight, E' I q h³ = 7.84
+/// (Greenhill 1881), with E' = E/(1 − ν²) in plane strain.
+fn greenhill_modulus() -> f64 {
+    let (height, square_of_gyration) = (6.0 * EDGE, EDGE * EDGE / 12.0);
+    9.81 * 1000.0 * height.powi(3) / (7.8373 * square_of_gyration) * (1.0 - 0.3 * 0.3)
+}
+
+#[test]
+fn a_strip_that_buckles_under_its_weight_is_called_unstable_and_a_stiffer_one_is_not() {
+    let run = |young_modulus: f64| {
+        let problem = Problem { motion: relaxation(1e-4), ..standing(young_modulus) };
+        let (_, model) = build(&problem);
+        simulate(&model, &problem.motion, &mut State::new(&model), &mut Unobserved)
+    };
+    for stable in [1.5, 4.0] {
+        assert_eq!(run(stable * greenhill_modulus()).unwrap().instability, None, "{stable}");
+    }
+    for unstable in [0.8, 0.5] {
+        let instability = match run(unstable * greenhill_modulus()) {
+            Ok(summary) => summary.instability.expect("the strip has buckled without a word"),
+            Err(Error::Unstable { instability, .. }) => instability,
+            Err(other) => panic!("{other}"),
+        };
+        assert!(instability.position.y > 5.0 * EDGE, "{unstable}: {instability}");
+    }
+}
+
+#[test]
+fn a_static_problem_that_nothing_holds_against_its_loads_is_refused() {
+    for motion in [relaxation(1e-4), newton()] {
+        let mut problem = Problem { motion, ..square(5) };
+        gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
+        problem.conditions.push(condition("side", face(0, 0.0), [Some(0.0), None, None]));
+        let (_, model) = build(&problem);
+        let run = simulate(&model, &problem.motion, &mut State::new(&model), &mut Unobserved);
+        assert!(matches!(run, Err(Error::NothingHolds { axis: 'y', force }) if force < 0.0));
+    }
+}
+
+#[test]
+fn a_static_block_that_slides_away_is_reported_with_the_motion_that_nothing_prevents() {
+    // On a floor without friction, pushed aside for ever.
+    let mut problem = square(4);
+    gravity(&mut problem, Vector3::new(0.5, -9.81, 0.0));
+    problem.obstacles.push(floor(0.0, Vector3::y(), Friction::Frictionless));
+    problem.motion = relaxation(1e-6);
+    let (_, model) = build(&problem);
+    let run = simulate(&model, &problem.motion, &mut State::new(&model), &mut Unobserved);
+    assert!(matches!(run, Err(Error::NotHeld { free: 1, .. })), "{run:?}");
+}
+
+#[test]
+fn a_relaxation_that_no_longer_gets_nearer_stops_before_its_last_step() {
+    // Below round-off nothing improves.
+    let problem = Problem { motion: relaxation(1e-18), ..leaning(square(4)) };
+    let (_, model) = build(&problem);
+    let run = simulate(&model, &problem.motion, &mut State::new(&model), &mut Unobserved);
+    let Err(Error::NotConverged { steps, stalled: true, free: 0, .. }) = run else {
+        panic!("{run:?}")
+    };
+    assert!(steps < 50_000, "{steps} steps");
+}

@@ -97,7 +97,7 @@ fn fewer_strains_than_motions_are_refused_with_the_number_of_modes() {
 #[test]
 fn zero_energy_modes_with_enough_strains_are_refused_with_the_worst_node() {
     let problem = with_cells(cube(5), 5, 1.0);
-    let Error::ZeroEnergyModes { points, nodes, modes, fraction, node, position } =
+    let Error::ZeroEnergyModes { points, nodes, modes, fraction, node, position, .. } =
         refusal(&problem)
     else {
         panic!()
@@ -153,4 +153,62 @@ fn a_plate_one_spacing_thick_has_no_zero_energy_modes_and_sound_supports() {
         assert!(discretisation.worst_condition < 100.0, "{}", discretisation.worst_condition);
         assert_eq!(modes(&problem).count, Some(0));
     }
+}
+
+/// A cube with nodes at a third of their distance in a ball about its middle.
+fn graded() -> Problem {
+    let mut problem = with_cells(cube(6), 6, 1.26);
+    let middle = Shape::Sphere { centre: Vector3::repeat(0.5 * EDGE), radius: 0.15 * EDGE };
+    problem.recipe.cloud = Cloud::Graded {
+        spacing: EDGE / 6.0,
+        refinements: vec![Refinement {
+            part: mtled::geometry::Selector::Inside { shape: middle, tolerance: 0.0 },
+            size: EDGE / 14.0,
+        }],
+        growth: 0.25,
+        seed: 0,
+    };
+    problem
+}
+
+#[test]
+fn cells_that_do_not_follow_refined_nodes_are_refused_where_the_body_has_points_enough() {
+    let mut problem = graded();
+    // Many cells, but far from the refined nodes.
+    let corner = Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(0.4 * EDGE) };
+    problem.recipe.grid.refinements = vec![Refinement {
+        part: mtled::geometry::Selector::Inside { shape: corner, tolerance: 0.0 },
+        size: EDGE / 30.0,
+    }];
+    let Error::ZeroEnergyModes { points, nodes, fraction, density, position, .. } =
+        refusal(&problem)
+    else {
+        panic!()
+    };
+    assert!(points as f64 > 1.1 * nodes as f64, "{points} points, {nodes} nodes");
+    assert!(fraction < ZERO_ENERGY_FRACTION && density < 0.5, "{fraction}, {density}");
+    assert!((position - Vector3::repeat(0.5 * EDGE)).norm() < 0.3 * EDGE, "{position}");
+}
+
+#[test]
+fn cells_that_follow_refined_nodes_leave_no_zero_energy_modes() {
+    let mut problem = graded();
+    problem.recipe.grid = BackgroundGrid::following(1.26);
+    let (discretisation, model) = build(&problem);
+    refuse_zero_energy_modes(&problem, &discretisation, &model).unwrap();
+    let result = zero_energy_modes(&problem, &discretisation, &model).unwrap();
+    assert_eq!(result.at_least(), 0);
+    assert!(result.least_captured[0].fraction > 0.2, "{:?}", result.least_captured);
+    let (points, nodes) = (discretisation.supports.len(), model.positions.len());
+    assert!(points < 4 * nodes, "{points} points for {nodes} nodes");
+}
+
+#[test]
+fn given_nodes_are_followed_without_a_length_of_the_cells() {
+    let (cloud, _) = build(&graded());
+    let mut problem = graded();
+    problem.recipe.cloud = Cloud::Given { nodes: cloud.cloud.positions };
+    problem.recipe.grid = BackgroundGrid::following(1.26);
+    let (discretisation, model) = build(&problem);
+    refuse_zero_energy_modes(&problem, &discretisation, &model).unwrap();
 }

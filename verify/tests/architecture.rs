@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 use tokens::tokens;
 
 /// Source folders of the crates.
-const CRATES: [&str; 4] = ["solver/src", "verify/checks/src", "verify/src", "benches/src"];
+const CRATES: [&str; 5] =
+    ["solver/src", "verify/checks/src", "verify/src", "verify/fuzz/src", "benches/src"];
 const MOST_FILES: usize = 15;
 const MOST_LINES: usize = 400;
 
@@ -90,6 +91,20 @@ fn naming(folder: &str, words: &[&str]) -> Vec<String> {
 fn the_solver_does_not_print_and_does_not_know_the_harness() {
     let printing = ["print", "println", "eprint", "eprintln", "dbg"];
     none(naming("solver/src", &[&printing[..], &["mtled_verify", "mtled_checks"]].concat()));
+}
+
+#[test]
+fn nothing_prints_with_macros_that_end_the_program_where_a_stream_cannot_be_written() {
+    let printing = ["print", "println", "eprint", "eprintln", "dbg"];
+    let mut found = Vec::new();
+    for folder in ["verify/src", "verify/checks/src"] {
+        for (path, text) in sources(folder) {
+            let tokens = tokens(&text);
+            let call = |pair: &[String]| printing.contains(&pair[0].as_str()) && pair[1] == "!";
+            found.extend(tokens.windows(2).any(call).then(|| format!("{folder}/{path} prints")));
+        }
+    }
+    none(found);
 }
 
 #[test]

@@ -79,6 +79,12 @@ const BAD_CASES: &[Expected] = &[
     ("missing_label_map", 5, "geometry.shape.label_map.file", "no_such_slice.nrrd: the file cannot be read"),
     ("unknown_label", 5, "geometry.shape.label_map.labels[2]", "label 7 does not occur; the map has [1, 2, 3]"),
     ("label_without_map", 20, "prescribe[0].where.label", "needs a `file`"),
+    ("fine_spacing", 15, "discretisation.spacing", "about 1.000e18 nodes would be needed; the limit is 2e7: use a larger spacing"),
+    ("endless_lattice", 28, "probe[0].lattice.counts", "asks for 73786976294838210000 positions; at most 1000000 are allowed"),
+    ("endless_history", 27, "output.history", "asks for 4000000000000 samples"),
+    ("far_node", 15, "discretisation.file", "point 17: node 16 at (0.05, 1e160, 0.05) m lies far outside the body"),
+    ("flat_nodes", 15, "discretisation.file", "has all nodes at z = 0 m; in 3d they need x, y and z"),
+    ("millimetres_as_metres", 15, "discretisation.spacing", "use a larger spacing; is the `unit` of its file (\"m\" or \"mm\") right?"),
     ("missing_surface", 5, "geometry.shape.stl.file", "no_such.stl: the file cannot be read"),
 ];
 
@@ -151,6 +157,27 @@ fn several_mistakes_are_reported_together() {
     let found = mtled_verify::scene::parse_case(&text, "two.toml", &folder()).unwrap_err();
     let keys: Vec<&str> = found.iter().map(|mistake| mistake.key.as_str()).collect();
     assert_eq!(keys, ["material.tissue.density", "discretisation.dilation"]);
+}
+
+#[test]
+fn of_many_numbers_that_are_not_finite_the_first_are_reported_and_the_others_counted() {
+    let text = std::fs::read_to_string(folder().join("negative_density.toml")).unwrap();
+    let rows = "nan, ".repeat(50_000);
+    let text = format!("{text}[output]\nmoment_about = [{rows}]\n");
+    let found = mtled_verify::scene::parse_case(&text, "many.toml", &folder()).unwrap_err();
+    assert_eq!(found.len(), 20);
+    assert!(found[19].message.ends_with("so must 49980 more numbers of the file"), "{}", found[19]);
+    let printed = found[19].to_string();
+    let lines: Vec<&str> = printed.lines().collect();
+    assert!(lines[1].len() < 200 && lines[2].len() < 200, "{printed}");
+    let caret = lines[2].find('^').unwrap();
+    assert_eq!(&lines[1][caret..caret + 3], "nan");
+}
+
+#[test]
+fn a_case_file_that_does_not_end_is_refused() {
+    let found = mistakes(Path::new("/dev/zero"));
+    assert!(found[0].to_string().starts_with("/dev/zero: cannot be read: it has more than"));
 }
 
 #[test]

@@ -207,7 +207,9 @@ fn a_condition_that_selects_nothing_is_located() {
 fn poor_supports_are_warned_about_on_standard_error_and_in_the_result() {
     let (dir, case) = case_with("spacing = 0.02", "spacing = 0.02\ndilation = 1.1");
     let (code, out, err) = solve(&case, dir.path(), &["--format", "json"]);
-    assert!(code == 0 && err.contains("warning:") && err.contains("enlarged"), "{code} {err}");
+    let warning: Value = serde_json::from_str(&err).unwrap();
+    assert_eq!((code, &warning["severity"]), (0, &"warning".into()), "{err}");
+    assert!(warning["message"].as_str().unwrap().contains("enlarged"), "{err}");
     let warnings = serde_json::from_str::<Value>(&out).unwrap()["warnings"].clone();
     assert!(warnings[0].as_str().unwrap().contains("enlarged"), "{warnings}");
 }

@@ -121,16 +121,73 @@ fn records_of_other_versions_and_temporary_files_are_pruned() {
     assert!(records(folder, "runs").is_empty());
 }
 
+/// A store with one record, the text of the record and its file.
+fn store_of_one(folder: &Path, store: &str) -> (String, std::path::PathBuf) {
+    let mut consistency = program();
+    consistency.current_dir(folder).args(["study", "consistency", "cube_compression", "--quiet"]);
+    consistency.args(["--dilation", "1.8", "--cells-per-spacing", "1.26", "--store", store]);
+    assert!(consistency.stdout(Stdio::null()).status().unwrap().success());
+    let key = records(folder, store)[0]["key"].as_str().unwrap().to_string();
+    let file = folder.join(store).join(&key[..2]).join(format!("{key}.json"));
+    (std::fs::read_to_string(&file).unwrap(), file)
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output = program().current_dir(folder).args(arguments).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+}
+
+#[test]
+fn records_that_are_not_what_their_names_say_are_named_and_lead_nowhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (text, good) = store_of_one(folder, "runs");
+    let key = good.file_stem().unwrap().to_str().unwrap();
+    let solver = "0.0.0+other";
+    let this =
+        serde_json::from_str::<Value>(&text).unwrap()["solver"].as_str().unwrap().to_string();
+    let with_key = |other: &str| text.replace(key, other).replace(&this, solver);
+    std::fs::write(folder.join("outside.json"), "mine").unwrap();
+    let bad = folder.join("runs/ff");
+    std::fs::create_dir_all(&bad).unwrap();
+    let contents =
+        [with_key("../../outside"), with_key("ééééééééé"), text[..text.len() / 2].into()];
+    for (n, content) in contents.iter().enumerate() {
+        std::fs::write(bad.join(format!("ff{n:030}.json")), content).unwrap();
+    }
+    std::fs::write(bad.join("notes.json"), "mine").unwrap();
+    let check = |(code, out, err): (i32, String, String), bad: usize| {
+        assert_eq!((code, err.lines().count()), (2, bad), "{out}{err}");
+        assert!(err.lines().all(|line| line.contains("is not a record of a run")), "{err}");
+        out
+    };
+    let list = ["runs", "list", "--store", "runs"];
+    let out = check(run(folder, &list), 4);
+    assert!(out.contains(&key[..12]) && out.contains("1 records in runs"), "{out}");
+    let out = check(run(folder, &["merge", "runs", "--into", "into/deep"]), 4);
+    assert!(out.starts_with("1 records added"), "{out}");
+    check(run(folder, &["runs", "prune", "--store", "runs"]), 4);
+    check(run(folder, &["runs", "prune", "--corrupt", "--store", "runs"]), 1);
+    assert!(good.exists() && bad.join("notes.json").exists());
+    check(run(folder, &["runs", "prune", "--all", "--store", "runs"]), 1);
+    assert!(!good.exists() && bad.join("notes.json").exists());
+    assert_eq!(std::fs::read_to_string(folder.join("outside.json")).unwrap(), "mine");
+    assert_eq!(std::fs::read_dir(folder.join("into")).unwrap().count(), 1);
+}
+
 #[test]
 fn a_range_that_cannot_be_read_and_a_case_that_is_not_there_end_with_code_2() {
     for (arguments, words) in [
         (vec!["study", "patch", "cube_compression", "--dilation", "1.4..2"], "1.4..2.6:0.2"),
         (vec!["study", "patch", "no_such_case"], "no case file no_such_case"),
         (vec!["tune", "no_such_case"], "no case file no_such_case"),
+        (vec!["study", "patch", "--plan", "plan.toml"], "plan.toml: no case is named"),
         (vec!["tune", "cube_compression", "--target-error", "2"], "not a fraction"),
         (vec!["budget", "cube_compression", "--reference", "no_file.json"], "no_file.json"),
     ] {
         let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("plan.toml"), "cases = []\n").unwrap();
         let output = program().current_dir(folder.path()).args(&arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         let output = String::from_utf8_lossy(&output.stderr).into_owned();

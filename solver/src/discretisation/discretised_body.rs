@@ -6,12 +6,12 @@ use crate::discretisation::consistency::{Correction, Layout, connected_bodies, m
 use crate::discretisation::mls::{Approximation, PoorSupport};
 use crate::discretisation::nodes::{NodeCloud, node_cloud};
 use crate::discretisation::patches::sort_into_patches;
-use crate::discretisation::quadrature::{Quadrature, quadrature};
+use crate::discretisation::quadrature::{NodalSpacing, Quadrature, quadrature_following};
 use crate::discretisation::rows::{Evaluated, Requested, Rows};
 use crate::discretisation::surface_rule::SurfaceRule;
 use crate::error::Error;
-use crate::geometry::Extent;
-use crate::problem::{Dimension, EssentialCondition, Gradients, Problem, Recipe};
+use crate::geometry::{Extent, Shape};
+use crate::problem::{BackgroundGrid, Dimension, EssentialCondition, Gradients, Problem, Recipe};
 use rayon::prelude::*;
 
 /// The body, discretised.
@@ -41,7 +41,7 @@ pub struct Discretisation {
 }
 
 /// Edge of the boundary panels over the smallest nodal spacing \[–\].
-const PANEL: f64 = 0.5;
+pub(super) const PANEL: f64 = 0.5;
 
 impl Discretisation {
     /// Nodes and quadrature points of a problem with their supports. Points
@@ -53,8 +53,8 @@ impl Discretisation {
         let body = problem.body.section(&dimension)?;
         let recipe = &problem.recipe;
         let cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
-        let mut quadrature = quadrature(&body, &problem.regions, &recipe.grid, &dimension)?;
         let approximation = approximation_of(&cloud, recipe, &dimension);
+        let mut quadrature = quadrature_of(problem, &body, &recipe.grid, &approximation)?;
         let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
         let spacing: Vec<f64> = quadrature.positions.par_iter().map(spacing_at).collect();
         let (thickness, components) = (dimension.thickness(), dimension.components());
@@ -135,6 +135,22 @@ fn approximation_of(cloud: &NodeCloud, recipe: &Recipe, dimension: &Dimension) -
     let radius = cloud.spacing.iter().map(|h| recipe.dilation * h).collect();
     let (basis, weight_function) = (recipe.basis, recipe.weight_function);
     Approximation::new(cloud.positions.clone(), radius, basis, weight_function, dimension)
+}
+
+/// Quadrature points of the body, a section in a plane, on a grid that may follow the
+/// nodes.
+pub(crate) fn quadrature_of(
+    problem: &Problem,
+    body: &Shape,
+    grid: &BackgroundGrid,
+    approximation: &Approximation,
+) -> Result<Quadrature, Error> {
+    let dilation = problem.recipe.dilation;
+    let within =
+        |X: &Vector3, reach: f64| approximation.smallest_radius_within(X, reach) / dilation;
+    let spacing =
+        NodalSpacing { within: &within, largest: approximation.largest_radius() / dilation };
+    quadrature_following(body, &problem.regions, grid, &spacing, &problem.dimension)
 }
 
 /// The surface rule, if consistent gradients or tractions need it.

@@ -1,16 +1,20 @@
-//! Size of a discretisation and memory of a run, estimated before the set-up.
+//! Size of a discretisation and the memory that it takes, estimated before the set-up, or
+//! from its counts.
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
+use crate::discretisation::Discretisation;
+use crate::discretisation::discretised_body::PANEL;
 use crate::discretisation::nodes::{RequestedSizes, SizeField};
-use crate::geometry::{GeometryError, Selector};
+use crate::discretisation::quadrature::followed_edge;
+use crate::discretisation::shape_memory::ShapeMemory;
+use crate::geometry::{GeometryError, POINTS, Selector, Shape};
 use crate::problem::{Cloud, Dimension, InsideRule, Problem, Refinement};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Estimated size of a discretisation. The bytes are 0.9 to 1.15 of the peak of runs
-/// on 32 bodies of 343 to 68 921 nodes with supports of 9 to 66, and 0.76 to 1.07 on six
-/// graded ones of 10 000 to 30 000.
+/// Size of a discretisation. From counts the bytes are an upper bound of the peak, within
+/// 30 % on all bodies measured (method book, eq. 23.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footprint {
     /// Number of nodes.
@@ -19,19 +23,26 @@ pub struct Footprint {
     pub points: f64,
     /// Mean number of nodes per support.
     pub neighbours: f64,
-    /// Memory at the peak, which is that of the set-up.
+    /// Number of pieces of the boundary.
+    pub panels: f64,
+    /// Memory at the peak of set-up and run, without what is recorded.
     pub bytes: f64,
 }
 
 /// Bytes of the program itself, 2e6 of them in development builds only; this and the
-/// bytes per node and per support entry at the peak are fitted to the measured bodies.
-const PROGRAM: f64 = 12.5e6;
+/// following bytes at the peak are fitted to the measured bodies.
+const PROGRAM: f64 = 18e6;
 const PER_NODE: f64 = 1700.0;
 const PER_ENTRY: f64 = 82.0;
-/// The supports of this many points are stored twice for a while, which takes
-/// `PER_BATCH_ENTRY` bytes more for each entry.
+const PER_PANEL: f64 = 350.0;
+const PER_PANEL_ENTRY: f64 = 14.0;
+/// Rows of φ and Grad φ: what stays, and the second copy of so many points for a while.
+const PER_ROW_ENTRY: f64 = 36.0;
 const BATCH: f64 = 16_384.0;
-const PER_BATCH_ENTRY: f64 = 62.0;
+const PER_BATCH_ENTRY: f64 = 54.0;
+/// Panels over the boundary's area divided by their size², and those of an image or a
+/// function, which come from tetrahedra.
+const PANELS_PER_AREA: [f64; 2] = [1.0, 8.0];
 
 /// Nodes of a graded cloud per spacing² in a plane and per spacing³ in space, measured:
 /// nodes are not on a lattice.
@@ -79,13 +90,84 @@ impl Footprint {
         let sum =
             |part: fn(&Density) -> f64| samples.volume * densities.iter().map(part).sum::<f64>();
         let (nodes, points) = (sum(|s| s.nodes), sum(|s| s.points));
-        let entries = sum(|s| s.entries);
-        let neighbours = entries / points.max(1.0);
-        let batch = points.min(BATCH) * neighbours;
-        let bytes = PROGRAM + PER_NODE * nodes + PER_ENTRY * entries + PER_BATCH_ENTRY * batch;
-        Ok(Footprint { nodes, points, neighbours, bytes })
+        POINTS.check(points)?;
+        let neighbours = sum(|s| s.entries) / points.max(1.0);
+        let smallest = match &problem.recipe.cloud {
+            Cloud::Graded { refinements, .. } => {
+                refinements.iter().map(|refinement| refinement.size).fold(even, f64::min)
+            }
+            _ => even,
+        };
+        let panels = samples.panels(problem, smallest);
+        let footprint = Footprint { nodes, points, neighbours, panels, bytes: 0.0 };
+        Ok(footprint.with_bytes(problem))
+    }
+
+    /// From the counts of a discretisation.
+    pub fn counted(problem: &Problem, discretisation: &Discretisation) -> Footprint {
+        let footprint = Footprint {
+            nodes: discretisation.cloud.positions.len() as f64,
+            points: discretisation.supports.len() as f64,
+            neighbours: discretisation.mean_support(),
+            panels: discretisation.surface.panels.len() as f64,
+            bytes: 0.0,
+        };
+        footprint.with_bytes(problem)
+    }
+
+    /// The largest of what is in memory at the same time: images while they are read, the
+    /// distances to the refined parts while nodes are chosen, and everything afterwards.
+    fn with_bytes(self, problem: &Problem) -> Footprint {
+        let shapes = ShapeMemory::of(problem_shapes(problem), problem_selectors(problem));
+        let entries = self.points * self.neighbours;
+        let set_up = PER_NODE * self.nodes
+            + PER_ENTRY * entries
+            + PER_BATCH_ENTRY * self.points.min(BATCH) * self.neighbours
+            + self.panels * (PER_PANEL + PER_PANEL_ENTRY * self.neighbours)
+            + shapes.kept;
+        let choosing = shapes.kept + size_field_bytes(problem);
+        let bytes = PROGRAM + set_up.max(choosing).max(shapes.reading);
+        Footprint { bytes, ..self }
+    }
+
+    /// Bytes of φ and Grad φ at some more points of the body, and while they are made.
+    pub fn rows_bytes(&self, points: f64) -> f64 {
+        let entries = points * self.neighbours;
+        PER_ROW_ENTRY * entries + PER_BATCH_ENTRY * points.min(BATCH) * self.neighbours
     }
 }
+
+/// Every shape of a problem that is not in a selector.
+fn problem_shapes(problem: &Problem) -> impl Iterator<Item = &Shape> {
+    std::iter::once(&problem.body).chain(problem.obstacles.iter().map(|o| &o.shape))
+}
+
+/// Every selector of a problem.
+fn problem_selectors(problem: &Problem) -> impl Iterator<Item = &Selector> {
+    let refined = match &problem.recipe.cloud {
+        Cloud::Graded { refinements, .. } => &refinements[..],
+        _ => &[],
+    };
+    let regions = problem.regions.iter().map(|region| &region.part);
+    let conditions = problem.conditions.iter().map(|condition| &condition.part);
+    let tractions = problem.loads.tractions.iter().map(|traction| &traction.part);
+    let refined = refined.iter().chain(&problem.recipe.grid.refinements).map(|r| &r.part);
+    regions.chain(conditions).chain(tractions).chain(refined)
+}
+
+/// Memory while the nodes of a graded cloud are chosen \[bytes\].
+fn size_field_bytes(problem: &Problem) -> f64 {
+    let Cloud::Graded { spacing, refinements, growth, .. } = &problem.recipe.cloud else {
+        return 0.0;
+    };
+    let requested = RequestedSizes { spacing: *spacing, refinements, growth: *growth };
+    let samples = requested.samples(&problem.body, &problem.dimension).unwrap_or(0.0);
+    // A distance for each part; while one is made, where its samples came from.
+    samples * (8.0 * refinements.len() as f64 + PER_KNOWN_DISTANCE)
+}
+
+/// Bytes per sample while distances are propagated: half of the samples in the part.
+const PER_KNOWN_DISTANCE: f64 = 40.0;
 
 impl SamplePoints {
     fn of(problem: &Problem) -> Result<SamplePoints, GeometryError> {
@@ -93,20 +175,46 @@ impl SamplePoints {
         let body = problem.body.section(&problem.dimension)?;
         let (lower, upper) = problem.body.bounding_box().ok_or(GeometryError::NoNodes)?;
         let d = problem.dimension.components();
-        // Nodes and cut cells count half a spacing beyond the boundary.
-        let beyond = 0.05 * (upper - lower).xy().max();
+        // Nodes and cut cells count half a spacing beyond the boundary; not further, or no
+        // sample would lie inside a slender body.
+        let spacing = problem.recipe.spacing().unwrap_or(0.0);
+        let largest = 0.05 * (upper - lower).xy().max();
+        let beyond = (upper - lower).map(|edge| largest.min((0.05 * edge).max(spacing)));
         let count = SAMPLES[d - 2];
-        let step = (upper - lower).map(|edge| (edge + 2.0 * beyond) / count as f64);
+        let step = (upper - lower + 2.0 * beyond) / count as f64;
         let place = |index: usize| {
             let indices = [index % count, index / count % count, index / (count * count)];
             Vector3::from_fn(|k, _| match (k, &problem.dimension) {
                 (2, Dimension::PlaneStrain { z, .. }) => *z,
-                _ => lower[k] - beyond + (indices[k] as f64 + 0.5) * step[k],
+                _ => lower[k] - beyond[k] + (indices[k] as f64 + 0.5) * step[k],
             })
         };
         let positions: Vec<Vector3> = (0..count.pow(d as u32)).map(place).collect();
         let distances = positions.par_iter().map(|X| body.signed_distance(X)).collect();
         Ok(SamplePoints { positions, distances, volume: (0..d).map(|k| step[k]).product() })
+    }
+
+    /// Pieces of the boundary, from the volume next to it.
+    fn panels(&self, problem: &Problem, smallest: f64) -> f64 {
+        let d = problem.dimension.components() as i32;
+        let near = 1.5 * self.volume.powf(1.0 / d as f64);
+        let count = self.distances.iter().filter(|distance| distance.abs() < near).count();
+        let area = count as f64 * self.volume / (2.0 * near);
+        let size = PANEL * smallest;
+        let (size, crowding, triangles) = match &problem.body {
+            Shape::Labels(field) => {
+                ((size / 3f64.sqrt()).min(field.voxel()), PANELS_PER_AREA[1], 0.0)
+            }
+            Shape::Function(_) => (size / 3f64.sqrt(), PANELS_PER_AREA[1], 0.0),
+            Shape::Surface(surface) => {
+                (size, 2.0 * PANELS_PER_AREA[0], surface.triangle_count() as f64)
+            }
+            _ => (size, PANELS_PER_AREA[0], 0.0),
+        };
+        match d {
+            2 => area / size,
+            _ => (crowding * area / (size * size)).max(triangles),
+        }
     }
 }
 
@@ -127,12 +235,20 @@ fn graded(problem: &Problem) -> Result<Option<SizeField<'_>>, GeometryError> {
 fn density_at(problem: &Problem, spacing: f64, X: &Vector3, distance: f64) -> Density {
     let (recipe, d) = (&problem.recipe, problem.dimension.components() as i32);
     let grid = &recipe.grid;
-    let near = distance.abs() < grid.cell;
-    let largest = grid.boundary_cell.filter(|_| near).unwrap_or(grid.cell).min(grid.cell);
-    let meets = |refinement: &&Refinement| cell_meets(&refinement.part, X, grid.cell, d);
+    let edge = match grid.cells_per_spacing {
+        // Nodes that are given have the mean spacing here.
+        Some(cells) => {
+            let largest = recipe.spacing().unwrap_or(spacing).max(spacing);
+            followed_edge(grid.cell.min(largest / cells), spacing / cells)
+        }
+        None => grid.cell,
+    };
+    let near = distance.abs() < edge;
+    let largest = grid.boundary_cell.filter(|_| near).unwrap_or(edge).min(edge);
+    let meets = |refinement: &&Refinement| cell_meets(&refinement.part, X, edge, d);
     let refined = grid.refinements.iter().filter(meets).map(|refinement| refinement.size);
-    let halvings = (grid.cell / refined.fold(largest, f64::min)).log2().ceil().max(0.0);
-    let cell = grid.cell / halvings.exp2();
+    let halvings = (edge / refined.fold(largest, f64::min)).log2().ceil().max(0.0);
+    let cell = edge / halvings.exp2();
     // A cell whose centre is outside counts where its inside part does.
     let reach = match grid.inside {
         InsideRule::Centre => 0.0,

@@ -11,10 +11,12 @@ pub mod nodes;
 pub mod patches;
 pub mod quadrature;
 pub mod rows;
+mod shape_memory;
 pub mod surface_rule;
 mod warning;
 mod weight_function;
 
+pub(crate) use discretised_body::quadrature_of;
 pub use discretised_body::{Discretisation, selects};
 pub use footprint::Footprint;
 pub use rows::Rows;

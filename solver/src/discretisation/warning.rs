@@ -1,9 +1,11 @@
-//! Doubts about a discretisation.
+//! Doubts about a discretisation, and about the problem that is put to it.
 
+use crate::algebra::tensor::Vector3;
 use crate::discretisation::consistency::Correction;
 use crate::discretisation::discretised_body::Discretisation;
+use crate::error::show;
 
-/// A doubt about a discretisation that does not prevent a run.
+/// A doubt that does not prevent a run. Positions are reference positions \[m\].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
     /// Zero-energy modes are likely.
@@ -29,6 +31,65 @@ pub enum Warning {
         /// Number of iterations.
         iterations: usize,
     },
+    /// Two conditions prescribe the same of more than an edge between two faces.
+    SharedNodes {
+        /// The condition that has the force.
+        first: String,
+        /// The other one.
+        second: String,
+        /// What both prescribe.
+        components: Vec<char>,
+        /// Number of nodes that both select.
+        nodes: usize,
+    },
+    /// A region of the problem has no effect.
+    EmptyRegion {
+        /// Its name.
+        name: String,
+    },
+    /// A traction acts on nodes only whose motion is prescribed.
+    CarriedTraction {
+        /// Its name.
+        name: String,
+    },
+    /// The load of a static problem ends before an amplitude does.
+    UnfinishedLoad {
+        /// What is loaded.
+        name: String,
+        /// Of the amplitude \[s\].
+        duration: f64,
+        /// Of the load \[s\].
+        end: f64,
+        /// The amplitude there \[–\].
+        factor: f64,
+    },
+    /// Nodes are a little inside an obstacle before the first step.
+    StartInsideObstacle {
+        /// Name of the obstacle.
+        name: String,
+        /// How many.
+        nodes: usize,
+        /// The deepest of them.
+        node: usize,
+        /// Where it is.
+        position: Vector3,
+        /// \[m\]
+        depth: f64,
+    },
+    /// Nodes that contact leaves alone, because a component is prescribed, have entered an
+    /// obstacle.
+    EndInsideObstacle {
+        /// Name of the obstacle.
+        name: String,
+        /// How many.
+        nodes: usize,
+        /// The deepest of them.
+        node: usize,
+        /// Where it is.
+        position: Vector3,
+        /// \[m\]
+        depth: f64,
+    },
 }
 
 impl std::fmt::Display for Warning {
@@ -50,6 +111,38 @@ impl std::fmt::Display for Warning {
                 "the gradients are consistent to {residual:.1e} only, not to the requested {tolerance:.1e}, \
                  after {iterations} iterations; a larger tolerance, a larger dilation or a more even \
                  cloud avoids that"
+            ),
+            Warning::SharedNodes { first, second, components, nodes } => write!(
+                f,
+                "conditions \"{first}\" and \"{second}\" prescribe the same displacement {} of {nodes} nodes, whose force is \
+                 counted with \"{first}\" alone",
+                components.iter().map(char::to_string).collect::<Vec<_>>().join(", ")
+            ),
+            Warning::EmptyRegion { name } => write!(
+                f,
+                "region \"{name}\" has no quadrature point, so its material has no effect: it lies outside the body, between \
+                 the points, or in an earlier region"
+            ),
+            Warning::CarriedTraction { name } => write!(
+                f,
+                "traction \"{name}\" acts on nodes only whose displacement is prescribed: it changes reactions and nothing else"
+            ),
+            Warning::UnfinishedLoad { name, duration, end, factor } => write!(
+                f,
+                "the amplitude of \"{name}\" lasts {duration} s and the load ends at {end} s, where it is {factor:.4}: the \
+                 solution is that of a part of the load"
+            ),
+            Warning::StartInsideObstacle { name, nodes, node, position, depth } => write!(
+                f,
+                "{nodes} nodes are inside obstacle \"{name}\" at the start, node {node} at ({}) by {depth:.4e} m: the first \
+                 step moves them out",
+                show(position)
+            ),
+            Warning::EndInsideObstacle { name, nodes, node, position, depth } => write!(
+                f,
+                "{nodes} nodes have entered obstacle \"{name}\", node {node} of reference position ({}) by {depth:.4e} m: contact \
+                 does not act on nodes of which a component is prescribed",
+                show(position)
             ),
         }
     }

@@ -55,10 +55,17 @@ pub enum GeometryError {
     TooFewNodes { count: usize, needed: usize },
     #[error("jitter is {jitter}; it must lie in 0 ≤ jitter < 0.5")]
     Jitter { jitter: f64 },
-    #[error("about {count:.3e} {what} would be needed; the limit is {limit:.0e}")]
-    TooMany { what: &'static str, count: f64, limit: f64 },
+    #[error("about {count:.3e} {what} would be needed; the limit is {limit:.0e}: {remedy}")]
+    TooMany { what: &'static str, count: f64, limit: f64, remedy: &'static str },
+    #[error("the background grid has {count} Gauss points per direction; it must have 1 to 5")]
+    GaussPoints { count: usize },
     #[error("refinement {refinement} of size {size} m contains no point of the body")]
     RefinementEmpty { refinement: usize, size: f64 },
+    #[error(
+        "node {node} at ({:?}, {:?}, {:?}) m lies far outside the body, which is {extent:.4} m across: give positions in metres",
+        position[0], position[1], position[2]
+    )]
+    NodeFarOutside { node: usize, position: [f64; 3], extent: f64 },
     #[error("node {node} lies {distance} m outside the body, where nodes are {spacing} m apart")]
     NodeOutside { node: usize, distance: f64, spacing: f64 },
     #[error("nodes {first} and {second} are {distance} m apart")]
@@ -72,9 +79,4 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), GeometryErr
     } else {
         Err(GeometryError::NotPositive { name, value })
     }
-}
-
-/// No more than `limit` of `what` may be needed.
-pub(crate) fn at_most(what: &'static str, count: f64, limit: f64) -> Result<(), GeometryError> {
-    if count <= limit { Ok(()) } else { Err(GeometryError::TooMany { what, count, limit }) }
 }

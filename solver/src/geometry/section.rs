@@ -28,7 +28,7 @@ impl Shape {
         let between = |lower: f64, upper: f64| lower <= z && z <= upper;
         match self {
             Shape::Box { min, max } if between(min.z, max.z) => Ok(Shape::Polygon {
-                points: vec![[min.x, min.y], [max.x, min.y], [max.x, max.y], [min.x, max.y]],
+                points: vec![[min.x, min.y], [max.x, min.y], [max.x, max.y], [min.x, max.y]].into(),
                 z: WITHOUT_END,
             }),
             Shape::Cylinder { axis, .. } if axis.z.abs() < 1.0 - 1e-12 => Err(unsupported),
@@ -122,7 +122,7 @@ fn surface_section(
 ) -> Result<Shape, GeometryError> {
     let (outer, holes): (Vec<_>, Vec<_>) =
         surface.loops(z).into_iter().partition(|points| polygon_area(points) > 0.0);
-    let polygon = |points| Shape::Polygon { points, z: WITHOUT_END };
+    let polygon = |points: Vec<_>| Shape::Polygon { points: points.into(), z: WITHOUT_END };
     let join = |loops: Vec<Vec<[f64; 2]>>| union(loops.into_iter().map(polygon).collect());
     let body = join(outer).ok_or(empty)?;
     Ok(match join(holes) {

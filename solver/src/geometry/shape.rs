@@ -3,7 +3,7 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::distance_function::DistanceFunction;
-use crate::geometry::polygon::polygon_distance;
+use crate::geometry::polygon::Outline;
 use crate::geometry::primitives;
 use crate::geometry::surface::Surface;
 use crate::geometry::voxels::LabelField;
@@ -48,7 +48,7 @@ pub enum Shape {
     /// A simple polygon in the x–y plane, extruded along z.
     Polygon {
         /// Corners \[m\], either way round.
-        points: Vec<[f64; 2]>,
+        points: Outline,
         /// Lower and upper end \[m\]; may be infinite.
         z: (f64, f64),
     },
@@ -85,7 +85,7 @@ impl Shape {
                 primitives::ellipsoid_distance(&(X - centre), radii)
             }
             Shape::Polygon { points, z } => primitives::product_distance(
-                polygon_distance(points, X.x, X.y),
+                points.signed_distance(X.x, X.y),
                 (z.0 - X.z).max(X.z - z.1),
             ),
             Shape::HalfSpace { point, normal } => (X - point).dot(normal),
@@ -171,11 +171,8 @@ impl Shape {
             }
             Shape::Ellipsoid { centre, radii } => Some((centre - radii, centre + radii)),
             Shape::Polygon { points, z } => {
-                let start = Vector3::new(f64::INFINITY, f64::INFINITY, z.0);
-                let lower = points.iter().fold(start, |l, p| l.inf(&Vector3::new(p[0], p[1], z.0)));
-                let start = Vector3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, z.1);
-                let upper = points.iter().fold(start, |u, p| u.sup(&Vector3::new(p[0], p[1], z.1)));
-                Some((lower, upper))
+                let (lower, upper) = points.bounds();
+                Some((Vector3::new(lower[0], lower[1], z.0), Vector3::new(upper[0], upper[1], z.1)))
             }
             Shape::HalfSpace { .. } => None,
             Shape::Union(members) => {

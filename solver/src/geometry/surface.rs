@@ -52,6 +52,11 @@ impl Surface {
         self.corners().map(|[a, b, c]| (a - o).dot(&(b - o).cross(&(c - o))) / 6.0).sum()
     }
 
+    /// Number of triangles.
+    pub(crate) fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
     pub(super) fn corners(&self) -> impl Iterator<Item = Triangle> + '_ {
         self.triangles.iter().map(|t| t.map(|v| self.vertices[v as usize]))
     }

@@ -59,7 +59,7 @@ fn solids() -> Vec<(&'static str, Shape, f64, f64, f64)> {
             // Thomsen's formula for the area is good to 1.1 %.
             0.012,
         ),
-        ("polygon", Shape::Polygon { points: l_shape(), z: (-0.1, 0.3) }, 0.3, 3.1, 1e-12),
+        ("polygon", Shape::Polygon { points: l_shape().into(), z: (-0.1, 0.3) }, 0.3, 3.1, 1e-12),
         ("surface", Shape::Surface(Arc::new(surface)), 0.216, 2.16, 1e-12),
     ]
 }
@@ -90,7 +90,7 @@ fn sections() -> Vec<(&'static str, Shape, f64, f64)> {
             // 4 a E(e), e² = 3/4.
             0.8 * 1.2110560275684594,
         ),
-        ("polygon", Shape::Polygon { points: l_shape(), z: (-0.1, 0.3) }, 0.75, 4.0),
+        ("polygon", Shape::Polygon { points: l_shape().into(), z: (-0.1, 0.3) }, 0.75, 4.0),
         ("surface", Shape::Surface(Arc::new(surface)), 0.36, 2.4),
     ]
 }
@@ -252,7 +252,7 @@ fn boundary_points_are_evenly_distributed_on_the_boundary() {
 
 #[test]
 fn corners_come_first() {
-    let shape = Shape::Polygon { points: l_shape(), z: (-0.1, 0.3) };
+    let shape = Shape::Polygon { points: l_shape().into(), z: (-0.1, 0.3) };
     let points = shape.boundary_points(0.1, &PLANE).unwrap();
     for (point, corner) in points.iter().zip(l_shape()) {
         assert_eq!([point.x, point.y, point.z], [corner[0], corner[1], 0.05]);
@@ -324,7 +324,8 @@ fn invalid_shapes_are_refused() {
         refused(Shape::Box { min: origin, max: Vector3::new(1.0, 0.0, 1.0) }),
         GeometryError::EmptyBox { axis: 1, .. }
     ));
-    let polygon = |points: Vec<[f64; 2]>| refused(Shape::Polygon { points, z: (0.0, 1.0) });
+    let polygon =
+        |points: Vec<[f64; 2]>| refused(Shape::Polygon { points: points.into(), z: (0.0, 1.0) });
     assert_eq!(polygon(vec![[0.0, 0.0], [1.0, 0.0]]), GeometryError::TooFewPoints { count: 2 });
     assert_eq!(
         polygon(vec![[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]),
@@ -348,4 +349,13 @@ fn a_tilted_cylinder_has_no_section_and_a_low_one_no_point_there() {
     let low = Shape::Sphere { centre: Vector3::zeros(), radius: 0.01 };
     let error = low.boundary_points(0.1, &PLANE).unwrap_err();
     assert_eq!(error, GeometryError::SectionEmpty { shape: "sphere", z: 0.05 });
+}
+
+#[test]
+fn too_many_panels_are_refused_before_they_are_made() {
+    let shape = Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(0.1) };
+    for dimension in [Dimension::Three, PLANE] {
+        let error = shape.boundary_panels(1e-12, &dimension).unwrap_err();
+        assert!(matches!(error, GeometryError::TooMany { what: "boundary panels", .. }), "{error}");
+    }
 }

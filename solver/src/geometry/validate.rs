@@ -2,6 +2,7 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::error::{GeometryError, positive};
+use crate::geometry::polygon::Outline;
 use crate::geometry::shape::Shape;
 
 impl Shape {
@@ -86,7 +87,7 @@ fn unit(name: &'static str, vector: &Vector3) -> Result<(), GeometryError> {
     if (length - 1.0).abs() < 1e-9 { Ok(()) } else { Err(GeometryError::NotUnit { name, length }) }
 }
 
-fn polygon(points: &[[f64; 2]]) -> Result<(), GeometryError> {
+fn polygon(points: &Outline) -> Result<(), GeometryError> {
     let n = points.len();
     if n < 3 {
         return Err(GeometryError::TooFewPoints { count: n });
@@ -94,33 +95,8 @@ fn polygon(points: &[[f64; 2]]) -> Result<(), GeometryError> {
     if !points.iter().flatten().all(|c| c.is_finite()) {
         return Err(GeometryError::NotFinite { name: "the polygon" });
     }
-    for first in 0..n {
-        let (a, b) = (points[first], points[(first + 1) % n]);
-        if a == b {
-            return Err(GeometryError::PolygonCrosses { first, second: (first + 1) % n });
-        }
-        for second in first + 1..n {
-            let (c, d) = (points[second], points[(second + 1) % n]);
-            let neighbours = second == first + 1 || (second + 1) % n == first;
-            if !neighbours && segments_meet(a, b, c, d) {
-                return Err(GeometryError::PolygonCrosses { first, second });
-            }
-        }
+    match points.crossing() {
+        Some((first, second)) => Err(GeometryError::PolygonCrosses { first, second }),
+        None => Ok(()),
     }
-    Ok(())
-}
-
-fn segments_meet(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
-    let side = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
-        (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
-    };
-    let within = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
-        (0..2).all(|k| p[k].min(q[k]) <= r[k] && r[k] <= p[k].max(q[k]))
-    };
-    let (s1, s2, s3, s4) = (side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b));
-    (s1 * s2 < 0.0 && s3 * s4 < 0.0)
-        || (s1 == 0.0 && within(a, b, c))
-        || (s2 == 0.0 && within(a, b, d))
-        || (s3 == 0.0 && within(c, d, a))
-        || (s4 == 0.0 && within(c, d, b))
 }

@@ -1,17 +1,18 @@
 //! The model of a body: its parts and how they are made.
 
 use crate::algebra::tensor::{Vector3, bounding_box};
-use crate::discretisation::Discretisation;
 use crate::discretisation::consistency::connected_bodies;
+use crate::discretisation::{Discretisation, Warning};
 use crate::error::Error;
+use crate::geometry::Selector;
 use crate::model::blocks::{Block, Sums, blocks};
-use crate::model::contact::ContactPlan;
-use crate::model::essential::Constraints;
-use crate::model::load::{LoadPattern, initial_velocity, load_patterns};
+use crate::model::contact::{ContactPlan, check_obstacles};
+use crate::model::essential::{Constraints, check_shared_nodes};
+use crate::model::load::{LoadPattern, check_loads, initial_velocity, load_patterns};
 use crate::model::mass::{fictitious_mass, lumped_mass};
 use crate::model::stiffness::stiffness_diagonal;
 use crate::model::time_step_bound::per_point_bound;
-use crate::problem::{Dimension, Motion, Problem, Relaxation, RelaxationMass};
+use crate::problem::{Dimension, Motion, Problem, Region, Relaxation, RelaxationMass};
 
 /// A discretised body with its materials, conditions and loads.
 #[derive(Debug, Clone)]
@@ -48,6 +49,8 @@ pub struct Model {
     pub extent: f64,
     /// Reference positions of the quadrature points \[point\] \[m\].
     pub point_positions: Vec<Vector3>,
+    /// What to doubt about the problem itself.
+    pub warnings: Vec<Warning>,
 }
 
 impl Model {
@@ -70,7 +73,13 @@ impl Model {
             }
             Motion::Static(_) | Motion::Equilibrium(_) => fictitious_mass(&stiffness, &lumped_mass),
         };
+        let mut warnings = empty_regions(problem, discretisation);
+        warnings.extend(check_shared_nodes(problem, discretisation)?);
         let constraints = Constraints::new(problem, discretisation, &inertia)?;
+        warnings.extend(check_loads(problem, discretisation, &constraints));
+        let contact = ContactPlan::new(problem, discretisation, &constraints)?;
+        let (cloud, end) = (&discretisation.cloud, problem.motion.end());
+        warnings.extend(check_obstacles(&contact, cloud, &constraints, components, end)?);
         check_rank(discretisation, &constraints)?;
         let per_point_bound = per_point_bound(problem, discretisation, &lumped_mass);
         let (lower, upper) = bounding_box(&discretisation.cloud.positions);
@@ -83,13 +92,14 @@ impl Model {
             inertia,
             added_mass: 0.0,
             loads: load_patterns(problem, discretisation, &density)?,
-            contact: ContactPlan::new(problem, discretisation, &constraints)?,
-            initial_velocity: initial_velocity(problem, discretisation),
+            contact,
+            initial_velocity: initial_velocity(problem, discretisation)?,
             point_positions: quadrature.positions.clone(),
             extent: (upper - lower).norm(),
             lumped_mass,
             constraints,
             per_point_bound,
+            warnings,
         })
     }
 
@@ -102,6 +112,18 @@ impl Model {
     pub fn bytes_per_step(&self) -> usize {
         self.blocks.iter().map(Block::bytes).sum()
     }
+}
+
+/// Regions without a point, which have no effect. A last region of everything may be empty:
+/// it is there for what the others leave.
+fn empty_regions(problem: &Problem, discretisation: &Discretisation) -> Vec<Warning> {
+    let owners = &discretisation.quadrature.regions;
+    let empty = |(index, region): (usize, &Region)| {
+        let rest = index + 1 == problem.regions.len() && matches!(region.part, Selector::All);
+        let unused = !rest && !owners.contains(&(index as u16));
+        unused.then(|| Warning::EmptyRegion { name: region.name.clone() })
+    };
+    problem.regions.iter().enumerate().filter_map(empty).collect()
 }
 
 /// Refuses a model with too few points. At rest a point has six strains, three in a

@@ -2,10 +2,11 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
-use crate::discretisation::Discretisation;
+use crate::discretisation::{Discretisation, Warning};
 use crate::error::Error;
 use crate::geometry::Panel;
-use crate::problem::{Amplitude, Problem, Traction};
+use crate::model::essential::Constraints;
+use crate::problem::{Amplitude, Motion, Problem, Traction};
 
 /// A nodal force pattern with the amplitude that scales it.
 #[derive(Debug, Clone)]
@@ -76,17 +77,70 @@ fn add(force: &mut [f64], components: usize, node: u32, nodal_force: &Vector3) {
     }
 }
 
-/// Velocity at t = 0 \[component of node\] \[m/s\].
-pub fn initial_velocity(problem: &Problem, discretisation: &Discretisation) -> Vec<f64> {
+/// Velocity at t = 0 \[component of node\] \[m/s\]. Each part must set that of some node.
+pub fn initial_velocity(
+    problem: &Problem,
+    discretisation: &Discretisation,
+) -> Result<Vec<f64>, Error> {
     let components = problem.dimension.components();
     let mut velocity = vec![0.0; components * discretisation.cloud.positions.len()];
+    let parts = &problem.loads.initial_velocities;
+    let mut used = vec![false; parts.len()];
     for (node, position) in discretisation.cloud.positions.iter().enumerate() {
-        let parts = &problem.loads.initial_velocities;
-        if let Some((_, v)) = parts.iter().find(|(part, _)| part.contains(position)) {
+        if let Some(index) = parts.iter().position(|(part, _)| part.contains(position)) {
+            used[index] = true;
             for k in 0..components {
-                velocity[components * node + k] = v[k];
+                velocity[components * node + k] = parts[index].1[k];
             }
         }
     }
-    velocity
+    match used.iter().position(|used| !used) {
+        Some(index) => Err(Error::EmptyInitialVelocity { index }),
+        None => Ok(velocity),
+    }
+}
+
+/// Loads that have no effect, or not their whole effect.
+pub fn check_loads(
+    problem: &Problem,
+    discretisation: &Discretisation,
+    constraints: &Constraints,
+) -> Vec<Warning> {
+    let cloud = &discretisation.cloud;
+    let carried = |traction: &&Traction| {
+        let selected = |&node: &usize| {
+            cloud.on_boundary[node] && traction.part.contains(&cloud.positions[node])
+        };
+        let prescribed = |node: usize| {
+            (0..problem.dimension.components())
+                .filter(|&k| traction.traction[k] != 0.0)
+                .all(|k| constraints.always_prescribes(node as u32, k))
+        };
+        let mut nodes = (0..cloud.positions.len()).filter(selected).peekable();
+        nodes.peek().is_some() && nodes.all(prescribed)
+    };
+    let tractions = problem.loads.tractions.iter().filter(carried);
+    let mut warnings: Vec<Warning> = tractions
+        .map(|traction| Warning::CarriedTraction { name: traction.name.clone() })
+        .collect();
+    if !matches!(problem.motion, Motion::Dynamic { .. }) {
+        warnings.extend(unfinished(problem));
+    }
+    warnings
+}
+
+/// Amplitudes that are on their way when the load of a static problem ends.
+fn unfinished(problem: &Problem) -> impl Iterator<Item = Warning> {
+    let end = problem.motion.end();
+    let conditions = problem.conditions.iter().map(|c| (c.name.clone(), &c.amplitude));
+    let tractions = problem.loads.tractions.iter().map(|t| (t.name.clone(), &t.amplitude));
+    let body_forces = problem.loads.body_forces.iter().enumerate();
+    let body_forces = body_forces.map(|(n, b)| (format!("body_force[{n}]"), &b.amplitude));
+    conditions.chain(tractions).chain(body_forces).filter_map(move |(name, amplitude)| {
+        let (Amplitude::Linear { duration } | Amplitude::Smooth { duration }) = *amplitude else {
+            return None;
+        };
+        let factor = amplitude.at(end);
+        (duration > end).then_some(Warning::UnfinishedLoad { name, duration, end, factor })
+    })
 }

@@ -7,6 +7,7 @@ pub mod essential;
 mod load;
 mod mass;
 pub(crate) mod projection;
+pub mod rigid_motions;
 mod stiffness;
 pub mod time_step_bound;
 pub mod zero_energy;

@@ -6,6 +6,11 @@ use crate::model::essential::ConstraintForces;
 use crate::motion::internal_force::{SmallestJacobian, internal_force};
 use crate::motion::step::Buffers;
 
+/// Nodal force over stiffness times displacement below which a body counts as free of
+/// stress \[–\]: a residual relative to smaller forces would say nothing, such as that of a
+/// body that has only shifted, whose forces are round-off.
+const STRESS_FREE: f64 = 1e-6;
+
 /// Forces that do not balance at some displacements.
 #[derive(Debug)]
 pub(crate) struct Imbalance {
@@ -14,7 +19,8 @@ pub(crate) struct Imbalance {
     /// Π M⁻¹(f_ext − f_int), the acceleration that the conditions leave free
     /// \[component of node\] \[m/s²\].
     pub acceleration: Vec<f64>,
-    /// Largest nodal force, external or internal \[N\].
+    /// Largest nodal force, external or internal, or of a body free of stress a small
+    /// part of its stiffness times its displacement \[N\] (method book, eq. 20.5).
     pub scale: f64,
     pub smallest_jacobian: SmallestJacobian,
 }
@@ -41,7 +47,8 @@ impl Imbalance {
         let mut acceleration: Vec<f64> =
             force.iter().enumerate().map(|(i, f)| f / model.inertia[i / d]).collect();
         model.constraints.project(t, &model.inertia, &mut acceleration, forces);
-        let scale = largest(&buffers.f_int).max(largest(&buffers.f_ext));
+        let free_of_stress = STRESS_FREE * largest(&model.stiffness) * largest(u);
+        let scale = largest(&buffers.f_int).max(largest(&buffers.f_ext)).max(free_of_stress);
         Imbalance { force, acceleration, scale, smallest_jacobian }
     }
 

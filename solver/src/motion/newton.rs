@@ -346,6 +346,8 @@ impl<'a> Solver<'a> {
             relaxation: None,
             newton: Some(self.counts),
             stopped,
+            instability: None,
+            stability_products: 0,
         }
     }
 }

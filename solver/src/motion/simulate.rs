@@ -7,7 +7,7 @@ use crate::motion::newton::equilibrate;
 use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::relaxation::relax;
 use crate::motion::state::State;
-use crate::motion::step::{Buffers, Scheme, StepReport, step};
+use crate::motion::step::{Buffers, Scheme, StepReport, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};
 use crate::motion::summary::Summary;
 use crate::problem::{Motion, StepControl};
@@ -30,9 +30,37 @@ pub fn simulate(
             }
             integrate(model, *end, *step, *damping, state, observer)
         }
-        Motion::Static(settings) => relax(model, settings, state, observer),
-        Motion::Equilibrium(settings) => equilibrate(model, settings, state, observer),
+        Motion::Static(settings) => {
+            refuse_unheld(model, settings.load_end)?;
+            relax(model, settings, state, observer)
+        }
+        Motion::Equilibrium(settings) => {
+            refuse_unheld(model, settings.load_end)?;
+            equilibrate(model, settings, state, observer)
+        }
     }
+}
+
+/// Resultant of the loads over the sum of their sizes above which it is not round-off \[–\].
+const UNBALANCED: f64 = 1e-6;
+
+/// Refuses a static problem without equilibrium: constant loads push the whole body along
+/// an axis on which nothing holds it.
+fn refuse_unheld(model: &Model, load_end: f64) -> Result<(), Error> {
+    if !model.contact.obstacles.is_empty() {
+        return Ok(());
+    }
+    let mut force = vec![0.0; model.size()];
+    external_force(model, load_end, &mut force);
+    let held = model.constraints.active(load_end);
+    for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate().take(model.components) {
+        let along = || force.iter().skip(axis).step_by(model.components);
+        let (sum, sizes): (f64, f64) = (along().sum(), along().map(|f| f.abs()).sum());
+        if held.iter().all(|set| set.component != axis) && sum.abs() > UNBALANCED * sizes {
+            return Err(Error::NothingHolds { axis: name, force: sum });
+        }
+    }
+    Ok(())
 }
 
 fn integrate(

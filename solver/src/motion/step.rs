@@ -177,12 +177,15 @@ fn constrain(model: &Model, scheme: &Scheme, t: f64, state: &mut State) -> f64 {
         velocity[i] += delta * rate;
     });
     let increment = largest_or_nan(velocity) * scheme.time_step;
-    if !model.contact.obstacles.is_empty() {
-        contact.enforce(&model.contact, positions, increment, displacement, |i, delta| {
-            velocity[i] += delta * rate;
-        });
+    if model.contact.obstacles.is_empty() {
+        return increment;
     }
-    increment
+    contact.enforce(&model.contact, positions, increment, displacement, |i, delta| {
+        velocity[i] += delta * rate;
+    });
+    // What contact takes back is no movement: a node that is pressed against an obstacle
+    // in equilibrium would seem to move for ever.
+    largest_or_nan(velocity) * scheme.time_step
 }
 
 /// Largest size of an entry; NaN if there is one, which `f64::max` drops.

@@ -108,6 +108,8 @@ impl StepController {
                 relaxation: None,
                 newton: None,
                 stopped: false,
+                instability: None,
+                stability_products: 0,
             },
             critical,
         })

@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
+use crate::error::Instability;
 use crate::model::Model;
 use crate::motion::internal_force::SmallestJacobian;
 
@@ -26,8 +27,12 @@ pub struct Summary {
     pub relaxation: Option<Convergence>,
     /// Cost of Newton's method, which has no time steps: they are 0.
     pub newton: Option<NewtonCounts>,
-    /// Whether the observer ended the run early.
+    /// Whether the observer ended the run early: a static solution has not converged.
     pub stopped: bool,
+    /// Products with the tangent that looked for it, not counted elsewhere.
+    pub stability_products: usize,
+    /// Loss of stability on the way to a static solution.
+    pub instability: Option<Instability>,
 }
 
 /// J of a nearly incompressible point below which a finished run is in doubt \[–\].
@@ -59,6 +64,12 @@ impl std::fmt::Display for CollapsedPoint {
 }
 
 impl Summary {
+    /// Reasons to doubt a finished run.
+    pub fn doubts(&self, model: &Model) -> Vec<String> {
+        let collapsed = self.collapsed_point(model).map(|collapsed| collapsed.to_string());
+        collapsed.into_iter().chain(self.instability.iter().map(Instability::to_string)).collect()
+    }
+
     /// The point that casts doubt on a finished run, if there is one.
     pub fn collapsed_point(&self, model: &Model) -> Option<CollapsedPoint> {
         let SmallestJacobian { jacobian, point } = self.smallest_jacobian;

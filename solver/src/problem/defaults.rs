@@ -68,10 +68,19 @@ impl Recipe {
 }
 
 impl BackgroundGrid {
+    /// Cells that follow a nodal spacing that varies, the recommended rule at the boundary.
+    pub fn following(cells_per_spacing: f64) -> BackgroundGrid {
+        BackgroundGrid {
+            cells_per_spacing: Some(cells_per_spacing),
+            ..BackgroundGrid::with_cell(f64::INFINITY)
+        }
+    }
+
     /// Cells of one edge \[m\], the recommended rule at the boundary.
     pub fn with_cell(cell: f64) -> BackgroundGrid {
         BackgroundGrid {
             cell,
+            cells_per_spacing: None,
             boundary_cell: None,
             refinements: Vec::new(),
             gauss_points: GAUSS_POINTS,

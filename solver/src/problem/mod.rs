@@ -32,8 +32,8 @@ pub struct Problem {
     pub regions: Vec<Region>,
     /// How the body is discretised.
     pub recipe: Recipe,
-    /// Prescribed displacements; where two claim a component of a node, the
-    /// first one counts.
+    /// Prescribed displacements; where two prescribe a component of a node, they must
+    /// agree, and the force counts with the first.
     pub conditions: Vec<EssentialCondition>,
     /// Body forces, tractions and initial velocities.
     pub loads: Loads,

@@ -19,6 +19,15 @@ pub enum Motion {
 }
 
 impl Motion {
+    /// The time at which the run ends, or the load is complete \[s\].
+    pub fn end(&self) -> f64 {
+        match self {
+            Motion::Dynamic { end, .. } => *end,
+            Motion::Static(Relaxation { load_end, .. })
+            | Motion::Equilibrium(Newton { load_end, .. }) => *load_end,
+        }
+    }
+
     /// Central differences from t = 0 to `end` \[s\] with mass-proportional `damping` \[1/s\]
     /// and the recommended step control, which is more careful without damping.
     pub fn dynamic(end: f64, damping: f64) -> Motion {

@@ -136,8 +136,11 @@ pub enum WeightFunction {
 /// conform to the geometry (method book, section 7).
 #[derive(Debug, Clone)]
 pub struct BackgroundGrid {
-    /// Edge of the largest cells \[m\].
+    /// Edge of the largest cells \[m\]; infinite where `cells_per_spacing` alone decides.
     pub cell: f64,
+    /// Cells are divided where the local nodal spacing is smaller, until so many lie along
+    /// it \[–\]; `None` where only the boundary and the refinements divide them.
+    pub cells_per_spacing: Option<f64>,
     /// Cells that meet the boundary of the body are halved until they are no
     /// larger than this \[m\]; `None` leaves them.
     pub boundary_cell: Option<f64>,

@@ -59,6 +59,7 @@ fn body(dimension: Dimension, cells: usize) -> Problem {
             weight_function: WeightFunction::QuarticSpline,
             grid: BackgroundGrid {
                 cell: spacing / 1.5,
+                cells_per_spacing: None,
                 boundary_cell: None,
                 refinements: vec![],
                 gauss_points: 1,

@@ -42,7 +42,9 @@
 
 #![deny(missing_docs)]
 
+pub mod escape;
 pub mod measure;
+
 pub mod study;
 
 pub mod gate;

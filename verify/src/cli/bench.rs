@@ -12,7 +12,7 @@ pub struct BenchArgs {
 }
 
 pub fn bench(arguments: &BenchArgs, common: &Common) -> anyhow::Result<u8> {
-    let figures = measure(arguments.quick, &|name| common.say(&format!("measuring: {name}")))?;
+    let figures = measure(arguments.quick, &|name| common.note(&format!("measuring: {name}")))?;
     let json = || Ok(serde_json::to_string_pretty(&figures)? + "\n");
     // The tables are the result, so that --quiet does not suppress them.
     common.print_result(&json, &|| to_markdown(&figures))?;

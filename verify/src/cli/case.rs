@@ -1,19 +1,24 @@
 //! `mtled case …`.
 
-use super::common::{COULD_NOT_RUN, print_data};
-use super::load::{diagnose, load};
+use super::common::{COULD_NOT_RUN, Common, Format};
+use super::load::{load, located};
+use super::messages::place;
 use super::migrate::{MigrateArgs, migrate};
+use super::streams::{print_data, print_json, print_text};
 use crate::bundled::CASES;
 use crate::run::prepare_to_run;
-use crate::scene::schema;
+use crate::scene::{Diagnostic, Mistakes, schema};
 use anyhow::{Result, bail};
 use clap::Subcommand;
+use mtled_checks::escape::printable;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Subcommand)]
 pub enum CaseCommand {
     /// Report the mistakes in case files with file, line and key.
     Check {
+        /// Case files, or names of bundled cases.
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
@@ -22,28 +27,29 @@ pub enum CaseCommand {
     /// List the bundled cases.
     List,
     /// Print a bundled case.
-    Show { name: String },
+    Show {
+        /// Name of the case, as `mtled case list` prints it.
+        name: String,
+    },
     /// Print the JSON Schema of a case file.
     Schema,
 }
 
-pub fn case(command: &CaseCommand) -> Result<u8> {
+pub fn case(command: &CaseCommand, common: &Common) -> Result<u8> {
     match command {
-        CaseCommand::Check { files } => {
-            let mut code = 0;
-            for file in files {
-                if !check(file)? {
-                    code = COULD_NOT_RUN;
-                }
-            }
-            return Ok(code);
-        }
-        CaseCommand::Migrate(arguments) => return migrate(arguments),
+        CaseCommand::Check { files } => return check(files, common),
+        CaseCommand::Migrate(arguments) => return migrate(arguments, common),
         CaseCommand::List => {
-            print_data(&CASES.iter().map(|(name, _)| format!("{name}\n")).collect::<String>())?;
+            let names: Vec<&str> = CASES.iter().map(|(name, _)| *name).collect();
+            common.print_result(&|| Ok(format!("{}\n", json!(names))), &|| {
+                names.iter().map(|name| format!("{name}\n")).collect()
+            })?;
         }
         CaseCommand::Show { name } => match CASES.iter().find(|(bundled, _)| bundled == name) {
-            Some((_, text)) => print_data(text)?,
+            Some((_, text)) => {
+                let json = || Ok(format!("{}\n", json!({ "name": name, "text": text })));
+                common.print_result(&json, &|| text.to_string())?;
+            }
             None => {
                 bail!("there is no bundled case \"{name}\"; `mtled case list` prints their names")
             }
@@ -53,21 +59,69 @@ pub fn case(command: &CaseCommand) -> Result<u8> {
     Ok(0)
 }
 
-/// Whether a case file is free of mistakes; prints them otherwise. It is discretised, since
-/// empty selections and poor supports show only then.
-fn check(file: &Path) -> Result<bool> {
-    let Some(case) = load(file) else { return Ok(false) };
-    match prepare_to_run(&case.problem) {
-        Ok(prepared) => {
-            print_data(&format!("{}: no mistakes\n", file.display()))?;
-            for warning in prepared.discretisation.warnings() {
-                eprintln!("{}: warning: {warning}", file.display());
-            }
-            Ok(true)
+/// What is known about a case file.
+struct Checked<'a> {
+    file: &'a Path,
+    mistakes: Vec<Diagnostic>,
+    warnings: Vec<String>,
+}
+
+/// Prints the mistakes of case files; in JSON they are the result.
+fn check(files: &[PathBuf], common: &Common) -> Result<u8> {
+    let mut all = Vec::new();
+    for file in files {
+        let checked = examine(file)?;
+        if common.format == Format::Human {
+            checked.print(common)?;
         }
+        all.push(checked);
+    }
+    if common.format == Format::Json {
+        let cases: Vec<Value> = all.iter().map(Checked::to_json).collect();
+        print_json(&format!("{:#}\n", json!({ "schema_version": 1, "cases": cases })))?;
+    }
+    let valid = all.iter().all(|checked| checked.mistakes.is_empty());
+    Ok(if valid { 0 } else { COULD_NOT_RUN })
+}
+
+/// The mistakes of a case file. It is discretised, since empty selections and poor supports
+/// show only then.
+fn examine(file: &Path) -> Result<Checked<'_>> {
+    let warnings = load(file).and_then(|case| match prepare_to_run(&case.problem) {
+        Ok(prepared) => Ok(prepared.doubts(&case.problem)),
+        Err(error) => Err(located(&case, &error)),
+    });
+    match warnings {
+        Ok(warnings) => Ok(Checked { file, mistakes: Vec::new(), warnings }),
         Err(error) => {
-            eprintln!("{}", diagnose(&case, &error));
-            Ok(false)
+            let Mistakes(mistakes) = error.downcast()?;
+            Ok(Checked { file, mistakes, warnings: Vec::new() })
         }
+    }
+}
+
+impl Checked<'_> {
+    fn print(&self, common: &Common) -> Result<()> {
+        common.mistakes(&self.mistakes);
+        if self.mistakes.is_empty() {
+            let file = printable(&self.file.display().to_string());
+            print_text(&format!("{file}: no mistakes\n"))?;
+        }
+        self.warnings.iter().for_each(|warning| common.warn_about(self.file, warning));
+        Ok(())
+    }
+
+    fn to_json(&self) -> Value {
+        let mistake = |mistake: &Diagnostic| {
+            let mut object = place(mistake);
+            object["message"] = mistake.message.clone().into();
+            object
+        };
+        json!({
+            "file": self.file.display().to_string(),
+            "valid": self.mistakes.is_empty(),
+            "mistakes": self.mistakes.iter().map(mistake).collect::<Vec<_>>(),
+            "warnings": self.warnings,
+        })
     }
 }

@@ -1,15 +1,16 @@
-//! What every command needs: options, exit codes, output streams.
+//! What every command needs: options, exit codes, results.
 
+use super::streams::{print_data, print_json, print_text};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 
 /// Exit code where something could not be run.
 pub const COULD_NOT_RUN: u8 = 2;
 /// Exit code where the user stopped a run.
 pub const STOPPED: u8 = 130;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Copy, Args)]
 pub struct Common {
     /// Number of threads; results do not depend on it [default: all processors].
     #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..))]
@@ -17,7 +18,7 @@ pub struct Common {
     /// Print errors only: no progress and no summary.
     #[arg(short, long, global = true)]
     pub quiet: bool,
-    /// Format of standard output.
+    /// Format of standard output and of the messages on standard error.
     #[arg(long, global = true, value_enum, default_value_t = Format::Human)]
     pub format: Format,
 }
@@ -26,7 +27,7 @@ pub struct Common {
 pub enum Format {
     /// Text for people.
     Human,
-    /// One JSON document.
+    /// One JSON document, and one JSON object per line on standard error.
     Json,
 }
 
@@ -41,24 +42,17 @@ impl Common {
         std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
     }
 
-    /// Writes a line to standard error, unless quiet.
-    pub fn say(&self, text: &str) {
-        if !self.quiet {
-            eprintln!("{text}");
-        }
-    }
-
     /// Prints a result as a JSON document or as text, also if quiet.
     pub fn print_result(
         &self,
         json: &dyn Fn() -> Result<String>,
         text: &dyn Fn() -> String,
     ) -> Result<()> {
-        let data = match self.format {
-            Format::Json => json()?,
-            Format::Human => text(),
-        };
-        Ok(print_data(&data)?)
+        match self.format {
+            Format::Json => print_json(&json()?)?,
+            Format::Human => print_text(&text())?,
+        }
+        Ok(())
     }
 
     /// Prints a JSON document or, unless quiet, a summary.
@@ -72,14 +66,20 @@ impl Common {
             false => self.print_result(json, text),
         }
     }
-}
 
-/// Writes to standard output. It is no error if the reader ends early, as `head` does.
-pub fn print_data(text: &str) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        result => result,
+    /// As [`Self::print_summary`], for text with colours, in which texts from files have been
+    /// escaped.
+    pub fn print_coloured_summary(
+        &self,
+        json: &dyn Fn() -> Result<String>,
+        text: &dyn Fn() -> String,
+    ) -> Result<()> {
+        match self.format {
+            Format::Json => print_json(&json()?)?,
+            Format::Human if self.quiet => {}
+            Format::Human => print_data(&text())?,
+        }
+        Ok(())
     }
 }
 

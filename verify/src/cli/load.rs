@@ -1,33 +1,60 @@
 //! Cases named on the command line, and their mistakes.
 
+use crate::bundled::{CASES, unpack};
 use crate::run::refuse_beyond_memory;
-use crate::scene::{Case, Diagnostic, read_case};
+use crate::scene::{Case, Diagnostic, one_error, parse_case, read_case};
+use anyhow::{Context, Result};
 use mtled::error::Error;
 use std::path::Path;
 
-/// Reads a case that fits into the memory; prints what is wrong otherwise.
-pub fn load(file: &Path) -> Option<Case> {
-    match read_case(file) {
-        Ok(case) => fits(&case).then_some(case),
-        Err(mistakes) => {
-            mistakes.iter().for_each(|mistake| eprintln!("{mistake}"));
-            None
+/// Reads a case file, or a bundled case by its name. It fits into the memory.
+pub fn load(case: &Path) -> Result<Case> {
+    let case = read(case)?;
+    match refuse_beyond_memory(&case) {
+        Ok(()) => Ok(case),
+        Err(shortage) => {
+            Err(one_error(vec![case.diagnostic("discretisation", shortage.to_string())]))
         }
     }
 }
 
-fn fits(case: &Case) -> bool {
-    let refused = refuse_beyond_memory(&case.problem).err();
-    if let Some(shortage) = &refused {
-        eprintln!("{}", case.diagnostic("discretisation", shortage.to_string()));
+fn read(case: &Path) -> Result<Case> {
+    let bundled = CASES.iter().find(|(name, _)| Path::new(name) == case);
+    let absent = matches!(case.try_exists(), Ok(false));
+    // A folder of that name is no case.
+    match bundled.filter(|_| absent || case.is_dir()) {
+        None if absent => {
+            let message = "cannot be read: there is no such file, and no bundled case of that name \
+                           (`mtled case list` prints their names)";
+            let file = case.display().to_string();
+            Err(one_error(vec![Diagnostic::of_file(&file, message.into())]))
+        }
+        None => read_case(case).map_err(one_error),
+        Some((name, text)) => {
+            let folder = tempfile::tempdir().context("cannot make a folder for a bundled case")?;
+            let cases = unpack(folder.path())?;
+            parse_case(text, &format!("{name}.toml"), &cases).map_err(one_error)
+        }
     }
-    refused.is_none()
+}
+
+/// An error of the solver as the mistake in the case file that causes it.
+pub fn located(case: &Case, error: &Error) -> anyhow::Error {
+    one_error(vec![diagnose(case, error)])
 }
 
 /// An error of the solver, located at the key of the case file that causes it.
-pub fn diagnose(case: &Case, error: &Error) -> Diagnostic {
+fn diagnose(case: &Case, error: &Error) -> Diagnostic {
     let key = match error {
+        Error::NothingHolds { .. } => "prescribe",
         Error::EmptySelection { name } => &format!("prescribe.{name}.where"),
+        Error::ContradictingConditions { second, .. } => &format!("prescribe.{second}"),
+        Error::DrivenIntoObstacle { condition, .. } => &format!("prescribe.{condition}"),
+        Error::NodesInObstacle { name, .. } | Error::EmptyObstacle { name } => {
+            &format!("obstacle.{name}")
+        }
+        Error::EmptyInitialVelocity { index } => &format!("initial_velocity[{index}]"),
+        Error::EmptyRegion { .. } => "probe",
         Error::EmptyTraction { name } => &format!("traction.{name}.where"),
         Error::DependentConstraints { .. } => "discretisation.enforcement",
         Error::NoQuadraturePoints
@@ -48,6 +75,8 @@ pub fn diagnose(case: &Case, error: &Error) -> Diagnostic {
         Error::Diverged { .. }
         | Error::Inverted { .. }
         | Error::NotConverged { .. }
+        | Error::Unstable { .. }
+        | Error::NotHeld { .. }
         | Error::FictitiousMass => "time",
     };
     case.diagnostic(key, error.to_string())

@@ -6,6 +6,7 @@ mod common;
 mod explore;
 mod inspect;
 mod load;
+mod messages;
 mod migrate;
 mod progress;
 mod publish;
@@ -14,19 +15,21 @@ mod race;
 mod reference;
 mod report;
 mod solve;
+mod streams;
 mod study;
 mod verify;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use common::{COULD_NOT_RUN, Common, STOPPED, print_data};
+use common::{COULD_NOT_RUN, Common, Format, STOPPED};
 use explore::{budget, runs, tune};
 use std::process::ExitCode;
+use streams::{or_reader_has_ended, print_data};
 
 /// Meshless soft-tissue solver with its verification.
 ///
 /// Exit codes: 0 success, 1 a check failed, 2 could not run, 130 stopped by Ctrl-C (files are
 /// complete up to that moment). Data go to standard output, progress and messages to standard
-/// error.
+/// error; with --format json the first is one JSON document, the second one JSON object per line.
 #[derive(Debug, Parser)]
 #[command(name = "mtled", version, after_help = EXAMPLES)]
 struct Cli {
@@ -89,7 +92,10 @@ enum Command {
 
 /// Runs the command line and returns the exit code.
 pub fn run() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(answer) => return ExitCode::from(without_a_command(&answer)),
+    };
     let pool = cli.common.threads.map(|threads| {
         rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global()
     });
@@ -108,9 +114,39 @@ pub fn run() -> ExitCode {
     match result {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
-            eprintln!("error: {error:#}");
+            cli.common.failure(&error);
             ExitCode::from(COULD_NOT_RUN)
         }
+    }
+}
+
+/// Prints help, the version, or what is wrong with the arguments; returns the exit code.
+fn without_a_command(answer: &clap::Error) -> u8 {
+    let common = Common { threads: None, quiet: false, format: requested_format() };
+    if answer.use_stderr() {
+        match common.format {
+            Format::Human => drop(answer.print()),
+            Format::Json => common.complain(answer.render().to_string().trim_end()),
+        }
+        return COULD_NOT_RUN;
+    }
+    match or_reader_has_ended(answer.print()) {
+        Ok(()) => 0,
+        Err(error) => {
+            common.failure(&error.into());
+            COULD_NOT_RUN
+        }
+    }
+}
+
+/// The format that is asked for where the arguments as a whole cannot be read.
+fn requested_format() -> Format {
+    let arguments: Vec<String> =
+        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let apart = arguments.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json");
+    match apart || arguments.iter().any(|argument| argument == "--format=json") {
+        true => Format::Json,
+        false => Format::Human,
     }
 }
 
@@ -124,8 +160,8 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Report(arguments) => report::report(arguments, &cli.common),
         Command::Study(command) => study::study(command, &cli.common),
         Command::Runs(command) => runs::runs(command, &cli.common),
-        Command::Merge(arguments) => runs::merge(arguments),
-        Command::Case(command) => case::case(command),
+        Command::Merge(arguments) => runs::merge(arguments, &cli.common),
+        Command::Case(command) => case::case(command, &cli.common),
         Command::Reference(command) => reference::reference(command, &cli.common),
         Command::Bench(arguments) => bench::bench(arguments, &cli.common),
         Command::Completions { shell } => {

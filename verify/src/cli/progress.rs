@@ -3,6 +3,7 @@
 use super::common::{Common, STOPPED};
 use crate::explore::store::{Progress, Stopped};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use mtled_checks::escape::printable;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -27,6 +28,7 @@ pub fn progress_bar(common: &Common) -> ProgressBar {
 
 /// Progress of many runs.
 pub struct ManyRuns {
+    common: Common,
     bar: ProgressBar,
     /// When the last line was written; none where no lines are.
     lines: Option<Mutex<Instant>>,
@@ -36,7 +38,7 @@ impl ManyRuns {
     pub fn new(common: &Common) -> ManyRuns {
         let bar = bar(common, 1, "{bar:30} {pos}/{len} runs  {eta} left  {msg}");
         let lines = (!common.quiet && !common.draws()).then(|| Mutex::new(Instant::now()));
-        ManyRuns { bar, lines }
+        ManyRuns { common: *common, bar, lines }
     }
 
     pub fn show(&self, progress: Progress) {
@@ -46,10 +48,11 @@ impl ManyRuns {
             // A stored run takes no time and must not count for the time left.
             self.bar.reset_eta();
         }
-        self.bar.set_message(progress.label.to_string());
+        self.bar.set_message(printable(progress.label));
         let Some(Ok(mut last)) = self.lines.as_ref().map(Mutex::lock) else { return };
         if last.elapsed() > BETWEEN_LINES {
-            eprintln!("{} of {} runs: {}", progress.done, progress.of, progress.label);
+            let label = printable(progress.label);
+            self.common.note(&format!("{} of {} runs: {label}", progress.done, progress.of));
             *last = Instant::now();
         }
     }
@@ -60,7 +63,7 @@ impl ManyRuns {
         match result {
             Ok(result) => Ok(Ok(result)),
             Err(error) if error.is::<Stopped>() => {
-                eprintln!("{error}");
+                self.common.complain(error);
                 Ok(Err(STOPPED))
             }
             Err(error) => Err(error),

@@ -1,14 +1,15 @@
 //! `mtled study race`.
 
-use super::common::{Common, print_data};
+use super::common::Common;
 use super::publish::{publish, report_of, tables};
 use super::python::{checkout, installed};
+use super::streams::print_data;
 use crate::speed::race::{
     Challenge, Code, FINITE_ELEMENT_CODES, Interpreter, RaceOutcome, RaceSettings, race, run_here,
 };
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use mtled_checks::report::write_atomically;
+use mtled_checks::report::{ensure_writable, write_atomically};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -20,7 +21,7 @@ pub struct RaceArgs {
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     repeat: u16,
     /// Folder for index.html, race.md, results.json, timings.json and figures.
-    #[arg(long, default_value = "reports/race")]
+    #[arg(long, default_value = "reports/race", value_name = "DIR")]
     out: PathBuf,
     /// The folder `reference` of a checkout, for the finite-element codes [default: searched
     /// from the working directory upward].
@@ -39,8 +40,9 @@ pub fn race_study(arguments: &RaceArgs, common: &Common) -> Result<u8> {
         print_data(&serde_json::to_string(&run_here(key)?)?)?;
         return Ok(0);
     }
+    ensure_writable(&arguments.out)?;
     let start = Instant::now();
-    let say = |text: &str| common.say(text);
+    let say = |text: &str| common.note(text);
     let challenges = match arguments.cases.is_empty() {
         true => Challenge::value_variants().to_vec(),
         false => arguments.cases.clone(),

@@ -14,7 +14,7 @@ pub struct ReportArgs {
     later: Option<PathBuf>,
     /// Folder for the pages [default: the folder of the report; for two reports
     /// reports/compare].
-    #[arg(long)]
+    #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Compare the stored run with this baseline, as `mtled verify --baseline` does a new run;
     /// exit code 1 if a check got worse or fails.
@@ -42,7 +42,7 @@ fn rebuild(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
     };
     let out = arguments.out.clone().unwrap_or_else(same);
     write_report(&report, &out)?;
-    common.print_summary(&|| Ok(json::to_json(&report)), &|| {
+    common.print_coloured_summary(&|| Ok(json::to_json(&report)), &|| {
         let table = human::to_table(&report, common.colours());
         format!("{table}\nreport: {}\n", out.join("index.html").display())
     })?;
@@ -58,10 +58,13 @@ fn compare(arguments: &ReportArgs, later: &Path, common: &Common) -> anyhow::Res
     let text = two_runs::to_markdown(&before, &now, &comparison);
     write_atomically(&page, two_runs::to_html(&before, &now, &comparison)?.as_bytes())?;
     write_atomically(&out.join("summary.md"), text.as_bytes())?;
-    common.print_summary(&|| Ok(serde_json::to_string_pretty(&comparison)? + "\n"), &|| {
-        let changed = human::changed_lines(&comparison, common.colours());
-        let summary = human::compared_with(&comparison);
-        format!("{changed}{summary}\nreport: {}\n", page.display())
-    })?;
+    common.print_coloured_summary(
+        &|| Ok(serde_json::to_string_pretty(&comparison)? + "\n"),
+        &|| {
+            let changed = human::changed_lines(&comparison, common.colours());
+            let summary = human::compared_with(&comparison);
+            format!("{changed}{summary}\nreport: {}\n", page.display())
+        },
+    )?;
     Ok(0)
 }

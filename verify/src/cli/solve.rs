@@ -1,51 +1,44 @@
 //! `mtled solve`.
 
-use super::common::{COULD_NOT_RUN, Common, STOPPED};
-use super::load::{diagnose, load};
+use super::common::{Common, STOPPED};
+use super::load::{load, located};
 use super::progress::progress_bar;
 use crate::run::{
     Prepared, Recorder, Recording, Solved, integrate_prepared, prepare_to_run, summary_text,
-    write_outputs, write_recorded,
+    write_failed, write_outputs,
 };
 use crate::scene::Case;
-use anyhow::Context;
 use clap::Args;
+use mtled::error::Error;
+use mtled_checks::escape::file_name;
+use mtled_checks::report::ensure_writable;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct SolveArgs {
-    /// Case file (TOML).
+    /// Case file (TOML), or name of a bundled case.
     case: PathBuf,
-    /// Folder for VTU frames, history.csv and result.json [default: reports/<case>].
-    #[arg(long)]
+    /// Folder for VTU frames, history.csv and result.json, which replace those of an earlier run
+    /// [default: reports/<case>].
+    #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
 pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
-    let Some(case) = load(&arguments.case) else { return Ok(COULD_NOT_RUN) };
-    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(&case.name));
-    // A folder that cannot be written must not be discovered after a long run.
-    std::fs::create_dir_all(&out)
-        .with_context(|| format!("cannot make the folder {}", out.display()))?;
+    let case = load(&arguments.case)?;
+    let preset = || PathBuf::from("reports").join(file_name(&case.name));
+    let out = arguments.out.clone().unwrap_or_else(preset);
+    ensure_writable(&out)?;
     match solve_to(&case, &out, common) {
         Ok(code) => code,
-        Err(error) => {
-            eprintln!("{}", diagnose(&case, &error));
-            Ok(COULD_NOT_RUN)
-        }
+        Err(error) => Err(located(&case, &error)),
     }
 }
 
-fn solve_to(
-    case: &Case,
-    out: &Path,
-    common: &Common,
-) -> Result<anyhow::Result<u8>, mtled::error::Error> {
+fn solve_to(case: &Case, out: &Path, common: &Common) -> Result<anyhow::Result<u8>, Error> {
     let prepared = prepare_to_run(&case.problem)?;
-    if !common.quiet {
-        for warning in prepared.discretisation.warnings() {
-            eprintln!("warning: {warning}");
-        }
+    for doubt in prepared.doubts(&case.problem) {
+        common.warn(doubt);
     }
     let bar = progress_bar(common);
     let show = |progress: f64, step: usize| {
@@ -57,15 +50,18 @@ fn solve_to(
     let mut recorder = Recorder::new(case, &prepared, case.outputs.frames)?.with_progress(&show);
     let solution = integrate_prepared(&case.problem, &prepared, &mut recorder);
     bar.finish_and_clear();
-    let record = recorder.finish();
+    let mut record = recorder.finish();
+    record.unstable_mode = match &solution {
+        Ok(solution) => solution.summary.instability.as_ref().map(|found| found.mode.clone()),
+        Err(Error::Unstable { instability, .. }) => Some(instability.mode.clone()),
+        Err(_) => None,
+    };
     match solution {
         Ok(solution) => Ok(finish(case, &Solved::new(prepared, solution), &record, out, common)),
-        Err(error) => {
-            if let Err(error) = write_partial(case, &prepared, &record, out) {
-                return Ok(Err(error));
-            }
-            Err(error)
-        }
+        Err(error) => match write_partial(case, &prepared, &record, &error, out, common) {
+            Ok(()) => Err(error),
+            Err(unwritable) => Ok(Err(unwritable)),
+        },
     }
 }
 
@@ -74,16 +70,19 @@ fn write_partial(
     case: &Case,
     prepared: &Prepared,
     record: &Recording,
+    error: &Error,
     out: &Path,
+    common: &Common,
 ) -> anyhow::Result<()> {
-    write_recorded(case, prepared, record, out)?;
+    let result = write_failed(case, prepared, record, error, out)?;
+    common.print_summary(&|| Ok(result.clone()), &|| String::new())?;
     if let Some(last) = record.samples.last() {
-        eprintln!(
-            "{} contains the run up to step {}, t = {:.6} s; there is no result.json",
+        common.complain(format!(
+            "{} contains the run up to step {}, t = {:.6} s, and result.json says that it failed",
             out.display(),
             last.step,
             last.time
-        );
+        ));
     }
     Ok(())
 }
@@ -100,16 +99,14 @@ fn finish(
         let summary = summary_text(case, solved, record);
         format!("{summary}\n  results in {}\n", out.display())
     })?;
-    if let Some(collapsed) =
-        solved.summary.collapsed_point(&solved.prepared.model).filter(|_| !common.quiet)
-    {
-        eprintln!("warning: {collapsed}");
+    for doubt in solved.doubts() {
+        common.warn(doubt);
     }
     if solved.summary.stopped {
-        eprintln!(
+        common.complain(format!(
             "stopped at t = {:.6} s; the files contain the run up to then",
             solved.state.time
-        );
+        ));
         return Ok(STOPPED);
     }
     Ok(0)

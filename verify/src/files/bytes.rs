@@ -1,30 +1,88 @@
 //! Bytes of files and the numbers stored in them.
 
 use super::error::{FileError, Mistake};
-use flate2::read::MultiGzDecoder;
-use std::io::{ErrorKind, Read};
+use std::fs::File;
+use std::io::{BufReader, ErrorKind, Read, sink};
 use std::path::Path;
+
+/// The longest file that is read as a whole \[byte\].
+pub const LONGEST: u64 = 1 << 32;
+
+/// A regular file and its length \[byte\]. Devices and pipes, which need not end, are refused.
+pub fn open(path: &Path) -> Result<(BufReader<File>, u64), FileError> {
+    let unreadable = |error| Mistake::Unreadable(error).of(path);
+    let found = std::fs::metadata(path).map_err(unreadable)?;
+    if !found.is_file() {
+        return Err(Mistake::NotAFile.of(path));
+    }
+    Ok((BufReader::new(File::open(path).map_err(unreadable)?), found.len()))
+}
 
 /// The bytes of a file.
 pub fn bytes_of(path: &Path) -> Result<Vec<u8>, FileError> {
-    std::fs::read(path).map_err(|error| Mistake::Unreadable(error).of(path))
+    let (file, length) = open(path)?;
+    if length > LONGEST {
+        return Err(Mistake::TooLong { length, longest: LONGEST }.of(path));
+    }
+    at_most(file, length).map_err(|mistake| mistake.of(path))
+}
+
+/// Passes the bytes of a file to `see`, piece by piece.
+pub fn visit_bytes(path: &Path, mut see: impl FnMut(&[u8])) -> Result<(), FileError> {
+    let (mut file, _) = open(path)?;
+    let mut piece = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut piece).map_err(|error| Mistake::Unreadable(error).of(path))? {
+            0 => return Ok(()),
+            length => see(&piece[..length]),
+        }
+    }
+}
+
+/// The next bytes of a stream, fewer than `count` where it ends before. Memory is taken
+/// as they come, not as a header promises them.
+pub fn at_most(stream: impl Read, count: u64) -> Result<Vec<u8>, Mistake> {
+    let mut bytes = Vec::new();
+    readable(stream.take(count).read_to_end(&mut bytes))?;
+    Ok(bytes)
+}
+
+/// The next `expected` bytes of a stream, and a few behind them.
+pub fn voxel_bytes(mut stream: impl Read, expected: usize) -> Result<(Vec<u8>, Vec<u8>), Mistake> {
+    const A_FEW: u64 = 8;
+    let bytes = at_most(&mut stream, expected as u64)?;
+    if bytes.len() < expected {
+        return Err(Mistake::Truncated { expected, found: bytes.len() });
+    }
+    match at_most(&mut stream, A_FEW) {
+        // Compressed data end with their check sum.
+        Err(Mistake::Undecodable { reason, .. }) if !reason.contains("checksum") => {
+            Ok((bytes, Vec::new()))
+        }
+        rest => Ok((bytes, rest?)),
+    }
+}
+
+/// Reads past the next `count` bytes of a stream, or to its end.
+pub fn skip(stream: impl Read, count: u64) -> Result<(), Mistake> {
+    readable(std::io::copy(&mut stream.take(count), &mut sink()).map(drop))
+}
+
+/// Compressed data that are cut short are no error here: their end is missing.
+fn readable<T: Default>(read: std::io::Result<T>) -> Result<T, Mistake> {
+    match read {
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(T::default()),
+        Err(error) if matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::InvalidData) => {
+            Err(Mistake::Undecodable { encoding: "gzip", reason: error.to_string() })
+        }
+        read => read.map_err(Mistake::Unreadable),
+    }
 }
 
 /// The first characters of a file for a message.
 pub fn start_of(bytes: &[u8]) -> String {
     let start = &bytes[..bytes.len().min(12)];
     String::from_utf8_lossy(start).escape_default().to_string()
-}
-
-/// At most `limit` bytes of gzip data, fewer where the data are cut short.
-pub fn inflate(data: &[u8], limit: usize) -> Result<Vec<u8>, Mistake> {
-    let mut bytes = Vec::new();
-    match MultiGzDecoder::new(data).take(limit as u64).read_to_end(&mut bytes) {
-        Err(error) if error.kind() != ErrorKind::UnexpectedEof => {
-            Err(Mistake::Undecodable { encoding: "gzip", reason: error.to_string() })
-        }
-        _ => Ok(bytes),
-    }
 }
 
 /// Type of a stored number.

@@ -19,6 +19,10 @@ pub struct FileError {
 pub enum Mistake {
     #[error("the file cannot be read: {0}")]
     Unreadable(std::io::Error),
+    #[error("this is a folder, a device or a pipe; a file is needed")]
+    NotAFile,
+    #[error("the file has {length} bytes; at most {longest} are read")]
+    TooLong { length: u64, longest: u64 },
     #[error("the kind of file is not known; its name must end in one of {known}")]
     UnknownExtension { known: &'static str },
     #[error("this is not {format}: it starts with `{start}`")]
@@ -33,12 +37,21 @@ pub enum Mistake {
         "the file is truncated: its header states {expected} bytes of data, there are {found}; copy or export it again"
     )]
     Truncated { expected: usize, found: usize },
+    #[error(
+        "there are more data than the {expected} bytes, or numbers of text, that the header states; \
+             its sizes or its type are wrong"
+    )]
+    Excess { expected: usize },
     #[error("the header ends after {found} bytes; the file is truncated or damaged")]
     TruncatedHeader { found: usize },
     #[error("the {encoding} data cannot be decoded: {reason}; the file is damaged")]
     Undecodable { encoding: &'static str, reason: String },
-    #[error("sizes {sizes:?} are more than this reader takes, or none")]
-    BadSizes { sizes: Vec<usize> },
+    #[error(
+        "sizes {sizes:?} are no voxels, or more than the {most} that can be used; crop the image"
+    )]
+    BadSizes { sizes: Vec<usize>, most: usize },
+    #[error("the header has no end in its first {longest} bytes")]
+    LongHeader { longest: u64 },
     #[error("voxel {voxel} is {value}; labels must be whole numbers from 0 to 65535")]
     NotALabel { voxel: usize, value: f64 },
     #[error(
@@ -55,7 +68,13 @@ pub enum Mistake {
     BadLine { line: usize, text: String, expected: &'static str },
     #[error("the array has shape {shape:?} and type {kind}; expected (n, 2) or (n, 3) of floats")]
     BadArray { shape: Vec<u64>, kind: String },
-    #[error("point {point} has a coordinate that is not finite")]
+    #[error("the file states {points} points, which are {expected} coordinates, and has {found}")]
+    CoordinateCount { points: usize, expected: usize, found: usize },
+    #[error(
+        "the file has {pieces} pieces; merge them into one, or only a part of the nodes is read"
+    )]
+    SeveralPieces { pieces: usize },
+    #[error("point {point} has a coordinate that is not finite; points count from 1")]
     NotFinite { point: usize },
     #[error("there are no points in the file")]
     NoPoints,

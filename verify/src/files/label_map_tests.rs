@@ -105,7 +105,7 @@ fn a_detached_data_file_is_found_beside_its_header() {
 #[test]
 fn damaged_nrrd_files_are_refused_with_a_reason() {
     let raw = format!("{SMALL}encoding: raw\n");
-    let cases: [(Vec<u8>, &str); 12] = [
+    let cases: [(Vec<u8>, &str); 17] = [
         (b"hello".to_vec(), "this is not an NRRD file"),
         (nrrd_text(&raw, &LABELS[..5]), "states 8 bytes of data, there are 5"),
         (nrrd_text(&raw.replace("uint8", "int16"), &LABELS), "header has no `endian`"),
@@ -114,18 +114,96 @@ fn damaged_nrrd_files_are_refused_with_a_reason() {
         (nrrd_text(&raw.replace("sizes: 2 2 2", "sizes: 2 2 x"), &LABELS), "three whole numbers"),
         (nrrd_text(&raw.replace("dimension: 3", "dimension: 4"), &LABELS), "`dimension` is `4`"),
         (nrrd_text(&raw.replace("raw", "bzip2"), &LABELS), "`encoding` is `bzip2`"),
-        (nrrd_text(&raw.replace("spacings: 1", "spacings: 0"), &LABELS), "determinant 0"),
+        (nrrd_text(&raw.replace("spacings: 1", "spacings: 0"), &LABELS), "`spacings` is `0 2 3`"),
         (nrrd_text(&raw.replace("2 2 2", "99999999 99999999 99999999"), &LABELS), "sizes"),
         (nrrd_text(&format!("{raw}nonsense\n"), &LABELS), "`nonsense`; expected `field: value`"),
         (
             nrrd_text(&raw.replace("raw", "gzip"), b"this is plainly no gzip stream"),
             "gzip data cannot be decoded",
         ),
+        (nrrd_text(&raw, &[&LABELS[..], &[8]].concat()), "more data than the 8 bytes"),
+        (nrrd_text(&raw.replace("raw", "ascii"), b"0 1 2 3 4 5 6 7 8"), "more data than the 8"),
+        (nrrd_text(&raw.replace("raw", "gzip"), &gzip(&[0; 99])), "more data than the 8 bytes"),
+        (
+            nrrd_text(
+                &raw.replace("spacings: 1 2 3", "space directions: (1,0,0) (0,1,0) (1,1,0)"),
+                &LABELS,
+            ),
+            "`space directions` is `(1,0,0) (0,1,0) (1,1,0)`",
+        ),
+        (nrrd_text(&raw.replace("2 2 2", "32768 32768 1"), &LABELS), "states 1073741824 bytes"),
     ];
     for (bytes, reason) in cases {
         let message = read_as("a.nrrd", &bytes).unwrap_err().to_string();
         assert!(message.contains(reason), "{message} does not say {reason}");
     }
+}
+
+#[test]
+fn a_line_end_behind_the_data_is_no_mistake() {
+    for encoding in ["raw", "gzip"] {
+        let data = if encoding == "gzip" { gzip(&LABELS) } else { LABELS.to_vec() };
+        let header = format!("{SMALL}encoding: {encoding}\n");
+        assert!(read_as("a.nrrd", &nrrd_text(&header, &[&data[..], b"\r\n"].concat())).is_ok());
+    }
+}
+
+#[test]
+fn compressed_labels_of_the_wrong_check_sum_are_refused() {
+    let mut data = gzip(&LABELS);
+    let sum = data.len() - 8;
+    data[sum] ^= 1;
+    let error = read_as("a.nrrd", &nrrd_text(&format!("{SMALL}encoding: gzip\n"), &data));
+    assert!(error.unwrap_err().to_string().contains("checksum"));
+}
+
+#[test]
+fn no_more_is_decompressed_than_the_header_states() {
+    // A gigabyte of zeros in a megabyte.
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(&nifti_bytes(false, |_| {})).unwrap();
+    (0..256).for_each(|_| encoder.write_all(&[0; 1 << 22]).unwrap());
+    let bomb = encoder.finish().unwrap();
+    let mut read = 0;
+    let counted = Counted { bytes: &bomb, read: &mut read };
+    assert_eq!(
+        nifti::parse(flate2::read::MultiGzDecoder::new(counted), None).unwrap().size,
+        [2; 3]
+    );
+    assert!(read < bomb.len() / 2, "{read} bytes of {}", bomb.len());
+}
+
+/// Bytes, and how many of them were read.
+struct Counted<'a> {
+    bytes: &'a [u8],
+    read: &'a mut usize,
+}
+
+impl std::io::Read for Counted<'_> {
+    fn read(&mut self, to: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.bytes.read(to)?;
+        *self.read += count;
+        Ok(count)
+    }
+}
+
+#[test]
+fn a_data_file_without_an_end_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = folder.path().join("a.nhdr");
+    for data in ["/dev/zero", "."] {
+        let text = format!("NRRD0004\n{SMALL}encoding: raw\ndata file: {data}\n");
+        std::fs::write(&header, text).unwrap();
+        let error = read_label_map(&header, None).unwrap_err().to_string();
+        assert!(error.contains("a folder, a device or a pipe"), "{error}");
+    }
+}
+
+#[test]
+fn a_header_without_an_end_is_refused() {
+    let header = format!("{SMALL}{}", "# nothing\n".repeat(200_000));
+    let error = read_as("a.nrrd", &nrrd_text(&header, &LABELS)).unwrap_err();
+    assert!(matches!(error, Mistake::LongHeader { .. }), "{error}");
 }
 
 #[test]
@@ -226,6 +304,46 @@ fn damaged_nifti_files_are_refused_with_a_reason() {
         matches!(error, Mistake::Truncated { .. } | Mistake::TruncatedHeader { .. }),
         "{error}"
     );
+}
+
+#[test]
+fn nifti_fields_without_a_meaning_are_named() {
+    let nan = f32::NAN.to_le_bytes();
+    let qform = |put: &mut dyn FnMut(usize, &[u8])| put(252, &1i16.to_le_bytes());
+    let sform = |put: &mut dyn FnMut(usize, &[u8])| put(254, &1i16.to_le_bytes());
+    let cases: [(Vec<u8>, &str); 9] = [
+        (nifti_bytes(false, |put| put(108, &nan)), "vox_offset"),
+        (nifti_bytes(false, |put| put(108, &(-352.0f32).to_le_bytes())), "vox_offset"),
+        (nifti_bytes(false, |put| put(80, &nan)), "pixdim"),
+        (nifti_bytes(false, |put| put(84, &0.0f32.to_le_bytes())), "pixdim"),
+        (nifti_bytes(false, |put| put(88, &(-3.0f32).to_le_bytes())), "pixdim"),
+        (
+            nifti_bytes(false, |put| {
+                qform(put);
+                put(268, &f32::INFINITY.to_le_bytes());
+            }),
+            "qoffset",
+        ),
+        (
+            nifti_bytes(false, |put| {
+                qform(put);
+                put(256, &nan);
+            }),
+            "quatern",
+        ),
+        (
+            nifti_bytes(false, |put| {
+                sform(put);
+                put(284, &nan);
+            }),
+            "srow_x",
+        ),
+        (nifti_bytes(false, sform), "srow_x, srow_y, srow_z"),
+    ];
+    for (bytes, field) in cases {
+        let message = read_as("a.nii", &bytes).unwrap_err().to_string();
+        assert!(message.contains(&format!("header field `{field}` is")), "{message}: {field}");
+    }
 }
 
 #[test]

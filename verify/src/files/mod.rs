@@ -11,6 +11,7 @@ pub mod stl;
 mod unit;
 mod voxels;
 
+pub use bytes::visit_bytes;
 pub use error::{FileError, Mistake};
 pub use unit::LengthUnit;
 pub use voxels::LabelMapFile;

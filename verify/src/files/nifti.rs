@@ -1,12 +1,14 @@
 //! NIfTI-1 label maps, `.nii` and `.nii.gz` (nifti.nimh.nih.gov/nifti-1).
 
-use super::bytes::{ByteOrder, Scalar, bytes_of, inflate, start_of};
+use super::bytes::{ByteOrder, Scalar, at_most, open, skip, start_of, voxel_bytes};
 use super::error::{FileError, Mistake};
 use super::unit::LengthUnit;
 use super::voxels;
+use flate2::bufread::MultiGzDecoder;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::LabelMap;
 use nifti::{Endianness, NiftiHeader, NiftiType};
+use std::io::{BufRead, Read};
 use std::path::Path;
 
 /// Length of a NIfTI-1 header \[byte\].
@@ -14,15 +16,19 @@ const HEADER: usize = 348;
 
 /// Reads a label map; NIfTI is RAS already. `unit` overrides the file's.
 pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMap, FileError> {
-    let bytes = bytes_of(path)?;
-    parse(bytes, unit).map_err(|mistake| mistake.of(path))
+    let (mut file, _) = open(path)?;
+    let start = file.fill_buf().map_err(|error| Mistake::Unreadable(error).of(path))?;
+    match start.starts_with(&[0x1f, 0x8b]) {
+        true => parse(MultiGzDecoder::new(file), unit),
+        false => parse(file, unit),
+    }
+    .map_err(|mistake| mistake.of(path))
 }
 
-fn parse(bytes: Vec<u8>, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> {
-    let bytes = if bytes.starts_with(&[0x1f, 0x8b]) { inflate(&bytes, usize::MAX)? } else { bytes };
-    let header = header(&bytes)?;
+pub(super) fn parse(mut stream: impl Read, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> {
+    let header = header(&at_most(&mut stream, HEADER as u64)?)?;
     let size = size(&header)?;
-    let (origin, directions) = frame(&header);
+    let (origin, directions) = frame(&header)?;
     let metres = match unit {
         Some(unit) => unit.in_metres(),
         None => stated_unit(&header)?.in_metres(),
@@ -32,9 +38,11 @@ fn parse(bytes: Vec<u8>, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> 
         Endianness::Big => ByteOrder::Big,
     };
     let (scalar, count) = (scalar(&header)?, voxels::voxel_count(&size)?);
-    let start = (header.vox_offset.max(0.0) as usize).max(HEADER);
-    let data = bytes.get(start..).unwrap_or(&[]);
-    let labels = voxels::labels(data, count, scalar, order, scaling(&header))?;
+    let scaling = scaling(&header)?;
+    skip(&mut stream, offset(&header)?.saturating_sub(HEADER as u64))?;
+    let expected = count * scalar.size();
+    let (data, _) = voxel_bytes(stream, expected)?;
+    let labels = voxels::labels(&data, scalar, order, scaling)?;
     voxels::label_map(size, origin * metres, directions * metres, labels)
 }
 
@@ -89,11 +97,32 @@ fn scalar(header: &NiftiHeader) -> Result<Scalar, Mistake> {
     })
 }
 
+/// Where the voxels start \[byte\]; 0 means behind the header.
+fn offset(header: &NiftiHeader) -> Result<u64, Mistake> {
+    let offset = header.vox_offset;
+    if !(offset >= 0.0 && offset.fract() == 0.0) {
+        let expected = "a whole number of bytes such as 352";
+        return Err(Mistake::bad_field("vox_offset", &offset.to_string(), expected));
+    }
+    Ok(offset as u64)
+}
+
 /// Slope and intercept of the stored values; a slope of 0 means none.
-fn scaling(header: &NiftiHeader) -> (f64, f64) {
+fn scaling(header: &NiftiHeader) -> Result<(f64, f64), Mistake> {
     match header.scl_slope {
-        slope if slope == 0.0 || !slope.is_finite() => (1.0, 0.0),
-        slope => (f64::from(slope), f64::from(header.scl_inter)),
+        slope if slope == 0.0 || !slope.is_finite() => Ok((1.0, 0.0)),
+        slope => {
+            finite("scl_inter", &[header.scl_inter])?;
+            Ok((f64::from(slope), f64::from(header.scl_inter)))
+        }
+    }
+}
+
+/// Refuses a field with a number that is not finite.
+fn finite(field: &'static str, values: &[f32]) -> Result<(), Mistake> {
+    match values.iter().all(|value| value.is_finite()) {
+        true => Ok(()),
+        false => Err(Mistake::bad_field(field, &format!("{values:?}"), "finite numbers")),
     }
 }
 
@@ -111,21 +140,39 @@ fn stated_unit(header: &NiftiHeader) -> Result<LengthUnit, Mistake> {
 
 /// Centre of the first voxel and steps along the indices: sform, else qform,
 /// else pixdim alone.
-fn frame(header: &NiftiHeader) -> (Vector3, Matrix3) {
+fn frame(header: &NiftiHeader) -> Result<(Vector3, Matrix3), Mistake> {
     let wide = |row: &[f32; 4]| row.map(f64::from);
     if header.sform_code > 0 {
+        finite("srow_x", &header.srow_x)?;
+        finite("srow_y", &header.srow_y)?;
+        finite("srow_z", &header.srow_z)?;
         let rows = [wide(&header.srow_x), wide(&header.srow_y), wide(&header.srow_z)];
         let origin = Vector3::from_fn(|row, _| rows[row][3]);
-        return (origin, Matrix3::from_fn(|row, column| rows[row][column]));
+        let directions = Matrix3::from_fn(|row, column| rows[row][column]);
+        if voxels::are_singular(&directions) {
+            let expected = "three rows whose directions span a volume";
+            return Err(Mistake::bad_field(
+                "srow_x, srow_y, srow_z",
+                &format!("{rows:?}"),
+                expected,
+            ));
+        }
+        return Ok((origin, directions));
     }
     let step = header.pixdim.map(f64::from);
+    if !step[1..4].iter().all(|step| *step > 0.0 && step.is_finite()) {
+        let value = format!("{:?}", &step[1..4]);
+        return Err(Mistake::bad_field("pixdim", &value, "three positive voxel sizes"));
+    }
     if header.qform_code > 0 {
+        finite("qoffset", &[header.quatern_x, header.quatern_y, header.quatern_z])?;
+        finite("quatern", &[header.quatern_b, header.quatern_c, header.quatern_d])?;
         let hand = if step[0] < 0.0 { -1.0 } else { 1.0 };
         let scale = Matrix3::from_diagonal(&Vector3::new(step[1], step[2], hand * step[3]));
         let origin = [header.quatern_x, header.quatern_y, header.quatern_z].map(f64::from);
-        return (Vector3::from(origin), quaternion_rotation(header) * scale);
+        return Ok((Vector3::from(origin), quaternion_rotation(header) * scale));
     }
-    (Vector3::zeros(), Matrix3::from_diagonal(&Vector3::new(step[1], step[2], step[3])))
+    Ok((Vector3::zeros(), Matrix3::from_diagonal(&Vector3::new(step[1], step[2], step[3]))))
 }
 
 /// Rotation of the unit quaternion a + bi + cj + dk with a ≥ 0.

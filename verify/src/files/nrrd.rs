@@ -1,22 +1,31 @@
 //! NRRD label maps, versions 1 to 5, attached or detached; raw, gzip or text
 //! (format: teem.sourceforge.net/nrrd/format.html).
 
-use super::bytes::{ByteOrder, Scalar, bytes_of, inflate};
+use super::bytes::{ByteOrder, LONGEST, Scalar, at_most, open, skip, voxel_bytes};
 use super::error::{FileError, Mistake};
 use super::nrrd_header::{Encoding, Header};
 use super::unit::LengthUnit;
 use super::voxels::{self, LabelMapFile};
+use flate2::bufread::MultiGzDecoder;
 use mtled::geometry::LabelMap;
-use std::borrow::Cow;
+use std::io::{BufRead, Read};
 use std::path::Path;
+
+/// Headers are shorter than this \[byte\].
+const LONGEST_HEADER: u64 = 1 << 20;
 
 /// Reads a label map into RAS metres; `unit` overrides the file's.
 pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileError> {
-    let bytes = bytes_of(path)?;
-    let header = Header::parse(&bytes).map_err(|mistake| mistake.of(path))?;
+    let (mut file, length) = open(path)?;
+    let start = at_most(&mut file, LONGEST_HEADER).map_err(|mistake| mistake.of(path))?;
+    let header = Header::parse(&start).map_err(|mistake| mistake.of(path))?;
+    let data_length = length.saturating_sub(header.length as u64);
+    if header.length as u64 == LONGEST_HEADER && data_length > 0 {
+        return Err(Mistake::LongHeader { longest: LONGEST_HEADER }.of(path));
+    }
     let mut files = vec![path.to_path_buf()];
-    let data = match header.get("datafile") {
-        None => Cow::Borrowed(&bytes[header.length..]),
+    let map = match header.get("datafile") {
+        None => map(&header, (&start[header.length..]).chain(file), data_length, unit),
         Some(name) if name.starts_with("LIST") || name.contains('%') => {
             let expected = "the name of one data file";
             return Err(Mistake::bad_field("data file", name, expected).of(path));
@@ -24,14 +33,20 @@ pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileE
         Some(name) => {
             let data = path.parent().unwrap_or(Path::new(".")).join(name);
             files.push(data.clone());
-            Cow::Owned(bytes_of(&data)?)
+            let (data, length) = open(&data)?;
+            map(&header, data, length, unit)
         }
     };
-    let map = map(&header, &data, unit).map_err(|mistake| mistake.of(path))?;
-    Ok(LabelMapFile { map, files })
+    Ok(LabelMapFile { map: map.map_err(|mistake| mistake.of(path))?, files })
 }
 
-fn map(header: &Header, data: &[u8], unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> {
+/// The image whose voxels are in `length` bytes of data.
+fn map(
+    header: &Header,
+    mut data: impl BufRead,
+    length: u64,
+    unit: Option<LengthUnit>,
+) -> Result<LabelMap, Mistake> {
     let (size, scalar, encoding) = (header.sizes()?, header.scalar()?, header.encoding()?);
     let order = header.byte_order(scalar, encoding)?;
     let (origin, directions) = header.frame()?;
@@ -40,47 +55,56 @@ fn map(header: &Header, data: &[u8], unit: Option<LengthUnit>) -> Result<LabelMa
         None => header.unit()?.in_metres(),
     };
     let count = voxels::voxel_count(&size)?;
-    let data = after_lines(header, data)?;
+    let lines = header.skip("lineskip", "line skip")?.unwrap_or(0);
+    let mut before = 0;
+    for _ in 0..lines {
+        match data.skip_until(b'\n').map_err(Mistake::Unreadable)? {
+            0 => break,
+            length => before += length as u64,
+        }
+    }
+    let expected = count * scalar.size();
+    let bytes_before = header.skip("byteskip", "byte skip")?;
     let labels = match encoding {
-        Encoding::Text => text_labels(&String::from_utf8_lossy(data), count, scalar)?,
+        Encoding::Text => text_labels(data, count, scalar)?,
         Encoding::Raw => {
-            let data = after_bytes(header, data, count * scalar.size())?;
-            voxels::labels(data, count, scalar, order, (1.0, 0.0))?
+            let left = length.saturating_sub(before);
+            // A skip of −1 means that the voxels are the last bytes.
+            let skipped = bytes_before.unwrap_or(left.saturating_sub(expected as u64));
+            let found = left.saturating_sub(skipped);
+            if found < expected as u64 {
+                return Err(Mistake::Truncated { expected, found: found as usize });
+            }
+            skip(&mut data, skipped)?;
+            voxels::labels(&exactly(data, expected)?, scalar, order, (1.0, 0.0))?
         }
         Encoding::Gzip => {
-            let skip = header.skip("byteskip", "byte skip")?.unwrap_or(0);
-            let expected = skip + count * scalar.size();
-            let data = inflate(data, expected)?;
-            if data.len() < expected {
-                return Err(Mistake::Truncated { expected, found: data.len() });
-            }
-            let data = after_bytes(header, &data, count * scalar.size())?;
-            voxels::labels(data, count, scalar, order, (1.0, 0.0))?
+            let mut data = MultiGzDecoder::new(data);
+            skip(&mut data, bytes_before.unwrap_or(0))?;
+            voxels::labels(&exactly(data, expected)?, scalar, order, (1.0, 0.0))?
         }
     };
     voxels::label_map(size, origin * metres, directions * metres, labels)
 }
 
-/// The data after `line skip`.
-fn after_lines<'a>(header: &Header, data: &'a [u8]) -> Result<&'a [u8], Mistake> {
-    let lines = header.skip("lineskip", "line skip")?.unwrap_or(0);
-    let length = data.split_inclusive(|&b| b == b'\n').take(lines).map(<[u8]>::len).sum();
-    Ok(&data[length..])
-}
-
-/// The data after `byte skip`; -1 means that they are the last bytes.
-fn after_bytes<'a>(header: &Header, data: &'a [u8], expected: usize) -> Result<&'a [u8], Mistake> {
-    let truncated = Mistake::Truncated { expected, found: data.len() };
-    match header.skip("byteskip", "byte skip")? {
-        Some(skip) => data.get(skip..).ok_or(truncated),
-        None => data.len().checked_sub(expected).map(|from| &data[from..]).ok_or(truncated),
+/// All of the data, which must be as many as expected; a line end may follow.
+fn exactly(data: impl Read, expected: usize) -> Result<Vec<u8>, Mistake> {
+    let (bytes, rest) = voxel_bytes(data, expected)?;
+    match rest[..] {
+        [] | [b'\n'] | [b'\r', b'\n'] => Ok(bytes),
+        _ => Err(Mistake::Excess { expected }),
     }
 }
 
-fn text_labels(text: &str, count: usize, scalar: Scalar) -> Result<Vec<u32>, Mistake> {
+fn text_labels(data: impl Read, count: usize, scalar: Scalar) -> Result<Vec<u32>, Mistake> {
+    let text = at_most(data, LONGEST)?;
+    let text = String::from_utf8_lossy(&text);
     let words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
     let mut labels = Vec::new();
-    for (voxel, word) in words.take(count).enumerate() {
+    for (voxel, word) in words.enumerate() {
+        if voxel == count {
+            return Err(Mistake::Excess { expected: count });
+        }
         let value = word.parse::<f64>().map_err(|_| {
             let reason = format!("`{}` is not a number", word.chars().take(20).collect::<String>());
             Mistake::Undecodable { encoding: "text", reason }

@@ -3,6 +3,7 @@
 use super::bytes::{ByteOrder, Scalar, start_of};
 use super::error::Mistake;
 use super::unit::LengthUnit;
+use super::voxels;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use std::collections::HashMap;
 
@@ -143,7 +144,7 @@ impl Header {
     }
 
     /// A count such as `byte skip`, 0 if absent; -1 is `None`.
-    pub fn skip(&self, name: &str, field: &'static str) -> Result<Option<usize>, Mistake> {
+    pub fn skip(&self, name: &str, field: &'static str) -> Result<Option<u64>, Mistake> {
         match self.get(name) {
             None => Ok(Some(0)),
             Some("-1") => Ok(None),
@@ -195,6 +196,13 @@ impl Header {
             }
             (None, None) => return Err(Mistake::MissingField { field: "space directions" }),
         };
+        if voxels::are_singular(&directions) {
+            let (field, text) = match self.get("spacedirections") {
+                Some(text) => ("space directions", text),
+                None => ("spacings", self.get("spacings").unwrap_or_default()),
+            };
+            return Err(Mistake::bad_field(field, text, "three steps that span a volume"));
+        }
         let flip = Matrix3::from_diagonal(&signs);
         Ok((flip * origin, flip * directions))
     }

@@ -23,9 +23,11 @@ pub fn read(path: &Path, unit: LengthUnit) -> Result<Triangles, FileError> {
 }
 
 fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
-    if !bytes.starts_with(b"solid") {
-        refuse_truncated(bytes)?;
-    }
+    let text = bytes.starts_with(b"solid") && surplus(bytes) != Some(0);
+    let bytes = match text {
+        true => unnamed_text(bytes),
+        false => plainly_binary(bytes)?,
+    };
     let mesh = stl_io::read_stl(&mut Cursor::new(bytes))
         .map_err(|error| Mistake::Undecodable { encoding: "STL", reason: error.to_string() })?;
     if mesh.faces.is_empty() {
@@ -36,20 +38,47 @@ fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
         .map(|vertex| Vector3::from_fn(|n, _| f64::from(vertex[n]) * metres))
         .collect();
     if let Some(point) = vertices.iter().position(|v| !v.iter().all(|c| c.is_finite())) {
-        return Err(Mistake::NotFinite { point });
+        return Err(Mistake::NotFinite { point: point + 1 });
     }
     let triangles = mesh.faces.iter().map(|face| face.vertices.map(|n| n as u32)).collect();
     Ok(Triangles { vertices, triangles })
 }
 
-/// A binary file is 84 bytes and 50 per triangle.
-fn refuse_truncated(bytes: &[u8]) -> Result<(), Mistake> {
-    let Some(count) = bytes.get(80..84) else {
+/// Header of a binary file and its number of triangles \[byte\].
+const START: usize = 84;
+/// A triangle of a binary file \[byte\].
+const TRIANGLE: usize = 50;
+
+/// Bytes of triangles that a binary file states.
+fn stated(bytes: &[u8]) -> Option<usize> {
+    let count = bytes.get(START - 4..START)?;
+    let count = count.iter().rev().fold(0usize, |sum, &byte| sum << 8 | usize::from(byte));
+    Some(TRIANGLE * count)
+}
+
+/// Bytes beyond those that a binary file states; 0 shows that it is one, whatever its
+/// header begins with.
+fn surplus(bytes: &[u8]) -> Option<i64> {
+    Some((bytes.len() - START) as i64 - stated(bytes)? as i64)
+}
+
+/// A binary file of the right length, with a header that no reader takes for text.
+fn plainly_binary(bytes: &[u8]) -> Result<Vec<u8>, Mistake> {
+    let Some(expected) = stated(bytes) else {
         return Err(Mistake::WrongFormat { format: "an STL file", start: start_of(bytes) });
     };
-    let count = count.iter().rev().fold(0usize, |sum, &byte| sum << 8 | usize::from(byte));
-    let (expected, found) = (50 * count, bytes.len() - 84);
-    if found < expected { Err(Mistake::Truncated { expected, found }) } else { Ok(()) }
+    let found = bytes.len() - START;
+    match found.checked_sub(expected) {
+        None => Err(Mistake::Truncated { expected, found }),
+        Some(TRIANGLE..) => Err(Mistake::Excess { expected }),
+        Some(_) => Ok([&[0; START - 4], &bytes[START - 4..]].concat()),
+    }
+}
+
+/// A text file whose solid has a name, as the reader needs it.
+fn unnamed_text(bytes: &[u8]) -> Vec<u8> {
+    let first = bytes.iter().position(|&b| b == b'\n').unwrap_or(bytes.len());
+    [b"solid surface", &bytes[first..]].concat()
 }
 
 #[cfg(test)]
@@ -91,6 +120,29 @@ mod tests {
         assert_eq!(from_binary, parse(ascii().as_bytes(), LengthUnit::Millimetre).unwrap());
         assert_eq!((from_binary.vertices.len(), from_binary.triangles.len()), (4, 4));
         assert!(from_binary.vertices.contains(&Vector3::new(0.01, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn a_binary_surface_whose_header_begins_with_solid_is_read() {
+        let mut bytes = binary();
+        bytes[..13].copy_from_slice(b"solid surface");
+        let read = parse(&bytes, LengthUnit::Metre).unwrap();
+        assert_eq!(read, parse(&binary(), LengthUnit::Metre).unwrap());
+    }
+
+    #[test]
+    fn a_text_surface_needs_no_name() {
+        let text = ascii().replace("solid tetrahedron\n", "solid\n");
+        let read = parse(text.as_bytes(), LengthUnit::Metre).unwrap();
+        assert_eq!(read.triangles.len(), 4);
+    }
+
+    #[test]
+    fn a_surface_with_more_triangles_than_stated_is_refused() {
+        let mut bytes = binary();
+        bytes[80] = 3;
+        let error = parse(&bytes, LengthUnit::Metre).unwrap_err();
+        assert!(matches!(error, Mistake::Excess { expected: 150 }), "{error}");
     }
 
     #[test]

@@ -26,31 +26,35 @@ pub fn label_map(
     LabelMap::new(size, origin, directions, labels).map_err(Mistake::Geometry)
 }
 
+/// Whether directions span no volume.
+pub fn are_singular(directions: &Matrix3) -> bool {
+    let volume: f64 = directions.column_iter().map(|step| step.norm()).product();
+    !(directions.determinant().abs() > 1e-9 * volume && volume.is_finite())
+}
+
 /// The largest label.
 const LARGEST: f64 = 65535.0;
 
-/// Number of voxels of an image, refused where it is 0 or more than 2³².
+/// The most voxels of an image: 1024³, whose distances take 64 GB.
+const MOST_VOXELS: usize = 1 << 30;
+
+/// Number of voxels of an image, refused where it is 0 or more than can be used.
 pub fn voxel_count(sizes: &[usize]) -> Result<usize, Mistake> {
     let count = sizes.iter().try_fold(1usize, |product, &n| product.checked_mul(n));
     match count {
-        Some(count) if count > 0 && count <= 1 << 32 => Ok(count),
-        _ => Err(Mistake::BadSizes { sizes: sizes.to_vec() }),
+        Some(count) if (1..=MOST_VOXELS).contains(&count) => Ok(count),
+        _ => Err(Mistake::BadSizes { sizes: sizes.to_vec(), most: MOST_VOXELS }),
     }
 }
 
-/// Decodes `count` numbers as labels, value = slope × stored + intercept.
+/// Decodes numbers as labels, value = slope × stored + intercept.
 pub fn labels(
     bytes: &[u8],
-    count: usize,
     scalar: Scalar,
     order: ByteOrder,
     (slope, intercept): (f64, f64),
 ) -> Result<Vec<u32>, Mistake> {
-    let expected = count * scalar.size();
-    if bytes.len() < expected {
-        return Err(Mistake::Truncated { expected, found: bytes.len() });
-    }
-    let chunks = bytes[..expected].chunks_exact(scalar.size());
+    let chunks = bytes.chunks_exact(scalar.size());
     let values = chunks.map(|chunk| slope * scalar.read(chunk, order) + intercept);
     let labels: Vec<u32> = (values.enumerate())
         .map(|(voxel, value)| label(voxel, value, scalar, order))

@@ -1,8 +1,12 @@
-//! Refusal of problems that need more memory than is available.
+//! Memory that a run takes, and refusal of cases that need more than is available.
 
 use crate::machine::available_memory;
-use mtled::discretisation::Footprint;
-use mtled::problem::Problem;
+use crate::run::record::Sample;
+use crate::scene::Case;
+use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::{Discretisation, Footprint};
+use mtled::model::essential::Reaction;
+use mtled::model::zero_energy::tested_points;
 use mtled_checks::report::four_digits;
 
 /// A problem that needs more memory than is available.
@@ -20,20 +24,49 @@ pub struct MemoryShortage {
     pub available: f64,
 }
 
-/// Refuses a problem that needs more memory than is available. A body that cannot be
+/// Refuses a case that needs more memory than is available. A body that cannot be
 /// sampled is left to the set-up, which says why.
-pub fn refuse_beyond_memory(problem: &Problem) -> Result<(), MemoryShortage> {
-    match (Footprint::of(problem), available_memory()) {
-        (Ok(footprint), Some(available)) => refuse_beyond(footprint, available as f64),
+pub fn refuse_beyond_memory(case: &Case) -> Result<(), MemoryShortage> {
+    match (Footprint::of(&case.problem), available_memory()) {
+        (Ok(footprint), Some(available)) => {
+            let bytes = footprint.bytes + recorded_bytes(case, &footprint);
+            refuse_beyond(Footprint { bytes, ..footprint }, available as f64)
+        }
         _ => Ok(()),
     }
 }
 
+/// Memory \[bytes\] at the peak of a run whose discretisation is known: an upper bound.
+pub fn estimated_memory(case: &Case, discretisation: &Discretisation) -> f64 {
+    let footprint = Footprint::counted(&case.problem, discretisation);
+    let recorded = recorded_bytes(case, &footprint);
+    // Recording begins when recipes have been tested.
+    footprint.bytes + recorded.max(footprint.rows_bytes(tested_points(discretisation)))
+}
+
+/// Bytes of a position in `result.json`, with the numbers as text and as values.
+const PER_WRITTEN_POSITION: f64 = 900.0;
+
+/// Frames and samples of a run, and what evaluates or writes them \[bytes\].
+fn recorded_bytes(case: &Case, footprint: &Footprint) -> f64 {
+    let (problem, outputs) = (&case.problem, &case.outputs);
+    let number = size_of::<f64>() as f64;
+    let parameters = problem.dimension.components() as f64 * footprint.nodes;
+    let frames = outputs.frames as f64 * number * parameters;
+    let positions: f64 = case.probes.iter().map(|probe| probe.kind.count() as f64).sum();
+    let sample = size_of::<Vector3>() as f64 * (positions + case.probes.len() as f64)
+        + size_of::<Reaction>() as f64 * problem.conditions.len() as f64
+        + size_of::<Sample>() as f64;
+    let samples = (outputs.history as f64 + 1.0) * sample;
+    frames + samples + footprint.rows_bytes(positions).max(PER_WRITTEN_POSITION * positions)
+}
+
 /// Refuses where more is needed than available \[bytes\].
 fn refuse_beyond(footprint: Footprint, available: f64) -> Result<(), MemoryShortage> {
-    match footprint.bytes > available {
-        true => Err(MemoryShortage { footprint, available }),
-        false => Ok(()),
+    // An estimate that overflows is NaN.
+    match footprint.bytes <= available {
+        true => Ok(()),
+        false => Err(MemoryShortage { footprint, available }),
     }
 }
 
@@ -42,6 +75,7 @@ mod tests {
     use super::*;
     use crate::run::prepare::prepare;
     use crate::scene::read_case;
+    use mtled::problem::Problem;
 
     fn bundled(name: &str) -> Problem {
         let folder = tempfile::tempdir().unwrap();
@@ -78,7 +112,8 @@ mod tests {
 
     #[test]
     fn a_body_that_does_not_fit_is_refused_with_its_numbers() {
-        let footprint = Footprint { nodes: 1e6, points: 2e6, neighbours: 30.0, bytes: 12e9 };
+        let footprint =
+            Footprint { nodes: 1e6, points: 2e6, neighbours: 30.0, panels: 1e5, bytes: 12e9 };
         assert!(refuse_beyond(footprint, 13e9).is_ok());
         let message = refuse_beyond(footprint, 8e9).unwrap_err().to_string();
         assert!(message.contains("about 12 GB") && message.contains("and 8 GB"), "{message}");

@@ -12,8 +12,8 @@ pub mod vtu;
 mod work;
 
 pub use interrupt::{interrupt, interrupted};
-pub use memory::{MemoryShortage, refuse_beyond_memory};
-pub use output::{write_outputs, write_recorded};
+pub use memory::{MemoryShortage, estimated_memory, refuse_beyond_memory};
+pub use output::{write_failed, write_outputs};
 pub use prepare::{Prepared, prepare, prepare_to_run};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Recorder, Recording, Sample};

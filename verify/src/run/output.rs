@@ -2,16 +2,20 @@
 #![allow(non_snake_case)]
 
 use super::prepare::Prepared;
-use super::record::Recording;
-use super::result::result_json;
+use super::record::{Frame, Recording};
+use super::result::{failed_json, result_json};
 use super::solve::Solved;
-use super::vtu::{PointArray, VtuFrame, write_pvd, write_vtu};
+use super::vtu::{Order, PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::scene::Case;
-use anyhow::Result;
+use anyhow::{Context, Result};
 use mtled::algebra::tensor::Matrix3;
+use mtled::error::Error;
 use mtled::motion::internal_force::projected_mean_stress;
 use mtled::problem::{Motion, Problem};
+use mtled_checks::escape::{csv_text, file_name};
 use mtled_checks::report::write_atomically;
+use serde_json::Value;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Writes all files of a run to `dir` and returns the text of `result.json`.
@@ -22,44 +26,124 @@ pub fn write_outputs(
     dir: &Path,
 ) -> Result<String> {
     write_recorded(case, &solved.prepared, record, dir)?;
-    let text = serde_json::to_string_pretty(&result_json(case, solved, record))? + "\n";
+    write_result(&result_json(case, solved, record), dir)
+}
+
+/// Writes what a run had recorded when it ended with an error.
+pub fn write_failed(
+    case: &Case,
+    prepared: &Prepared,
+    record: &Recording,
+    error: &Error,
+    dir: &Path,
+) -> Result<String> {
+    write_recorded(case, prepared, record, dir)?;
+    write_result(&failed_json(case, prepared, record, error), dir)
+}
+
+fn write_result(result: &Value, dir: &Path) -> Result<String> {
+    let text = serde_json::to_string_pretty(result)? + "\n";
     write_atomically(&dir.join("result.json"), text.as_bytes())?;
     Ok(text)
 }
 
-/// Writes the recording, which a failed run has too, and removes the `result.json` of
-/// an earlier run.
-pub fn write_recorded(
+/// Writes the recording, which a failed run has too. The files of an earlier run are taken
+/// away first and the PVD is written last, so that it never names frames of two runs.
+fn write_recorded(case: &Case, prepared: &Prepared, record: &Recording, dir: &Path) -> Result<()> {
+    remove_earlier_run(dir)?;
+    let collection = write_frames(case, prepared, record, dir)?;
+    write_atomically(&dir.join("history.csv"), history_csv(case, record)?.as_bytes())?;
+    let name = file_name(&format!("{}.pvd", case.name));
+    write_pvd(&dir.join(name), order(&case.problem.motion), &collection)
+}
+
+/// Removes `result.json` and the collections of frames, then the frames and the histories.
+fn remove_earlier_run(dir: &Path) -> Result<()> {
+    let mut others = vec![dir.join("history.csv")];
+    let mut indices = vec![dir.join("result.json")];
+    let unreadable = || format!("cannot read the folder {}", dir.display());
+    if dir.exists() {
+        for entry in std::fs::read_dir(dir).with_context(unreadable)? {
+            let path = entry.with_context(unreadable)?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            if is_frame(&name) {
+                others.push(path);
+            } else if name.ends_with(".pvd") && lists_frames(&path) {
+                indices.push(path);
+            }
+        }
+    }
+    for file in indices.iter().chain(&others) {
+        match std::fs::remove_file(file) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                let what = format!("cannot remove {} of an earlier run", file.display());
+                return Err(error).context(what);
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn frame_name(number: usize) -> String {
+    format!("nodes_{number:04}.vtu")
+}
+
+fn is_frame(name: &str) -> bool {
+    let number = name.strip_prefix("nodes_").and_then(|rest| rest.strip_suffix(".vtu"));
+    number.is_some_and(|n| n.len() >= 4 && n.bytes().all(|digit| digit.is_ascii_digit()))
+}
+
+/// Whether a collection names frames of a run, under whatever name of the case.
+fn lists_frames(collection: &Path) -> bool {
+    std::fs::read_to_string(collection).is_ok_and(|text| text.contains("file=\"nodes_"))
+}
+
+/// A static run has no physical time: its frames are numbered.
+fn order(motion: &Motion) -> Order {
+    match motion {
+        Motion::Dynamic { .. } => Order::Time,
+        Motion::Static(_) | Motion::Equilibrium(_) => Order::Number,
+    }
+}
+
+/// What orders each frame, and its file.
+fn write_frames(
     case: &Case,
     prepared: &Prepared,
     record: &Recording,
     dir: &Path,
-) -> Result<()> {
-    if let Err(error) = std::fs::remove_file(dir.join("result.json"))
-        && error.kind() != std::io::ErrorKind::NotFound
-    {
-        return Err(error.into());
-    }
-    write_frames(case, prepared, record, dir)?;
-    write_atomically(&dir.join("history.csv"), history_csv(case, record)?.as_bytes())
-}
-
-fn write_frames(case: &Case, prepared: &Prepared, record: &Recording, dir: &Path) -> Result<()> {
-    let dynamic = matches!(case.problem.motion, Motion::Dynamic { .. });
+) -> Result<Vec<(f64, String)>> {
     let positions = &prepared.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
-    let mut series = Vec::new();
-    for (index, frame) in record.frames.iter().enumerate() {
-        let name = format!("nodes_{index:04}.vtu");
-        // A static run has no physical time: its frames are numbered by steps.
-        let time = if dynamic { frame.time } else { frame.step as f64 };
-        write_vtu(
-            &dir.join(&name),
-            &node_frame(&case.problem, prepared, &points, &frame.displacement, time)?,
-        )?;
-        series.push((time, name));
+    let mut collection = Vec::new();
+    for (number, frame) in record.frames.iter().enumerate() {
+        let name = frame_name(number);
+        let mut fields = node_frame(&case.problem, prepared, &points, frame)?;
+        let is_last = number + 1 == record.frames.len();
+        if let Some(mode) = record.unstable_mode.as_ref().filter(|_| is_last) {
+            let mode = field_at_nodes(prepared, mode)?;
+            fields.point_data.push(PointArray::new("unstable_mode", 3, mode));
+        }
+        write_vtu(&dir.join(&name), &fields)?;
+        let at = match order(&case.problem.motion) {
+            Order::Time => frame.time,
+            Order::Number => number as f64,
+        };
+        collection.push((at, name));
     }
-    write_pvd(&dir.join(format!("{}.pvd", case.name)), &series)
+    Ok(collection)
+}
+
+/// Time of a frame \[s\], or how far a static run had come.
+fn numbers(motion: &Motion, frame: &Frame) -> Vec<(&'static str, f64)> {
+    let static_run =
+        |load_end: f64| vec![("step", frame.step as f64), ("load_fraction", frame.time / load_end)];
+    match motion {
+        Motion::Dynamic { .. } => vec![("TimeValue", frame.time)],
+        Motion::Static(settings) => static_run(settings.load_end),
+        Motion::Equilibrium(settings) => static_run(settings.load_end),
+    }
 }
 
 /// Fields at the nodes: displacement of the approximation (not the nodal parameters),
@@ -68,18 +152,14 @@ fn node_frame<'a>(
     problem: &Problem,
     prepared: &Prepared,
     points: &'a [[f64; 3]],
-    u: &[f64],
-    time: f64,
+    frame: &Frame,
 ) -> Result<VtuFrame<'a>> {
-    let d = prepared.model.components;
-    let cloud = &prepared.discretisation.cloud;
-    let rows = prepared.discretisation.rows_at(&cloud.positions)?;
-    let displacement: Vec<f64> =
-        (0..rows.len()).flat_map(|i| <[f64; 3]>::from(rows.interpolate(i, u, d))).collect();
+    let u = &frame.displacement;
+    let displacement = field_at_nodes(prepared, u)?;
     let (jacobian, stress) = averaged(problem, prepared, u);
     let pressure = stress.chunks(9).map(|s| -(s[0] + s[4] + s[8]) / 3.0).collect();
     Ok(VtuFrame {
-        time,
+        numbers: numbers(&problem.motion, frame),
         points,
         point_data: vec![
             PointArray::new("displacement", 3, displacement),
@@ -88,6 +168,13 @@ fn node_frame<'a>(
             PointArray::new("pressure", 1, pressure),
         ],
     })
+}
+
+/// Values at the nodes of the field with nodal parameters `u` \[node\]\[x, y, z\].
+fn field_at_nodes(prepared: &Prepared, u: &[f64]) -> Result<Vec<f64>> {
+    let rows = prepared.discretisation.rows_at(&prepared.discretisation.cloud.positions)?;
+    let value = |i| <[f64; 3]>::from(rows.interpolate(i, u, prepared.model.components));
+    Ok((0..rows.len()).flat_map(value).collect())
 }
 
 /// J \[–\] and Cauchy stress by rows \[Pa\], projected pressure included, averaged over the
@@ -140,7 +227,7 @@ fn history_csv(case: &Case, record: &Recording) -> Result<String> {
         header.extend(axes.map(|axis| format!("{}.f{axis}_n", condition.name)));
         header.extend(axes.map(|axis| format!("{}.m{axis}_n_m", condition.name)));
     }
-    writer.write_record(&header)?;
+    writer.write_record(header.iter().map(|name| csv_text(name)))?;
     for sample in &record.samples {
         let e = &sample.energies;
         let mut row =

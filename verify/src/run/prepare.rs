@@ -1,11 +1,12 @@
 //! From a problem to its discretisation and model.
 
-use mtled::discretisation::Discretisation;
+use mtled::discretisation::{Discretisation, Warning};
 use mtled::error::Error;
 use mtled::model::Model;
+use mtled::model::rigid_motions::free_rigid_motions;
 use mtled::model::zero_energy::refuse_zero_energy_modes;
 use mtled::motion::mass_scaling::raise_masses;
-use mtled::problem::Problem;
+use mtled::problem::{Motion, Problem};
 use std::time::Instant;
 
 /// A problem that has been discretised.
@@ -17,6 +18,43 @@ pub struct Prepared {
     pub model: Model,
     /// Wall time of the set-up \[s\].
     pub setup_seconds: f64,
+}
+
+impl Prepared {
+    /// Reasons to doubt a result before it is there.
+    pub fn doubts(&self, problem: &Problem) -> Vec<String> {
+        let mut doubts: Vec<String> =
+            self.discretisation.warnings().iter().map(Warning::to_string).collect();
+        doubts.extend(self.model.warnings.iter().map(Warning::to_string));
+        doubts.extend(self.not_held(problem));
+        doubts
+    }
+
+    /// What leaves a static problem without a single solution.
+    fn not_held(&self, problem: &Problem) -> Option<String> {
+        let load_end = match &problem.motion {
+            Motion::Dynamic { .. } => return None,
+            Motion::Static(settings) => settings.load_end,
+            Motion::Equilibrium(settings) => settings.load_end,
+        };
+        let model = &self.model;
+        let free = match free_rigid_motions(model, load_end, &vec![0.0; model.size()]) {
+            0 => return None,
+            1 => "a rigid motion".to_string(),
+            several => format!("{several} rigid motions"),
+        };
+        let consequence = match model.contact.obstacles.is_empty() {
+            true => "the result is one of many that differ by such a motion",
+            false => {
+                "only contact that closes during the run can hold it, and without friction that may \
+                 not be enough to converge"
+            }
+        };
+        Some(format!(
+            "the conditions, and contacts that are closed at the start, leave {free} of the body \
+             free in a static problem: {consequence}"
+        ))
+    }
 }
 
 /// Discretises a problem and builds its model.

@@ -20,6 +20,8 @@ pub struct Recording {
     pub samples: Vec<Sample>,
     /// In the order of time.
     pub frames: Vec<Frame>,
+    /// The motion in which the body is unstable, if it is \[component of node\] \[–\].
+    pub unstable_mode: Option<Vec<f64>>,
 }
 
 /// Probes, reactions and energies at one instant.
@@ -58,19 +60,55 @@ enum Evaluator {
     Centre(MassCentre),
 }
 
+/// Progress at which a run may end \[–\]: time steps sum up to the end but for round-off.
+const FULL: f64 = 1.0 - 1e-12;
+
+/// States of a run at equal parts of its progress, the first and the last among them: at
+/// most one more than `parts`, however many steps the run takes and however its progress
+/// goes up and down.
+#[derive(Debug)]
+struct Series<T> {
+    parts: usize,
+    kept: Vec<T>,
+    /// Whether the last that is kept was taken at full progress. A run that goes on all the
+    /// same, such as a relaxation whose residual is still too large, replaces it.
+    full: bool,
+}
+
+impl<T> Series<T> {
+    fn new(parts: usize) -> Series<T> {
+        Series { parts, kept: Vec::new(), full: false }
+    }
+
+    /// Whether a state at this progress \[–\] is to be kept; `last` after which the run stops.
+    fn is_due(&self, progress: f64, last: bool) -> bool {
+        let (parts, kept) = (self.parts as f64, self.kept.len() as f64);
+        let next = kept < parts && progress * parts >= kept;
+        self.parts > 0 && (last || progress >= FULL || next)
+    }
+
+    fn keep(&mut self, item: T, progress: f64) {
+        if self.full {
+            self.kept.pop();
+        }
+        self.full = progress >= FULL;
+        self.kept.push(item);
+    }
+}
+
 /// Samples a run at equal parts of its progress and at its end.
 pub struct Recorder<'a> {
     probes: Vec<Evaluator>,
     components: usize,
     moment_about: Vector3,
-    samples_requested: usize,
-    frames_requested: usize,
-    recording: Recording,
+    references: Vec<Vec<Vector3>>,
+    samples: Series<Sample>,
+    frames: Series<Frame>,
     progress: Option<&'a dyn Fn(f64, usize)>,
 }
 
 impl<'a> Recorder<'a> {
-    /// Prepares the probes of a case; `frames` frames are recorded.
+    /// Prepares the probes of a case; at most `frames` frames are recorded after the first.
     pub fn new(case: &Case, prepared: &Prepared, frames: usize) -> Result<Recorder<'a>, Error> {
         let discretisation = &prepared.discretisation;
         let centres = centres_of_mass(&case.problem, discretisation);
@@ -81,6 +119,9 @@ impl<'a> Recorder<'a> {
                 ProbeKind::CentreOfMass { region } => {
                     let named = case.problem.regions.iter().position(|r| &r.name == region);
                     let centre = centres[named.unwrap_or_default()].clone();
+                    if centre.mass == 0.0 {
+                        return Err(Error::EmptyRegion { name: region.clone() });
+                    }
                     references.push(vec![centre.reference]);
                     probes.push(Evaluator::Centre(centre));
                 }
@@ -95,9 +136,9 @@ impl<'a> Recorder<'a> {
             probes,
             components: prepared.model.components,
             moment_about: case.outputs.moment_about,
-            samples_requested: case.outputs.history.max(1),
-            frames_requested: frames,
-            recording: Recording { references, ..Recording::default() },
+            references,
+            samples: Series::new(case.outputs.history.max(1)),
+            frames: Series::new(frames),
             progress: None,
         })
     }
@@ -110,7 +151,8 @@ impl<'a> Recorder<'a> {
 
     /// The recording.
     pub fn finish(self) -> Recording {
-        self.recording
+        let Recorder { references, samples, frames, .. } = self;
+        Recording { references, samples: samples.kept, frames: frames.kept, unstable_mode: None }
     }
 
     fn sample(&self, view: &View, energies: Energies) -> Sample {
@@ -136,25 +178,19 @@ impl<'a> Recorder<'a> {
 impl Observer for Recorder<'_> {
     fn observe(&mut self, view: &mut View) -> Continue {
         let stop = interrupted();
-        let last = stop || view.progress >= 1.0;
-        let due = |done: usize, requested: usize| {
-            requested > 0 && (last || view.progress * requested as f64 >= done as f64)
-        };
-        let frame = due(self.recording.frames.len(), self.frames_requested);
-        let sample = due(self.recording.samples.len(), self.samples_requested);
-        // A state whose energy is NaN fails in the next step and is not a result.
+        let frame = self.frames.is_due(view.progress, stop);
+        let sample = self.samples.is_due(view.progress, stop);
+        // A state whose energy is no number fails in the next step and is not a result.
         let energies = (frame || sample).then(|| view.energies());
-        if let Some(energies) = energies.filter(|energies| energies.strain.is_finite()) {
+        if let Some(energies) = energies.filter(is_finite) {
             if frame {
-                self.recording.frames.push(Frame {
-                    step: view.state.step,
-                    time: view.state.time,
-                    displacement: view.state.displacement.clone(),
-                });
+                let displacement = view.state.displacement.clone();
+                let frame = Frame { step: view.state.step, time: view.state.time, displacement };
+                self.frames.keep(frame, view.progress);
             }
             if sample {
                 let sample = self.sample(view, energies);
-                self.recording.samples.push(sample);
+                self.samples.keep(sample, view.progress);
             }
         }
         if let Some(report) = self.progress {
@@ -165,5 +201,59 @@ impl Observer for Recorder<'_> {
 
     fn tracks_work(&self) -> bool {
         true
+    }
+}
+
+fn is_finite(e: &Energies) -> bool {
+    [e.kinetic, e.strain, e.external_work, e.constraint_work, e.damping_loss]
+        .iter()
+        .all(|energy| energy.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The numbers of the steps that are kept of a run with this progress after each step.
+    fn kept(parts: usize, progress: &[f64]) -> Vec<usize> {
+        let mut series = Series::new(parts);
+        for (step, &progress) in progress.iter().enumerate() {
+            if series.is_due(progress, false) {
+                series.keep(step, progress);
+            }
+        }
+        series.kept
+    }
+
+    #[test]
+    fn states_are_kept_at_equal_parts_of_the_progress() {
+        let steps: Vec<f64> = (0..=100).map(|n| n as f64 / 100.0).collect();
+        assert_eq!(kept(4, &steps), [0, 25, 50, 75, 100]);
+        assert_eq!(kept(1, &steps), [0, 100]);
+        assert_eq!(kept(0, &steps), [0; 0]);
+        // Time steps that sum up to the end but for round-off.
+        assert_eq!(kept(2, &[0.0, 0.3, 0.6, 1.0 - f64::EPSILON]), [0, 2, 3]);
+        // All the load in one increment.
+        assert_eq!(kept(20, &[0.0, 1.0]), [0, 1]);
+    }
+
+    #[test]
+    fn a_run_that_goes_on_at_full_progress_keeps_its_first_and_its_last_state() {
+        let mut progress: Vec<f64> = (0..=10).map(|n| n as f64 / 10.0).collect();
+        progress.extend([1.0; 4000]);
+        assert_eq!(kept(5, &progress), [0, 2, 4, 6, 8, 4010]);
+    }
+
+    #[test]
+    fn progress_that_goes_up_and_down_keeps_no_more_states() {
+        let mut progress = vec![0.0];
+        progress.extend((0..4000).map(|n| [0.5, 1.0, 0.99, 0.2][n % 4]));
+        progress.push(1.0);
+        for parts in [1, 2, 20] {
+            let kept = kept(parts, &progress);
+            assert!(kept.len() <= parts + 1, "{parts}: {}", kept.len());
+            assert_eq!((kept[0], kept.last()), (0, Some(&4001)));
+            assert!(kept.is_sorted());
+        }
     }
 }

@@ -1,15 +1,19 @@
 //! The result of a run as JSON and as a screen of text.
 
+use super::memory::estimated_memory;
+use super::prepare::Prepared;
 use super::record::Recording;
 use super::solve::Solved;
 use super::work::Work;
 use crate::machine::{peak_memory, provenance};
 use crate::scene::{Case, ProbeKind};
 use mtled::algebra::tensor::Vector3;
-use mtled::discretisation::Footprint;
-use mtled::discretisation::Warning;
+use mtled::error::Error;
+use mtled::motion::summary::Summary;
 use mtled::problem::Motion;
+use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 /// Version of the layout of `result.json`.
@@ -18,7 +22,36 @@ const SCHEMA_VERSION: u32 = 1;
 /// `result.json`. Only `timings` may differ between two runs of the same binary on
 /// the same case.
 pub fn result_json(case: &Case, solved: &Solved, record: &Recording) -> Value {
-    let (discretisation, model) = (&solved.prepared.discretisation, &solved.prepared.model);
+    let mut warnings = solved.prepared.doubts(&case.problem);
+    warnings.extend(solved.doubts());
+    let mut result = recorded_json(case, &solved.prepared, record);
+    result["warnings"] = json!(warnings);
+    result["motion"] = motion_json(case, solved);
+    result["work_counters"] = json!(Work::of(solved));
+    result["timings"]["solve_wall_s"] = json!(solved.solve_seconds);
+    result["timings"]["solve_cpu_s"] = json!(solved.cpu_seconds);
+    result
+}
+
+/// `result.json` of a run that ended with an error: what it had reached, marked as such.
+pub fn failed_json(case: &Case, prepared: &Prepared, record: &Recording, error: &Error) -> Value {
+    let mut result = recorded_json(case, prepared, record);
+    result["warnings"] = json!(prepared.doubts(&case.problem));
+    result["motion"] = json!({
+        "method": method(case),
+        "outcome": Outcome::of_error(error),
+        "complete": false,
+        "error": error.to_string(),
+        "steps": record.samples.last().map_or(0, |last| last.step),
+        "time_s": record.samples.last().map_or(0.0, |last| last.time),
+        "smallest_jacobian": record.samples.last().map_or(1.0, |last| last.smallest_jacobian),
+    });
+    result
+}
+
+/// What every run has.
+fn recorded_json(case: &Case, prepared: &Prepared, record: &Recording) -> Value {
+    let (discretisation, model) = (&prepared.discretisation, &prepared.model);
     let quadrature = &discretisation.quadrature;
     json!({
         "schema_version": SCHEMA_VERSION,
@@ -37,30 +70,60 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Recording) -> Value {
             "mass_kg": model.lumped_mass.iter().sum::<f64>(),
             "added_mass_kg": model.added_mass,
         },
-        "warnings": warnings(solved),
-        "motion": motion_json(case, solved),
-        "work_counters": Work::of(solved),
         "probes": probes_json(case, record),
         "reactions": reactions_json(case, record),
         "energies": energies_json(record),
         "timings": {
-            "setup_wall_s": solved.prepared.setup_seconds,
-            "solve_wall_s": solved.solve_seconds,
-            "solve_cpu_s": solved.cpu_seconds,
+            "setup_wall_s": prepared.setup_seconds,
             "peak_memory_bytes": peak_memory(),
-            "estimated_memory_bytes": Footprint::of(&case.problem).ok().map(|f| f.bytes.round()),
+            "estimated_memory_bytes": estimated_memory(case, discretisation).round(),
             "provenance": provenance(),
         },
     })
 }
 
-/// Reasons to doubt the result.
-fn warnings(solved: &Solved) -> Vec<String> {
-    let Solved { prepared, summary, .. } = solved;
-    let mut all: Vec<String> =
-        prepared.discretisation.warnings().iter().map(Warning::to_string).collect();
-    all.extend(summary.collapsed_point(&prepared.model).map(|collapsed| collapsed.to_string()));
-    all
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Outcome {
+    /// A motion reached its end.
+    Completed,
+    /// A static solution met its tolerance.
+    Converged,
+    /// The user stopped the run.
+    Stopped,
+    /// A static solution did not meet its tolerance.
+    NotConverged,
+    /// A point turned inside out, or displacements grew without bound.
+    Diverged,
+    /// Another error.
+    Failed,
+}
+
+impl Outcome {
+    fn of(case: &Case, summary: &Summary) -> Outcome {
+        match (summary.stopped, &case.problem.motion) {
+            (true, _) => Outcome::Stopped,
+            (false, Motion::Dynamic { .. }) => Outcome::Completed,
+            (false, _) => Outcome::Converged,
+        }
+    }
+
+    fn of_error(error: &Error) -> Outcome {
+        match error {
+            Error::NotConverged { .. } | Error::NoEquilibrium { .. } => Outcome::NotConverged,
+            Error::Diverged { .. } | Error::Inverted { .. } => Outcome::Diverged,
+            Error::Unstable { then, .. } | Error::NotHeld { then, .. } => Outcome::of_error(then),
+            _ => Outcome::Failed,
+        }
+    }
+}
+
+fn method(case: &Case) -> &'static str {
+    match case.problem.motion {
+        Motion::Dynamic { .. } => "dynamic",
+        Motion::Static(_) | Motion::Equilibrium(_) => "static",
+    }
 }
 
 fn motion_json(case: &Case, solved: &Solved) -> Value {
@@ -81,8 +144,16 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
     });
     let moves = newton.is_none();
     let dynamic = matches!(case.problem.motion, Motion::Dynamic { .. });
+    let unstable = summary.instability.as_ref().map(|instability| {
+        json!({
+            "step": instability.step,
+            "node": instability.node,
+            "position_m": array(&instability.position),
+        })
+    });
     json!({
-        "method": if dynamic { "dynamic" } else { "static" },
+        "method": method(case),
+        "outcome": Outcome::of(case, summary),
         "complete": !summary.stopped,
         "steps": summary.steps,
         "time_s": summary.time,
@@ -92,6 +163,7 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
         // Of the lumped masses, which a static run does not have.
         "per_point_bound_s": dynamic.then_some(solved.prepared.model.per_point_bound),
         "smallest_jacobian": summary.smallest_jacobian.jacobian,
+        "instability": unstable,
         "relaxation": relaxation,
         "newton": newton,
     })
@@ -151,7 +223,7 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Recording) -> String 
     let (d, s) = (&solved.prepared.discretisation, &solved.summary);
     let model = &solved.prepared.model;
     let mut lines = vec![
-        format!("{}: {}", case.name, case.title),
+        format!("{}: {}", printable(&case.name), printable(&case.title)),
         format!(
             "  {} nodes, {} quadrature points, {:.1} nodes per support",
             d.cloud.positions.len(),
@@ -184,7 +256,8 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Recording) -> String 
     }
     if let Some(convergence) = s.relaxation {
         lines.push(format!(
-            "  converged: estimated error {} m, residual {} of the largest nodal force",
+            "  {}: estimated error {} m, residual {} of the largest nodal force",
+            if s.stopped { "stopped before it converged" } else { "converged" },
             four_digits(convergence.estimated_error),
             four_digits(convergence.residual)
         ));
@@ -199,7 +272,7 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Recording) -> String 
             };
             lines.push(format!(
                 "  {place} \"{}\" at ({}) m moved by ({}) m",
-                probe.name,
+                printable(&probe.name),
                 triple(&references[0]),
                 triple(&displacements[0])
             ));
@@ -207,7 +280,7 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Recording) -> String 
         for (condition, reaction) in case.problem.conditions.iter().zip(&last.reactions) {
             lines.push(format!(
                 "  force of \"{}\": ({}) N",
-                condition.name,
+                printable(&condition.name),
                 triple(&reaction.force)
             ));
         }
@@ -236,7 +309,7 @@ fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
     let peak = peak_memory()? as f64;
     let (d, model) = (&solved.prepared.discretisation, &solved.prepared.model);
     let (nodes, points) = (model.positions.len() as f64, d.supports.len() as f64);
-    let estimate = Footprint::of(&case.problem).ok()?.bytes;
+    let estimate = estimated_memory(case, d);
     Some(format!(
         "  {:.0} MB of memory at the peak ({:.0} estimated): {:.0} bytes per point, {:.0} per node; {:.0} bytes \
          per point are read in each step",

@@ -4,6 +4,7 @@ use super::prepare::{Prepared, prepare};
 use super::record::{Recorder, Recording};
 use crate::machine::cpu_seconds;
 use crate::scene::Case;
+use mtled::discretisation::Warning;
 use mtled::error::Error;
 use mtled::motion::observe::Observer;
 use mtled::motion::simulate::simulate;
@@ -45,6 +46,15 @@ impl Solved {
     pub fn new(prepared: Prepared, end: Integrated) -> Solved {
         let Integrated { state, summary, solve_seconds, cpu_seconds } = end;
         Solved { prepared, state, summary, solve_seconds, cpu_seconds }
+    }
+
+    /// Reasons to doubt a finished run, beside those of [`Prepared::doubts`].
+    pub fn doubts(&self) -> Vec<String> {
+        let model = &self.prepared.model;
+        let inside = model.contact.penetrations(&model.positions, &self.state.displacement);
+        let mut doubts = self.summary.doubts(model);
+        doubts.extend(inside.iter().map(Warning::to_string));
+        doubts
     }
 }
 

@@ -11,8 +11,8 @@ const VTK_VERTEX: u8 = 1;
 /// A cloud of points at one instant; every point becomes a vertex cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VtuFrame<'a> {
-    /// \[s\]
-    pub time: f64,
+    /// Numbers of the whole frame by name; `TimeValue` is its time \[s\].
+    pub numbers: Vec<(&'static str, f64)>,
     /// \[m\]
     pub points: &'a [[f64; 3]],
     /// Fields at the points.
@@ -28,6 +28,24 @@ pub struct PointArray {
     pub components: usize,
     /// \[point\]\[component\], in the unit of the field.
     pub values: Vec<f64>,
+}
+
+/// What the frames of a collection are ordered by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// Time \[s\].
+    Time,
+    /// Their number: a static run has no time.
+    Number,
+}
+
+impl Order {
+    fn meaning(self) -> &'static str {
+        match self {
+            Order::Time => "time in seconds",
+            Order::Number => "number of the frame, since a static run has no time",
+        }
+    }
 }
 
 impl PointArray {
@@ -90,7 +108,11 @@ pub fn to_vtu(frame: &VtuFrame) -> Result<Vec<u8>> {
 
 fn header(frame: &VtuFrame, blocks: &mut Blocks) -> String {
     let count = frame.points.len();
-    let time = blocks.reals("Name=\"TimeValue\" NumberOfTuples=\"1\"", [frame.time].iter());
+    let mut numbers = String::new();
+    for (name, number) in &frame.numbers {
+        let attributes = format!("{} NumberOfTuples=\"1\"", named(name));
+        numbers += &blocks.reals(&attributes, [number].into_iter());
+    }
     let places =
         blocks.reals("Name=\"Points\" NumberOfComponents=\"3\"", frame.points.iter().flatten());
     let connectivity = blocks.integers("connectivity", 0..count as i64);
@@ -105,7 +127,7 @@ fn header(frame: &VtuFrame, blocks: &mut Blocks) -> String {
     format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n{time}</FieldData>\n\
+         header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n{numbers}</FieldData>\n\
          <Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">\n\
          <PointData>\n{fields}</PointData>\n<Points>\n{places}</Points>\n\
          <Cells>\n{connectivity}{offsets}{types}</Cells>\n</Piece>\n</UnstructuredGrid>\n\
@@ -122,15 +144,16 @@ pub fn write_vtu(path: &Path, frame: &VtuFrame) -> Result<()> {
     write_atomically(path, &to_vtu(frame)?)
 }
 
-/// Writes a collection of frames: times \[s\] and file names relative to `path`.
-pub fn write_pvd(path: &Path, frames: &[(f64, String)]) -> Result<()> {
-    let mut text = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
+/// Writes a collection of frames: what orders them and file names relative to `path`.
+pub fn write_pvd(path: &Path, order: Order, frames: &[(f64, String)]) -> Result<()> {
+    let mut text = format!(
+        "<?xml version=\"1.0\"?>\n<!-- timestep: {} -->\n<VTKFile type=\"Collection\" version=\"1.0\" \
          byte_order=\"LittleEndian\">\n<Collection>\n",
+        order.meaning()
     );
-    for (time, file) in frames {
+    for (at, file) in frames {
         let file = mtled_checks::report::svg::escape(file);
-        let _ = writeln!(text, "<DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>");
+        let _ = writeln!(text, "<DataSet timestep=\"{at}\" part=\"0\" file=\"{file}\"/>");
     }
     text.push_str("</Collection>\n</VTKFile>\n");
     write_atomically(path, text.as_bytes())
@@ -149,7 +172,7 @@ mod tests {
             PointArray::new("J", 1, vec![1.0, 0.98]),
             PointArray::new("cauchy_stress", 9, tensor),
         ];
-        VtuFrame { time, points: &POINTS, point_data }
+        VtuFrame { numbers: vec![("TimeValue", time)], points: &POINTS, point_data }
     }
 
     /// The reals of the array called `name`, found the way a reader finds them.
@@ -196,8 +219,9 @@ mod tests {
             frames.push((time, name));
         }
         let collection = folder.join("frames.pvd");
-        write_pvd(&collection, &frames).unwrap();
+        write_pvd(&collection, Order::Time, &frames).unwrap();
         let text = std::fs::read_to_string(collection).unwrap();
+        assert!(text.contains("<!-- timestep: time in seconds -->"), "{text}");
         assert!(text.contains("timestep=\"0.5\" part=\"0\" file=\"frame_0001.vtu\""), "{text}");
     }
 }

@@ -61,6 +61,14 @@ pub enum ProbeKind {
 }
 
 impl ProbeKind {
+    /// Number of positions of which the displacement is recorded.
+    pub fn count(&self) -> usize {
+        match self {
+            ProbeKind::Point(_) | ProbeKind::CentreOfMass { .. } => 1,
+            ProbeKind::Lattice { counts, .. } => counts.iter().product(),
+        }
+    }
+
     /// The reference positions \[m\] of a point or lattice, x fastest; none for
     /// a centre of mass.
     pub fn positions(&self) -> Vec<Vector3> {

@@ -73,16 +73,29 @@ impl Document {
         (true, span)
     }
 
-    /// A mistake for each `nan` and `inf`, which TOML allows.
+    /// Mistakes for the first few `nan` and `inf`, which TOML allows; the last one tells
+    /// how many more there are.
     pub fn numbers_that_are_not_finite(&self) -> Vec<Diagnostic> {
-        let mut mistakes = Vec::new();
-        visit(self.tree.as_item(), "", &mut |path, _, item| {
-            if let Some(value) = item.as_float().filter(|value| !value.is_finite()) {
-                let message = format!("is {value}; it must be a finite number");
-                mistakes.push(self.diagnostic(path, message));
+        const A_FEW: usize = 20;
+        let mut mistakes: Vec<Diagnostic> = Vec::new();
+        let mut more = 0;
+        visit(self.tree.as_item(), "", &mut |path, span, item| {
+            let Some(value) = item.as_float().filter(|value| !value.is_finite()) else { return };
+            // A value under a key is seen with both of their places.
+            if item.span().is_some_and(|own| own != span) {
+                return;
+            }
+            match mistakes.len() < A_FEW {
+                true => {
+                    let message = format!("is {value}; it must be a finite number");
+                    mistakes.push(self.diagnostic_at(span, path.to_string(), message));
+                }
+                false => more += 1,
             }
         });
-        mistakes.dedup();
+        if let Some(last) = mistakes.last_mut().filter(|_| more > 0) {
+            last.message += &format!("; so must {more} more numbers of the file");
+        }
         mistakes
     }
 

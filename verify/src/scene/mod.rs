@@ -14,9 +14,9 @@ mod problem_hash;
 mod read;
 
 pub use case::{Case, Outputs, Probe, ProbeKind};
-pub use diagnostic::{Diagnostic, Location, one_error};
+pub use diagnostic::{Diagnostic, Location, Mistakes, one_error};
 pub use edit::{EditError, edited, with_absolute_paths};
 pub use knob::{Knob, Level, Levels, Setting};
 pub use migrate::migrated;
 pub use problem_hash::problem_hash;
-pub use read::{parse_case, read_case, schema};
+pub use read::{parse_case, read_case, read_text, schema};

@@ -18,6 +18,7 @@
 //! references computes the same; `reference/tests/problem_hash.json` holds
 //! answers for both.
 
+use crate::files::visit_bytes;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, TableLike};
@@ -38,12 +39,11 @@ pub fn problem_hash(text: &str, base_dir: &Path) -> Result<String, String> {
     }
     let mut canonical = String::new();
     write_item(document.as_item(), base_dir, &mut canonical)?;
-    Ok(hexadecimal(canonical.as_bytes()))
+    Ok(hexadecimal(&Sha256::digest(canonical.as_bytes())))
 }
 
-/// SHA-256 of some bytes.
-fn hexadecimal(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+fn hexadecimal(digest: &[u8]) -> String {
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn write_table(table: &dyn TableLike, base_dir: &Path, out: &mut String) -> Result<(), String> {
@@ -96,9 +96,9 @@ fn write_number(number: f64, out: &mut String) {
 }
 
 fn write_file(path: &Path, out: &mut String) -> Result<(), String> {
-    let bytes =
-        std::fs::read(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    let mut hash = Sha256::new();
+    visit_bytes(path, |bytes| hash.update(bytes)).map_err(|error| error.to_string())?;
     out.push('f');
-    out.push_str(&hexadecimal(&bytes));
+    out.push_str(&hexadecimal(&hash.finalize()));
     Ok(())
 }

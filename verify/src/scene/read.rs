@@ -7,14 +7,32 @@ use crate::scene::diagnostic::Diagnostic;
 use crate::scene::document::Document;
 use crate::scene::format::CaseFormat;
 use crate::scene::migrate::outdated;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// Reads a case file and the files it refers to.
 pub fn read_case(path: &Path) -> Result<Case, Vec<Diagnostic>> {
     let file = path.display().to_string();
-    let text = std::fs::read_to_string(path)
+    let text = read_text(path)
         .map_err(|error| vec![Diagnostic::of_file(&file, format!("cannot be read: {error}"))])?;
     parse_case(&text, &file, path.parent().unwrap_or(Path::new(".")))
+}
+
+/// The longest case file or plan that is read \[byte\].
+const LONGEST: u64 = 1 << 26;
+
+/// The text of a case file or plan, which may come from a pipe but must end.
+pub fn read_text(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    File::open(path)?.take(LONGEST + 1).read_to_string(&mut text)?;
+    match text.len() as u64 <= LONGEST {
+        true => Ok(text),
+        false => {
+            let reason = format!("it has more than {LONGEST} bytes");
+            Err(io::Error::new(io::ErrorKind::FileTooLarge, reason))
+        }
+    }
 }
 
 /// Reads a case from text; other files are looked for from `base_dir`.

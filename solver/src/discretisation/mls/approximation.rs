@@ -105,6 +105,36 @@ impl Approximation {
         }
     }
 
+    /// The smallest influence radius of the nodes within `reach` of X \[m\]; the mean of
+    /// those that cover it where there is none.
+    pub fn smallest_radius_within(&self, X: &Vector3, reach: f64) -> f64 {
+        let mut smallest = f64::INFINITY;
+        self.for_each_node_within(X, reach, |node, _| {
+            smallest = smallest.min(self.influence_radius[node as usize]);
+        });
+        if smallest.is_finite() { smallest } else { self.mean_radius(X) }
+    }
+
+    /// Calls `visit(node, distance)` for every node within `radius` of X \[m\].
+    pub(crate) fn for_each_node_within(
+        &self,
+        X: &Vector3,
+        radius: f64,
+        mut visit: impl FnMut(u32, f64),
+    ) {
+        self.neighbours.for_each_within(X, radius, |node, offset| {
+            let distance = offset.norm();
+            if distance < radius {
+                visit(node as u32, distance);
+            }
+        });
+    }
+
+    /// The largest influence radius \[m\].
+    pub fn largest_radius(&self) -> f64 {
+        self.largest_radius
+    }
+
     /// φ_a(X) = w_a pᵀ(X_a) A⁻¹(X) p(X) and its full derivatives (Lancaster,
     /// Salkauskas 1981; Belytschko, Lu, Gu 1994, eqs. 9–18; method book,
     /// eqs. 6.2 and 6.3). Where the support is poor the radii are enlarged in

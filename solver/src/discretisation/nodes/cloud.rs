@@ -1,7 +1,8 @@
-//! A node cloud and its largest size.
+//! A node cloud and its finest spacing.
 
 use crate::algebra::tensor::Vector3;
-use crate::geometry::{GeometryError, at_most};
+use crate::geometry::{GeometryError, NODES, Shape};
+use crate::problem::Dimension;
 
 /// Nodes in the reference configuration.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +33,14 @@ impl NodeCloud {
     }
 }
 
-/// Refuses a cloud of too many nodes, before it is made where possible.
-pub(super) fn refuse_too_many(count: f64) -> Result<(), GeometryError> {
-    at_most("nodes", count, 2e7)
+/// Refuses a spacing \[m\] at which a lattice over the bounding box of a body has too
+/// many nodes.
+pub fn refuse_fine_spacing(
+    body: &Shape,
+    spacing: f64,
+    dimension: &Dimension,
+) -> Result<(), GeometryError> {
+    let (lower, upper) = body.finite_bounds(dimension)?;
+    let edges = (upper - lower).rows(0, dimension.components()).clone_owned();
+    NODES.check(edges.map(|edge| (edge / spacing).round().max(1.0) + 1.0).product())
 }

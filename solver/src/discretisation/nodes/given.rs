@@ -2,8 +2,8 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::{Vector3, bounding_box};
-use crate::discretisation::nodes::cloud::{NodeCloud, refuse_too_many};
-use crate::geometry::{GeometryError, PointHash, Shape};
+use crate::discretisation::nodes::cloud::NodeCloud;
+use crate::geometry::{GeometryError, NODES, PointHash, Shape};
 use crate::problem::Dimension;
 use rayon::prelude::*;
 
@@ -27,10 +27,11 @@ pub(super) fn given(
     if count < needed {
         return Err(GeometryError::TooFewNodes { count, needed });
     }
-    refuse_too_many(count as f64)?;
+    NODES.check(count as f64)?;
     if !nodes.iter().all(|X| X.iter().all(|c| c.is_finite())) {
         return Err(GeometryError::NotFinite { name: "the list of given nodes" });
     }
+    refuse_far_nodes(body, nodes, dimension)?;
     let hash = hashed(nodes, dimension);
     let nearest: Vec<Vec<(f64, usize)>> = (0..count)
         .into_par_iter()
@@ -52,6 +53,27 @@ pub(super) fn given(
         cloud.on_boundary.push(distance.abs() < ON_BOUNDARY * spacing);
     }
     Ok(cloud)
+}
+
+/// Refuses a node that is farther from the bounding box of the body than the body is
+/// large, as where a coordinate has lost its decimal point or a file is in millimetres.
+pub fn refuse_far_nodes(
+    body: &Shape,
+    nodes: &[Vector3],
+    dimension: &Dimension,
+) -> Result<(), GeometryError> {
+    let (lower, upper) = body.finite_bounds(dimension)?;
+    let extent = (upper - lower).norm();
+    let is_near = |X: &Vector3| {
+        let beyond = dimension.in_plane((lower - X).sup(&(X - upper)));
+        beyond.max() <= extent
+    };
+    match nodes.iter().position(|X| !is_near(X)) {
+        Some(node) => {
+            Err(GeometryError::NodeFarOutside { node, position: nodes[node].into(), extent })
+        }
+        None => Ok(()),
+    }
 }
 
 fn hashed(nodes: &[Vector3], dimension: &Dimension) -> PointHash {

@@ -3,10 +3,10 @@
 
 use crate::algebra::random::Random;
 use crate::algebra::tensor::Vector3;
-use crate::discretisation::nodes::cloud::{NodeCloud, refuse_too_many};
+use crate::discretisation::nodes::cloud::NodeCloud;
 use crate::geometry::{
-    GeometryError, KnownDistance, PointHash, ScalarGrid, Shape, TargetSpacing, boundary_points,
-    indices, positive,
+    DISTANCE_SAMPLES, GeometryError, KnownDistance, NODES, PointHash, ScalarGrid, Shape,
+    TargetSpacing, boundary_points, indices, positive,
 };
 use crate::problem::{Dimension, Refinement};
 
@@ -48,13 +48,8 @@ impl<'a> SizeField<'a> {
         dimension: &Dimension,
         most_samples: f64,
     ) -> Result<Self, GeometryError> {
-        let (lower, upper) = body.finite_bounds(dimension)?;
-        let smallest = requested.smallest();
-        let length = (upper - lower).rows(0, dimension.components()).clone_owned();
-        let most = (length.product() / most_samples).powf(1.0 / dimension.components() as f64);
-        let step = (0.5 * smallest).max(most);
-        let size = [0, 1, 2]
-            .map(|k| if k < length.len() { (length[k] / step).ceil() as usize + 1 } else { 1 });
+        let (lower, _) = body.finite_bounds(dimension)?;
+        let (size, step) = requested.grid(body, dimension, most_samples)?;
         let blank = ScalarGrid { size, step: Vector3::repeat(step), values: Vec::new() };
         let mut distances = Vec::new();
         for (n, refinement) in requested.refinements.iter().enumerate() {
@@ -135,7 +130,7 @@ pub(super) fn graded(
             hash.insert(X);
             positions.push(X);
         }
-        refuse_too_many(positions.len() as f64)
+        NODES.check(positions.len() as f64)
     })?;
     Ok(NodeCloud::boundary_first(positions, count, size_at))
 }
@@ -156,7 +151,7 @@ fn candidates(
     let edge = field.requested.spacing;
     let count = [0, 1, 2]
         .map(|k| if k < axes { ((upper[k] - lower[k]) / edge).ceil().max(1.0) } else { 1.0 });
-    refuse_too_many(count.iter().product())?;
+    NODES.check(count.iter().product())?;
     let count = count.map(|n| n as usize);
     let middle = 0.5 * (lower + upper);
     for at in indices(count) {
@@ -201,6 +196,34 @@ fn halve(
 }
 
 impl RequestedSizes<'_> {
+    /// Number of samples of the distances to each part, before nodes are chosen.
+    pub(crate) fn samples(
+        &self,
+        body: &Shape,
+        dimension: &Dimension,
+    ) -> Result<f64, GeometryError> {
+        let (size, _) = self.grid(body, dimension, MOST_SAMPLES)?;
+        Ok(size.map(|n| n as f64).iter().product())
+    }
+
+    /// Samples along each axis, and their distance \[m\].
+    fn grid(
+        &self,
+        body: &Shape,
+        dimension: &Dimension,
+        most_samples: f64,
+    ) -> Result<([usize; 3], f64), GeometryError> {
+        let (lower, upper) = body.finite_bounds(dimension)?;
+        let length = (upper - lower).rows(0, dimension.components()).clone_owned();
+        let most = (length.product() / most_samples).powf(1.0 / dimension.components() as f64);
+        let step = (0.5 * self.smallest()).max(most);
+        let across =
+            |k: usize| if k < length.len() { (length[k] / step).ceil() + 1.0 } else { 1.0 };
+        // A long thin body needs more than were asked for.
+        DISTANCE_SAMPLES.check((0..3).map(across).product())?;
+        Ok(([0, 1, 2].map(|k| across(k) as usize), step))
+    }
+
     fn smallest(&self) -> f64 {
         self.refinements.iter().map(|r| r.size).fold(self.spacing, f64::min)
     }

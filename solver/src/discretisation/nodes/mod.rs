@@ -5,7 +5,8 @@ mod given;
 mod graded;
 mod regular;
 
-pub use cloud::NodeCloud;
+pub use cloud::{NodeCloud, refuse_fine_spacing};
+pub use given::refuse_far_nodes;
 pub use graded::{RequestedSizes, SizeField};
 
 use crate::geometry::{GeometryError, Shape, positive};
@@ -22,13 +23,14 @@ pub fn node_cloud(
     let section = body.section(dimension)?;
     let lattice = |spacing: f64, jitter: Option<(f64, u64)>| {
         positive("the nodal spacing", spacing)?;
+        refuse_fine_spacing(&section, spacing, dimension)?;
         if let Some((jitter, _)) = jitter
             && !(0.0..0.5).contains(&jitter)
         {
             return Err(GeometryError::Jitter { jitter });
         }
         match body {
-            Shape::Box { min, max } => regular::in_box(min, max, spacing, jitter, dimension),
+            Shape::Box { min, max } => Ok(regular::in_box(min, max, spacing, jitter, dimension)),
             _ => regular::in_solid(&section, spacing, jitter, dimension),
         }
     };

@@ -3,7 +3,7 @@
 
 use crate::algebra::random::Random;
 use crate::algebra::tensor::Vector3;
-use crate::discretisation::nodes::cloud::{NodeCloud, refuse_too_many};
+use crate::discretisation::nodes::cloud::NodeCloud;
 use crate::geometry::{
     BoundaryPoints, GeometryError, Shape, TargetSpacing, boundary_points, indices, lattice_cells,
     project,
@@ -21,14 +21,12 @@ fn lattice(
     upper: &Vector3,
     spacing: f64,
     dimension: &Dimension,
-) -> Result<([usize; 3], Vector3), GeometryError> {
+) -> ([usize; 3], Vector3) {
     let length = upper - lower;
     let axes = dimension.components();
-    let estimate = |k: usize| if k < axes { (length[k] / spacing).round().max(1.0) } else { 0.0 };
-    refuse_too_many((0..3).map(|k| estimate(k) + 1.0).product())?;
     let cells = [0, 1, 2].map(|k| if k < axes { lattice_cells(length[k], spacing) } else { 0 });
     let step = Vector3::from_fn(|k, _| if k < axes { length[k] / cells[k] as f64 } else { 0.0 });
-    Ok((cells, step))
+    (cells, step)
 }
 
 /// A lattice that includes the faces of a box. The spacing of a node is the
@@ -39,12 +37,12 @@ pub(super) fn in_box(
     spacing: f64,
     jitter: Option<(f64, u64)>,
     dimension: &Dimension,
-) -> Result<NodeCloud, GeometryError> {
+) -> NodeCloud {
     let (mut lower, mut upper) = (*min, *max);
     if let Dimension::PlaneStrain { z, .. } = dimension {
         (lower.z, upper.z) = (*z, *z);
     }
-    let (cells, step) = lattice(&lower, &upper, spacing, dimension)?;
+    let (cells, step) = lattice(&lower, &upper, spacing, dimension);
     let mut random = jitter.map(|(size, seed)| (size, Random(seed)));
     let (mut positions, mut on_boundary) = (Vec::new(), Vec::new());
     for at in indices(cells.map(|n| n + 1)) {
@@ -58,7 +56,7 @@ pub(super) fn in_box(
         on_boundary.push((0..dimension.components()).any(face));
     }
     let spacing = vec![step.max(); positions.len()];
-    Ok(NodeCloud { positions, spacing, on_boundary })
+    NodeCloud { positions, spacing, on_boundary }
 }
 
 /// Boundary points, and lattice points that are far enough inside.
@@ -69,7 +67,7 @@ pub(super) fn in_solid(
     dimension: &Dimension,
 ) -> Result<NodeCloud, GeometryError> {
     let (lower, upper) = body.finite_bounds(dimension)?;
-    let (cells, step) = lattice(&lower, &upper, spacing, dimension)?;
+    let (cells, step) = lattice(&lower, &upper, spacing, dimension);
     let target = TargetSpacing { at: &|_| spacing, smallest: spacing, largest: spacing };
     let mut boundary = boundary_points(body, &target, dimension)?;
     let at = |ijk: [usize; 3]| lower + Vector3::from(ijk.map(|n| n as f64)).component_mul(&step);

@@ -17,7 +17,7 @@ fn ball() -> Shape {
 
 fn l_shape() -> Shape {
     let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.5, 0.5], [0.5, 1.0], [0.0, 1.0]];
-    Shape::Polygon { points, z: (0.0, 0.3) }
+    Shape::Polygon { points: points.into(), z: (0.0, 0.3) }
 }
 
 fn bodies() -> Vec<(&'static str, Shape, Dimension)> {
@@ -205,4 +205,16 @@ fn invalid_clouds_are_refused() {
     let refinements = vec![Refinement { part: nowhere, size: 0.05 }];
     let error = refused(Cloud::Graded { spacing: 0.1, refinements, growth: 0.2, seed: 0 });
     assert_eq!(error, GeometryError::RefinementEmpty { refinement: 0, size: 0.05 });
+}
+
+#[test]
+fn a_node_far_outside_is_named_before_its_neighbours_are_searched() {
+    let cloud = Cloud::Regular { spacing: 0.125 };
+    let nodes = node_cloud(&brick(), &cloud, &Dimension::Three).unwrap().positions;
+    for far in [7.0, 1e160, 1e308] {
+        let mut nodes = nodes.clone();
+        nodes[5].y = -far;
+        let error = node_cloud(&brick(), &Cloud::Given { nodes }, &Dimension::Three).unwrap_err();
+        assert!(matches!(error, GeometryError::NodeFarOutside { node: 5, .. }), "{error}");
+    }
 }

@@ -5,8 +5,9 @@ use crate::algebra::tensor::Vector3;
 use crate::discretisation::quadrature::cell::Cell;
 use crate::discretisation::quadrature::cut::cut;
 use crate::discretisation::quadrature::gauss::gauss_legendre;
+use crate::discretisation::quadrature::subdivision::{NodalSpacing, Subdivision};
 use crate::error::Error;
-use crate::geometry::Shape;
+use crate::geometry::{POINTS, Shape, indices};
 use crate::problem::{BackgroundGrid, Dimension, InsideRule, Region};
 use rayon::prelude::*;
 
@@ -38,6 +39,7 @@ struct PointCollector<'a> {
     body: &'a Shape,
     regions: &'a [Region],
     grid: &'a BackgroundGrid,
+    subdivision: Subdivision<'a>,
     /// 2 or 3.
     components: usize,
     /// Volume of a cell is edge^components × thickness.
@@ -45,13 +47,25 @@ struct PointCollector<'a> {
     out: Quadrature,
 }
 
-/// Lays the grid over the body and collects its points, by the centre rule (Horton
-/// 2007, section 2.3) or by volume fractions, with a point at the centroid of the
-/// inside part of each region in a cell (method book, eq. 7.2).
+/// As [`quadrature_following`] on a grid that does not follow the nodes.
 pub fn quadrature(
     body: &Shape,
     regions: &[Region],
     grid: &BackgroundGrid,
+    dimension: &Dimension,
+) -> Result<Quadrature, Error> {
+    let unknown = NodalSpacing { within: &|_, _| f64::INFINITY, largest: f64::INFINITY };
+    quadrature_following(body, regions, grid, &unknown, dimension)
+}
+
+/// Lays the grid over the body and collects its points, by the centre rule (Horton
+/// 2007, section 2.3) or by volume fractions, with a point at the centroid of the
+/// inside part of each region in a cell (method book, eq. 7.2).
+pub fn quadrature_following(
+    body: &Shape,
+    regions: &[Region],
+    grid: &BackgroundGrid,
+    spacing: &NodalSpacing,
     dimension: &Dimension,
 ) -> Result<Quadrature, Error> {
     let (min, max) = body.bounding_box().ok_or(Error::NoQuadraturePoints)?;
@@ -60,35 +74,44 @@ pub fn quadrature(
         Dimension::PlaneStrain { thickness, z } => (thickness, z),
     };
     let components = dimension.components();
+    let subdivision = Subdivision { body, grid, spacing, components };
+    subdivision.validate()?;
+    let edge = subdivision.largest_edge();
     let counts = [0, 1, 2].map(|k| match k < components {
         // A grid that fits exactly must not get another layer from round-off.
-        true => ((max[k] - min[k]) / grid.cell - 1e-9).ceil().max(1.0) as usize,
-        false => 1,
+        true => ((max[k] - min[k]) / edge - 1e-9).ceil().max(1.0),
+        false => 1.0,
     });
     let middle = (min + max) * 0.5;
+    let cell_at = |index: [usize; 3]| {
+        let mut centre = middle;
+        for axis in 0..3 {
+            centre[axis] += edge * (index[axis] as f64 + 0.5 - 0.5 * counts[axis]);
+        }
+        if components == 2 {
+            centre.z = z;
+        }
+        Cell { centre, edge }
+    };
+    let size = counts.map(|count| count as usize);
+    subdivision.refuse_too_many(counts, indices(size).map(cell_at))?;
     let row_of_cells = |row: usize| {
         let mut collector = PointCollector {
             body,
             regions,
             grid,
+            subdivision,
             components,
             thickness,
             out: Quadrature::default(),
         };
-        for i in 0..counts[0] {
-            let mut centre = middle;
-            for (axis, index) in [i, row % counts[1], row / counts[1]].into_iter().enumerate() {
-                centre[axis] += grid.cell * (index as f64 + 0.5 - 0.5 * counts[axis] as f64);
-            }
-            if components == 2 {
-                centre.z = z;
-            }
-            collector.visit(Cell { centre, edge: grid.cell })?;
+        for i in 0..size[0] {
+            collector.visit(cell_at([i, row % size[1], row / size[1]]))?;
         }
         Ok(collector.out)
     };
     let rows: Vec<Result<Quadrature, Error>> =
-        (0..counts[1] * counts[2]).into_par_iter().map(row_of_cells).collect();
+        (0..size[1] * size[2]).into_par_iter().map(row_of_cells).collect();
     let all = join(rows.into_iter().collect::<Result<_, _>>()?);
     if all.positions.is_empty() { Err(Error::NoQuadraturePoints) } else { Ok(all) }
 }
@@ -107,30 +130,25 @@ fn join(parts: Vec<Quadrature>) -> Quadrature {
 }
 
 impl PointCollector<'_> {
-    /// Halves a cell where smaller ones are requested, drops it outside.
+    /// Divides a cell where smaller ones are requested, drops it outside.
     fn visit(&mut self, cell: Cell) -> Result<(), Error> {
         let distance = self.body.signed_distance(&cell.centre);
         let reach = cell.half_diagonal(self.components);
         if distance > reach {
             return Ok(());
         }
-        let meets_boundary = distance > -reach;
-        let too_large = |limit: f64| cell.edge > limit * (1.0 + 1e-9);
-        let split = (meets_boundary && self.grid.boundary_cell.is_some_and(too_large))
-            || self.grid.refinements.iter().any(|refinement| {
-                too_large(refinement.size)
-                    && cell.samples(self.components).any(|X| refinement.part.contains(&X))
-            });
-        if split {
-            for child in cell.children(self.components) {
+        let parts = self.subdivision.parts(&cell, distance);
+        if parts > 1 {
+            for child in cell.divide(parts, self.components) {
                 self.visit(child)?;
             }
             return Ok(());
         }
-        self.leaf(cell, meets_boundary)
+        self.leaf(cell, distance > -reach)
     }
 
     fn leaf(&mut self, cell: Cell, meets_boundary: bool) -> Result<(), Error> {
+        POINTS.check(self.out.positions.len() as f64)?;
         let mixed = self.regions.len() > 1 && self.is_mixed(&cell);
         let before = self.out.positions.len();
         match self.grid.inside {

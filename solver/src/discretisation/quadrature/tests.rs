@@ -3,7 +3,8 @@
 use super::gauss::gauss_legendre;
 use super::*;
 use crate::algebra::tensor::Vector3;
-use crate::geometry::{Selector, Shape};
+use crate::error::Error;
+use crate::geometry::{GeometryError, Selector, Shape};
 use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use crate::problem::{BackgroundGrid, Dimension, InsideRule, Refinement, Region};
 
@@ -120,4 +121,70 @@ fn a_plane_slice_has_the_volume_of_its_slab() {
     assert!((volume / exact - 1.0).abs() < 2e-3, "{}", volume / exact);
     // A centroid is a weighted mean: round-off of the last digits.
     assert!(q.positions.iter().all(|X| (X.z - 0.01).abs() < 1e-16));
+}
+
+/// Why a grid over the ball is refused.
+fn refusal(grid: &BackgroundGrid) -> GeometryError {
+    let region = region("all", Selector::All);
+    match quadrature(&ball(), &[region], grid, &Dimension::Three) {
+        Err(Error::Geometry(error)) => error,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_grid_of_too_many_cells_is_refused_before_any_is_made() {
+    for cell in [1e-5, 1e-150, 1e-300] {
+        let error = refusal(&BackgroundGrid::with_cell(cell));
+        assert!(
+            matches!(error, GeometryError::TooMany { what: "background cells", .. }),
+            "{error}"
+        );
+    }
+    let error = refusal(&BackgroundGrid { gauss_points: 5, ..BackgroundGrid::with_cell(2e-4) });
+    assert!(matches!(error, GeometryError::TooMany { what: "quadrature points", .. }), "{error}");
+}
+
+#[test]
+fn a_small_part_of_tiny_cells_is_refused_before_any_is_made() {
+    let part = |radius: f64| Selector::Inside {
+        shape: Shape::Sphere { centre: Vector3::new(0.301, 0.102, -0.203), radius },
+        tolerance: 0.0,
+    };
+    let with = |radius: f64, size: f64| BackgroundGrid {
+        refinements: vec![Refinement { part: part(radius), size }],
+        ..BackgroundGrid::with_cell(0.005)
+    };
+    for size in [1e-7, 1e-300] {
+        let error = refusal(&with(0.003, size));
+        let GeometryError::TooMany { what: "quadrature points", count, .. } = error else {
+            panic!("{error}")
+        };
+        assert!(count > 1e11, "{count:e}");
+    }
+    let boundary = BackgroundGrid { boundary_cell: Some(1e-8), ..BackgroundGrid::with_cell(0.01) };
+    let error = refusal(&boundary);
+    assert!(matches!(error, GeometryError::TooMany { what: "quadrature points", .. }), "{error}");
+    let region = [region("all", Selector::All)];
+    assert!(quadrature(&ball(), &region, &with(0.003, 0.002), &Dimension::Three).is_ok());
+}
+
+#[test]
+fn sizes_of_cells_that_are_no_lengths_are_refused() {
+    for size in [0.0, -1.0, f64::NAN] {
+        let refinements = vec![Refinement { part: Selector::All, size }];
+        let plain = BackgroundGrid::with_cell(0.01);
+        for grid in [
+            BackgroundGrid::with_cell(size),
+            BackgroundGrid { boundary_cell: Some(size), ..plain.clone() },
+            BackgroundGrid { refinements, ..plain },
+        ] {
+            let error = refusal(&grid);
+            assert!(matches!(error, GeometryError::NotPositive { .. }), "{error}");
+        }
+    }
+    for gauss_points in [0, 6] {
+        let grid = BackgroundGrid { gauss_points, ..BackgroundGrid::with_cell(0.01) };
+        assert_eq!(refusal(&grid), GeometryError::GaussPoints { count: gauss_points });
+    }
 }

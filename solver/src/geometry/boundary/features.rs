@@ -6,7 +6,7 @@ use crate::algebra::tensor::Vector3;
 use crate::geometry::boundary::marching::contours;
 use crate::geometry::boundary::target_spacing::{TargetSpacing, lattice_cells};
 use crate::geometry::error::GeometryError;
-use crate::geometry::polygon::{anticlockwise, polygon_distance};
+use crate::geometry::polygon::{Outline, anticlockwise};
 use crate::geometry::primitives::perpendicular;
 use crate::geometry::shape::Shape;
 use crate::geometry::surface::Surface;
@@ -146,12 +146,13 @@ fn caps(points: &[[f64; 2]], z: (f64, f64), spacing: f64, features: &mut Feature
         (along.clone().fold(f64::INFINITY, f64::min), along.fold(f64::NEG_INFINITY, f64::max))
     };
     let ((x0, x1), (y0, y1)) = (bound(0), bound(1));
+    let outline = Outline::from(points.to_vec());
     let (nx, ny) = (lattice_cells(x1 - x0, spacing), lattice_cells(y1 - y0, spacing));
     for j in 1..ny {
         for i in 1..nx {
             let x = x0 + (x1 - x0) * i as f64 / nx as f64;
             let y = y0 + (y1 - y0) * j as f64 / ny as f64;
-            if polygon_distance(points, x, y) < -0.5 * spacing {
+            if outline.signed_distance(x, y) < -0.5 * spacing {
                 features.faces.extend([Vector3::new(x, y, z.0), Vector3::new(x, y, z.1)]);
             }
         }

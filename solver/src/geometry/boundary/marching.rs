@@ -2,15 +2,14 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
-use crate::geometry::error::{GeometryError, at_most};
+use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::closed_chains;
 use crate::geometry::shape::Shape;
+use crate::geometry::size_limit::DISTANCE_SAMPLES;
 use crate::geometry::triangles::{Triangle, area_vector};
 use crate::geometry::voxels::ScalarGrid;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-
-const MOST_SAMPLES: f64 = 2e8;
 
 /// Signed distances on a grid of about `step` \[m\] around a box, and the
 /// position of the first sample.
@@ -25,7 +24,7 @@ fn samples(
     let margin = Vector3::new(1.37, 1.41, if flat { 0.0 } else { 1.43 }) * step;
     let (lower, upper) = (lower - margin, upper + margin);
     let count = ((upper - lower) / step).map(|c| c.ceil() + 1.0);
-    at_most("distance samples", count.product(), MOST_SAMPLES)?;
+    DISTANCE_SAMPLES.check(count.product())?;
     let size = [0, 1, 2].map(|k| count[k] as usize);
     let mut grid = ScalarGrid { size, step: Vector3::repeat(step), values: Vec::new() };
     grid.values = (0..size.iter().product::<usize>())

@@ -4,17 +4,19 @@ use crate::algebra::tensor::Vector3;
 use crate::geometry::boundary::composite::composite_panels;
 use crate::geometry::boundary::curve_panels::{ellipse_panels, line_panels, segment_panels};
 use crate::geometry::boundary::marching;
-use crate::geometry::boundary::panel::Panel;
+use crate::geometry::boundary::panel::{Panel, pieces_of_box};
 use crate::geometry::boundary::solid_panels::{
     box_panels, cylinder_panels, ellipsoid_panels, prism_panels, rectangle, triangle_panels,
 };
 use crate::geometry::dimension::Dimension;
-use crate::geometry::error::{GeometryError, at_most, positive};
+use crate::geometry::error::{GeometryError, positive};
 use crate::geometry::polygon::anticlockwise;
 use crate::geometry::primitives::perpendicular;
 use crate::geometry::shape::Shape;
+use crate::geometry::size_limit::PANELS;
 
-const MOST_PANELS: f64 = 1e8;
+/// Few bodies have less surface than this fraction of that of their bounding box \[–\].
+const FILLED: f64 = 1.0 / 3.0;
 
 impl Shape {
     /// Panels with edges of at most `size` \[m\] that cover the boundary, in
@@ -28,11 +30,19 @@ impl Shape {
         dimension: &Dimension,
     ) -> Result<Vec<Panel>, GeometryError> {
         positive("the panel size", size)?;
+        let refuse_too_many = |(lower, upper): &Bounds| {
+            PANELS.check(FILLED * pieces_of_box(&(upper - lower), size, dimension))
+        };
         match dimension {
-            Dimension::Three => surface_panels(self, size, self.finite_bounds(dimension)?),
+            Dimension::Three => {
+                let around = self.finite_bounds(dimension)?;
+                refuse_too_many(&around)?;
+                surface_panels(self, size, around)
+            }
             Dimension::PlaneStrain { thickness, z } => {
                 let section = self.section_at(*z)?;
                 let around = section.finite_bounds(dimension)?;
+                refuse_too_many(&around)?;
                 let mut panels = curve_panels(&section, size, *z, around)?;
                 panels.iter_mut().for_each(|panel| panel.area *= thickness);
                 Ok(panels)
@@ -122,8 +132,5 @@ fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>
         }
         _ => Err(GeometryError::Unbounded { shape: shape.name() }),
     }
-    .and_then(|panels: Vec<Panel>| {
-        at_most("boundary panels", panels.len() as f64, MOST_PANELS)?;
-        Ok(panels)
-    })
+    .and_then(|panels: Vec<Panel>| PANELS.check(panels.len() as f64).map(|()| panels))
 }

@@ -3,11 +3,13 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::boundary::features::{Features, of_section, of_solid};
+use crate::geometry::boundary::panel::pieces_of_box;
 use crate::geometry::boundary::target_spacing::TargetSpacing;
 use crate::geometry::dimension::Dimension;
-use crate::geometry::error::{GeometryError, at_most, positive};
+use crate::geometry::error::{GeometryError, positive};
 use crate::geometry::point_hash::PointHash;
 use crate::geometry::shape::Shape;
+use crate::geometry::size_limit::BOUNDARY_NODES;
 
 /// Points on the boundary \[m\]; the first `fixed` lie on corners and edges.
 pub(crate) struct BoundaryPoints {
@@ -19,7 +21,6 @@ pub(crate) struct BoundaryPoints {
 const CLOSEST: f64 = 0.6;
 /// Farther than this from every point, the boundary gets another \[spacing\].
 const FILL: f64 = 0.8;
-const MOST_POINTS: f64 = 2e7;
 
 impl Shape {
     /// Points on the boundary about `spacing` \[m\] apart: corners, evenly
@@ -69,12 +70,7 @@ fn refuse_too_many(
     dimension: &Dimension,
 ) -> Result<(), GeometryError> {
     let (lower, upper) = shape.finite_bounds(dimension)?;
-    let n = (upper - lower) / target.smallest;
-    let count = match dimension {
-        Dimension::Three => 2.0 * (n.x * n.y + n.y * n.z + n.z * n.x),
-        Dimension::PlaneStrain { .. } => 2.0 * (n.x + n.y),
-    };
-    at_most("boundary nodes", count, MOST_POINTS)
+    BOUNDARY_NODES.check(pieces_of_box(&(upper - lower), target.smallest, dimension))
 }
 
 struct Chosen<'a> {

@@ -119,6 +119,11 @@ impl LabelField {
         &self.labels
     }
 
+    /// Number of sampled distances.
+    pub(crate) fn samples(&self) -> usize {
+        self.distance.values.len()
+    }
+
     /// Smallest edge of a voxel \[m\].
     pub(crate) fn voxel(&self) -> f64 {
         self.distance.step.min()

@@ -7,7 +7,8 @@ use super::rows::{ConditionState, ConstraintRow, rows_of_component, selected_nod
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::discretisation::Discretisation;
 use crate::error::Error;
-use crate::problem::{Enforcement, EssentialCondition, Problem};
+use crate::problem::{Enforcement, EssentialCondition, Prescribed, Problem};
+use std::collections::BTreeMap;
 
 /// The conditions of a problem, resolved to nodes and components.
 #[derive(Debug, Clone)]
@@ -59,6 +60,10 @@ impl ConstraintSet {
         };
         Ok(ConstraintSet { component, rows, collocation })
     }
+
+    fn constrains(&self, node: u32) -> bool {
+        self.rows.binary_search_by_key(&node, |row| row.node).is_ok()
+    }
 }
 
 /// Multipliers of the last enforcement, and scratch memory.
@@ -71,7 +76,10 @@ pub struct ConstraintForces {
     scratch: Scratch,
 }
 
-/// What a condition exerts on the body.
+/// What a condition exerts on the body: all that it takes to move its nodes as prescribed.
+/// The weight and the tractions of these nodes are therefore part of it, and reactions and
+/// loads add up to zero at rest. A node that two conditions prescribe alike counts with the
+/// first stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reaction {
     /// \[N\]
@@ -83,7 +91,7 @@ pub struct Reaction {
 impl Constraints {
     /// Selects nodes and factors the collocation systems with the masses `mass`
     /// \[node\] \[kg\]. Where two active conditions prescribe the same component of
-    /// a node, the first stated applies.
+    /// a node, the first stated has the force.
     pub fn new(
         problem: &Problem,
         discretisation: &Discretisation,
@@ -121,10 +129,56 @@ impl Constraints {
         self.stages.iter().position(|stage| t < stage.until).unwrap_or(self.stages.len() - 1)
     }
 
+    /// Whether no prescribed displacement changes between two times \[s\].
+    pub fn hold_still(&self, from: f64, to: f64) -> bool {
+        let still = |condition: &EssentialCondition| match &condition.prescribed {
+            Prescribed::Displacement(values) if values.iter().flatten().all(|&u| u == 0.0) => true,
+            _ => condition.amplitude.at(from) == condition.amplitude.at(to),
+        };
+        self.stage(from) == self.stage(to) && self.conditions.iter().all(still)
+    }
+
     /// Whether a component of a node is prescribed and never released.
     pub fn always_constrained(&self, node: u32) -> bool {
-        let last = &self.stages[self.stages.len() - 1];
-        last.sets.iter().any(|set| set.rows.iter().any(|row| row.node == node))
+        self.last().iter().any(|set| set.constrains(node))
+    }
+
+    /// Whether one component of a node is prescribed and never released.
+    pub fn always_prescribes(&self, node: u32, component: usize) -> bool {
+        self.last().iter().any(|set| set.component == component && set.constrains(node))
+    }
+
+    /// The sets that are never released.
+    fn last(&self) -> &[ConstraintSet] {
+        &self.stages[self.stages.len() - 1].sets
+    }
+
+    /// The nodes of which all `components` are prescribed at time `t` \[s\], with the
+    /// displacements \[m\] and the condition of the first component.
+    pub fn prescribed_nodes(
+        &self,
+        t: f64,
+        components: usize,
+        positions: &[Vector3],
+    ) -> Vec<(u32, Vector3, u32)> {
+        let state = |condition| ConditionState::at(condition, t);
+        let states: Vec<ConditionState> = self.conditions.iter().map(state).collect();
+        let mut nodes: BTreeMap<u32, (usize, Vector3, u32)> = BTreeMap::new();
+        for set in self.active(t) {
+            for row in &set.rows {
+                let condition = row.condition as usize;
+                let X = &positions[row.node as usize];
+                let prescribed = &self.conditions[condition].prescribed;
+                let first = (0, Vector3::zeros(), row.condition);
+                let (count, displacement, _) = nodes.entry(row.node).or_insert(first);
+                *count += 1;
+                displacement[set.component] =
+                    states[condition].target(prescribed, row, X, set.component);
+            }
+        }
+        let whole =
+            |(node, (count, u, condition))| (count == components).then_some((node, u, condition));
+        nodes.into_iter().filter_map(whole).collect()
     }
 
     /// Changes the predicted displacements `u` \[component of node\] \[m\] so that

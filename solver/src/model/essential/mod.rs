@@ -5,6 +5,8 @@ mod collocation;
 mod constraints;
 mod mean_gradient;
 mod rows;
+mod shared;
 
 pub use constraints::{ConstraintForces, ConstraintSet, Constraints, Reaction};
 pub use rows::ConstraintRow;
+pub(crate) use shared::check_shared_nodes;

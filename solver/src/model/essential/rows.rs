@@ -46,11 +46,7 @@ pub(super) fn rows_of_component(
 ) -> Vec<ConstraintRow> {
     let mut owner = vec![None; positions.len()];
     for (index, condition) in conditions.iter().enumerate() {
-        let prescribes = match condition.prescribed {
-            Prescribed::Displacement(values) => values[component].is_some(),
-            Prescribed::Rotation { .. } | Prescribed::Field(_) => true,
-        };
-        if !prescribes || !active(index) {
+        if !prescribes(condition, component) || !active(index) {
             continue;
         }
         for &node in &selected[index] {
@@ -58,15 +54,35 @@ pub(super) fn rows_of_component(
         }
     }
     let row = |(node, condition): (usize, Option<u32>)| {
-        let condition = condition?;
-        let displacement = match &conditions[condition as usize].prescribed {
-            Prescribed::Displacement(values) => values[component].unwrap_or(0.0),
-            Prescribed::Field(field) => field.at(&positions[node])[component],
-            Prescribed::Rotation { .. } => 0.0,
-        };
-        Some(ConstraintRow { node: node as u32, condition, displacement })
+        let condition = condition? as usize;
+        let prescribed = &conditions[condition].prescribed;
+        Some(row_of(prescribed, node as u32, condition, component, &positions[node]))
     };
     owner.into_iter().enumerate().filter_map(row).collect()
+}
+
+/// Whether a condition says anything about a component.
+pub(super) fn prescribes(condition: &EssentialCondition, component: usize) -> bool {
+    match condition.prescribed {
+        Prescribed::Displacement(values) => values[component].is_some(),
+        Prescribed::Rotation { .. } | Prescribed::Field(_) => true,
+    }
+}
+
+/// The row of a component that a condition prescribes of a node at `X`.
+pub(super) fn row_of(
+    prescribed: &Prescribed,
+    node: u32,
+    condition: usize,
+    component: usize,
+    X: &Vector3,
+) -> ConstraintRow {
+    let displacement = match prescribed {
+        Prescribed::Displacement(values) => values[component].unwrap_or(0.0),
+        Prescribed::Field(field) => field.at(X)[component],
+        Prescribed::Rotation { .. } => 0.0,
+    };
+    ConstraintRow { node, condition: condition as u32, displacement }
 }
 
 /// What a condition prescribes at one instant.

@@ -1,10 +1,12 @@
 //! Zero-energy modes of a body: counted, located and refused.
 
 use super::least_captured::{CapturedMotion, least_captured};
-use super::pencil::Pencil;
+use super::neighbourhood::{least_captured_nearby, points_per_spacing};
+use super::pencil::{POINTS_PER_NODE, POINTS_PER_POINT, Pencil};
 use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::model::Model;
+use crate::model::rigid_motions::free_rigid_motions;
 use crate::problem::Problem;
 
 /// Captured fraction of its strain energy below which a motion is a zero-energy
@@ -26,7 +28,7 @@ pub struct ZeroEnergyModes {
     /// minimisation, so at least as many modes exist as fractions lie below
     /// [`ZERO_ENERGY_FRACTION`].
     pub least_captured: Vec<CapturedMotion>,
-    /// Rigid motions that the conditions at t = 0 leave free.
+    /// Rigid motions that the conditions at t = 0 and contacts closed then leave free.
     pub rigid: usize,
     /// Quadrature points of the finer rule.
     pub finer_points: usize,
@@ -55,24 +57,43 @@ pub fn zero_energy_modes(
     Ok(ZeroEnergyModes {
         count: pencil.count_below(ZERO_ENERGY_FRACTION),
         least_captured: least_captured(&pencil, 0.0),
-        rigid: pencil.free_rigid_motions(),
+        rigid: free_rigid_motions(model, 0.0, &vec![0.0; model.size()]),
         finer_points: pencil.finer_points(),
     })
 }
 
-/// Refuses a recipe with zero-energy modes; recipes with more than 1.1 points per
-/// node are not tested.
+/// Number of points of the finer rule by which [`refuse_zero_energy_modes`] tests a recipe;
+/// 0 where it does not.
+pub fn tested_points(discretisation: &Discretisation) -> f64 {
+    let (points, nodes) = (discretisation.supports.len(), discretisation.cloud.positions.len());
+    let few = points as f64 <= FEW * nodes as f64;
+    match few || points_per_spacing(discretisation).iter().any(|&density| density < FEW) {
+        true => f64::max(POINTS_PER_POINT * points as f64, POINTS_PER_NODE * nodes as f64),
+        false => 0.0,
+    }
+}
+
+/// Refuses a recipe with zero-energy modes. Neighbourhoods are tested where a node has
+/// fewer than 1.1 points per spacing squared or cubed, the whole body where it has no
+/// more than 1.1 points per node.
 pub fn refuse_zero_energy_modes(
     problem: &Problem,
     discretisation: &Discretisation,
     model: &Model,
 ) -> Result<(), Error> {
     let (points, nodes) = (discretisation.supports.len(), model.positions.len());
-    if points as f64 > FEW * nodes as f64 {
+    let few = points as f64 <= FEW * nodes as f64;
+    let density = points_per_spacing(discretisation);
+    let sparse: Vec<u32> = (0..nodes as u32).filter(|&node| density[node as usize] < FEW).collect();
+    if !few && sparse.is_empty() {
         return Ok(());
     }
     let pencil = Pencil::new(problem, discretisation, model)?;
-    let motions = least_captured(&pencil, ZERO_ENERGY_FRACTION);
+    let nearby = least_captured_nearby(&pencil, &density, sparse);
+    let mut motions: Vec<CapturedMotion> = nearby.into_iter().collect();
+    if few && below_limit(&motions) == 0 {
+        motions = least_captured(&pencil, ZERO_ENERGY_FRACTION);
+    }
     let below = below_limit(&motions);
     match motions.first() {
         Some(CapturedMotion { fraction, node, position }) if below > 0 => {
@@ -82,6 +103,7 @@ pub fn refuse_zero_energy_modes(
                 modes: pencil.count_below(ZERO_ENERGY_FRACTION).unwrap_or(0).max(below),
                 fraction: *fraction,
                 node: *node,
+                density: density[*node],
                 position: *position,
             })
         }

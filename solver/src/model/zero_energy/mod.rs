@@ -15,9 +15,11 @@
 
 mod detection;
 mod least_captured;
+mod neighbourhood;
 mod pencil;
 
 pub use detection::{
-    ZERO_ENERGY_FRACTION, ZeroEnergyModes, refuse_zero_energy_modes, zero_energy_modes,
+    ZERO_ENERGY_FRACTION, ZeroEnergyModes, refuse_zero_energy_modes, tested_points,
+    zero_energy_modes,
 };
 pub use least_captured::CapturedMotion;

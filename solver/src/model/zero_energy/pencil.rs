@@ -1,21 +1,19 @@
 //! The matrix pencil whose quotient is the captured fraction of a strain energy.
 #![allow(non_snake_case)]
 
-use crate::algebra::tensor::{Matrix3, Vector3};
-use crate::discretisation::Discretisation;
-use crate::discretisation::quadrature::quadrature;
+use crate::algebra::tensor::Matrix3;
 use crate::discretisation::rows::Rows;
+use crate::discretisation::{Discretisation, quadrature_of};
 use crate::error::Error;
 use crate::model::Model;
 use crate::model::essential::{ConstraintForces, ConstraintSet};
-use crate::problem::{BackgroundGrid, Enforcement, Problem};
+use crate::problem::{BackgroundGrid, Cloud, Enforcement, Problem};
 use faer::{Mat, Side};
-use nalgebra::DMatrix;
 
 /// Points of the finer rule over those of the model, at least …
-const POINTS_PER_POINT: f64 = 3.0;
+pub(super) const POINTS_PER_POINT: f64 = 3.0;
 /// … and over nodes, enough to capture every motion.
-const POINTS_PER_NODE: f64 = 5.0;
+pub(super) const POINTS_PER_NODE: f64 = 5.0;
 
 /// δ L² \[–\]: far below the energy of any strained motion, far above round-off.
 const ANCHOR: f64 = 1e-4;
@@ -26,13 +24,13 @@ const LARGEST_COUNTED: usize = 4500;
 /// K + δM and K̂ + δM under the conditions at t = 0.
 pub(super) struct Pencil<'a> {
     pub model: &'a Model,
-    discretisation: &'a Discretisation,
-    finer: Rows,
-    finer_weights: Vec<f64>,
+    pub discretisation: &'a Discretisation,
+    pub finer: Rows,
+    pub finer_weights: Vec<f64>,
     /// δM per component of node.
     anchor: Vec<f64>,
     /// Constrained components with the rows of φ that constrain them.
-    constraints: Vec<(usize, Rows)>,
+    pub constraints: Vec<(usize, Rows)>,
 }
 
 impl<'a> Pencil<'a> {
@@ -147,48 +145,6 @@ impl<'a> Pencil<'a> {
             }
         }
     }
-
-    /// Number of rigid motions that the constraints leave free: the dimension of
-    /// their kernel in the rigid motions.
-    pub fn free_rigid_motions(&self) -> usize {
-        let d = self.model.components;
-        let motions = rigid_motions(d, self.model.extent);
-        let mut products = DMatrix::<f64>::zeros(motions.len(), motions.len());
-        let mut rows = 0.0;
-        for (component, constrained) in &self.constraints {
-            for i in 0..constrained.len() {
-                let X: Vector3 = constrained
-                    .row(i)
-                    .map(|e| {
-                        self.model.positions[constrained.nodes[e] as usize] * constrained.phi[e]
-                    })
-                    .sum::<Vector3>()
-                    - self.model.positions[0];
-                let values = motions.iter().map(|motion| motion(&X)[*component]);
-                let values = nalgebra::DVector::from_iterator(motions.len(), values);
-                products.ger(1.0, &values, &values, 1.0);
-                rows += 1.0;
-            }
-        }
-        let small = 1e-10 * f64::max(rows, 1.0);
-        products.symmetric_eigenvalues().iter().filter(|&&value| value < small).count()
-    }
-}
-
-type Motion = Box<dyn Fn(&Vector3) -> Vector3>;
-
-/// Translations and rotations about the origin with displacements of size 1 over the
-/// extent.
-fn rigid_motions(d: usize, extent: f64) -> Vec<Motion> {
-    let unit = |k: usize| Vector3::ith(k, 1.0);
-    let mut motions: Vec<Motion> = Vec::new();
-    for k in 0..d {
-        motions.push(Box::new(move |_| unit(k)));
-    }
-    for k in if d == 3 { 0..3 } else { 2..3 } {
-        motions.push(Box::new(move |X| unit(k).cross(X) / extent));
-    }
-    motions
 }
 
 /// Rows and weights of smaller cells, with plain gradients of the same functions.
@@ -203,8 +159,14 @@ fn finer_rule(
     grid.cell *= factor;
     grid.boundary_cell = grid.boundary_cell.map(|edge| factor * edge);
     grid.refinements.iter_mut().for_each(|refinement| refinement.size *= factor);
+    // Also where the cells of the model do not.
+    if matches!(problem.recipe.cloud, Cloud::Graded { .. } | Cloud::Given { .. }) {
+        let cells = POINTS_PER_NODE.powf(1.0 / problem.dimension.components() as f64);
+        let asked = grid.cells_per_spacing.map_or(0.0, |asked| asked / factor);
+        grid.cells_per_spacing = Some(cells.max(asked));
+    }
     let body = problem.body.section(&problem.dimension)?;
-    let rule = quadrature(&body, &problem.regions, &grid, &problem.dimension)?;
+    let rule = quadrature_of(problem, &body, &grid, &discretisation.approximation)?;
     Ok((discretisation.rows_at(&rule.positions)?, rule.weights))
 }
 

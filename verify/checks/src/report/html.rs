@@ -4,6 +4,7 @@ use super::change::{breakable, change_values, verdict_counts};
 use super::labels::{counts, duration, plural, result_line, study_counts, unit_text};
 use super::number::{bound_text, four_digits};
 use super::svg;
+use crate::escape::printable_lines;
 use crate::study::{
     Bound, Cell, Change, Check, Comparison, Figure, Kind, Provenance, Report, Study, Table, Verdict,
 };
@@ -55,7 +56,7 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
         wall => duration(report.wall_seconds),
         machine => machine(&report.provenance),
     };
-    Ok(pages()?.get_template("index.html")?.render(page)?)
+    Ok(printable_lines(&pages()?.get_template("index.html")?.render(page)?))
 }
 
 fn study_value(study: &Study) -> Value {
@@ -232,6 +233,14 @@ mod tests {
     }
 
     #[test]
+    fn control_characters_of_a_title_are_shown_as_escapes() {
+        let mut report = sample::report();
+        report.studies[0].title = "a\u{1b}[31mb".into();
+        let page = to_html(&report).unwrap();
+        assert!(page.contains("a\\u{1b}[31mb") && !page.contains('\u{1b}'));
+    }
+
+    #[test]
     fn the_verdict_and_the_failures_come_before_the_studies() {
         let page = to_html(&sample::report()).unwrap();
         let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("{text} is missing"));
@@ -266,6 +275,28 @@ mod tests {
         let page = to_html(&sample::report()).unwrap();
         assert!(page.contains("h &lt; 1 &amp; more"));
         assert!(!page.contains("h < 1 & more"));
+    }
+
+    #[test]
+    fn no_text_of_a_report_becomes_an_element() {
+        let mut report = sample::compared();
+        let evil = "\"'><script>evil</script>";
+        for study in &mut report.studies {
+            (study.id, study.title, study.claim) = (evil.into(), evil.into(), evil.into());
+            (study.command, study.notes) = (evil.into(), vec![evil.into()]);
+            for check in &mut study.checks {
+                (check.id, check.quantity, check.unit) = (evil.into(), evil.into(), evil.into());
+            }
+            for table in &mut study.tables {
+                (table.title, table.columns[0].name) = (evil.into(), evil.into());
+                table.rows.iter_mut().for_each(|row| row[0] = Cell::Text(evil.into()));
+            }
+        }
+        report.suite = evil.into();
+        report.provenance.commit = evil.into();
+        report.comparison.as_mut().unwrap().with = evil.into();
+        let page = to_html(&report).unwrap();
+        assert!(page.contains("evil") && !page.contains("<script>evil"));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::change::{band_text, change_text, remark_text, verdict_counts};
 use super::labels::{duration, result_line, unit_text};
 use super::number::{bound_text, four_digits};
+use crate::escape::printable;
 use crate::study::{Check, Comparison, Report, Study, Verdict};
 use comfy_table::{
     Attribute, Cell, CellAlignment, Color, ContentArrangement, LineStyle, Table, presets,
@@ -18,10 +19,10 @@ pub fn to_table(report: &Report, colour: bool) -> String {
 fn render(report: &Report, colour: bool, width: Option<u16>) -> String {
     let mut text = String::new();
     for study in &report.studies {
-        let heading = format!("{} ({})", study.title, duration(study.wall_seconds));
+        let heading = format!("{} ({})", printable(&study.title), duration(study.wall_seconds));
         let _ = writeln!(text, "{}", paint(&heading, colour.then_some("1")));
         if let Some(reason) = &study.failure {
-            let line = format!("  COULD NOT RUN: {reason}");
+            let line = format!("  COULD NOT RUN: {}", printable(reason));
             let _ = writeln!(text, "{}", paint(&line, colour.then_some("1;31")));
         }
         if !study.checks.is_empty() {
@@ -40,7 +41,8 @@ fn attention(report: &Report, colour: bool) -> String {
     let mut text = String::new();
     for check in report.checks().filter(|check| !check.pass) {
         let (value, bound) = (four_digits(check.value), bound_text(&check.bound));
-        let line = format!("FAIL {}: {value}, must be {bound}: {}", check.id, check.quantity);
+        let (id, quantity) = (printable(&check.id), printable(&check.quantity));
+        let line = format!("FAIL {id}: {value}, must be {bound}: {quantity}");
         let _ = writeln!(text, "{}", paint(&line, colour.then_some("1;31")));
         if let Some(file) = check.failure_file() {
             let _ = writeln!(text, "     the smallest case that shows it: {file}");
@@ -54,7 +56,7 @@ fn attention(report: &Report, colour: bool) -> String {
 
 /// `beside the baseline of …: 1 worse, 454 the same`.
 pub fn compared_with(comparison: &Comparison) -> String {
-    format!("beside {}: {}", comparison.with, verdict_counts(comparison))
+    format!("beside {}: {}", printable(&comparison.with), verdict_counts(comparison))
 }
 
 /// A line per check that is not the same, the most urgent first.
@@ -69,7 +71,7 @@ pub fn changed_lines(comparison: &Comparison, colour: bool) -> String {
         let name = change.verdict.name();
         let (values, band) = (change_text(change), band_text(&change.band));
         let (id, remark) = (&change.id, remark_text(change));
-        let line = format!("{name:8} {id}: {values} (same: {band}){remark}");
+        let line = printable(&format!("{name:8} {id}: {values} (same: {band}){remark}"));
         let _ = writeln!(text, "{}", paint(&line, colour.then_some(code)));
     }
     text
@@ -103,12 +105,12 @@ fn row(check: &Check, colour: bool) -> Vec<Cell> {
         verdict = verdict.fg(shade).add_attribute(Attribute::Bold);
     }
     vec![
-        Cell::new(&check.id),
-        Cell::new(&check.quantity),
+        Cell::new(printable(&check.id)),
+        Cell::new(printable(&check.quantity)),
         Cell::new(check.kind.name()),
         Cell::new(four_digits(check.value)),
         Cell::new(bound_text(&check.bound)),
-        Cell::new(unit_text(&check.unit)),
+        Cell::new(printable(unit_text(&check.unit))),
         verdict,
     ]
 }
@@ -151,6 +153,27 @@ mod tests {
         );
         assert!(at("worse    ") < at("missing  brain/none"));
         assert!(!plain.contains("\nsame     "));
+    }
+
+    #[test]
+    fn a_text_of_a_report_cannot_steer_the_terminal() {
+        let mut report = sample::compared();
+        let evil = "x\u{1b}[2J\nall checks passed";
+        for study in &mut report.studies {
+            study.title = evil.into();
+            study.failure = study.failure.as_ref().map(|_| evil.into());
+            for check in &mut study.checks {
+                (check.id, check.quantity, check.unit) = (evil.into(), evil.into(), evil.into());
+            }
+        }
+        let comparison = report.comparison.as_mut().unwrap();
+        comparison.with = evil.into();
+        for change in &mut comparison.changes {
+            (change.id, change.unit, change.remark) = (evil.into(), evil.into(), Some(evil.into()));
+        }
+        let plain = render(&report, false, Some(200));
+        assert!(plain.contains("x\\u{1b}[2J\\nall checks passed"), "{plain}");
+        assert!(!plain.contains('\u{1b}') && !plain.contains("\nall checks passed"), "{plain}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::change::verdict_counts;
 use super::labels::{duration, failure_text, result_line, study_counts, unit_text};
-use super::markdown_table::{cell, change_table};
+use super::markdown_table::{cell, change_table, code, code_cell, inline};
 use super::number::{bound_text, four_digits};
 use crate::study::{Cell, Check, Comparison, Provenance, Report, Study, Verdict};
 use std::fmt::Write;
@@ -14,7 +14,7 @@ const DETAILS_END: &str = "</details>";
 pub fn to_markdown(report: &Report) -> String {
     let mut text = String::new();
     let mark = mark(report.passed());
-    let _ = writeln!(text, "## {mark} mtled {}: {}\n", report.suite, result_line(report));
+    let _ = writeln!(text, "## {mark} mtled {}: {}\n", inline(&report.suite), result_line(report));
     failures(&mut text, report);
     if let Some(comparison) = &report.comparison {
         compared(&mut text, comparison);
@@ -29,13 +29,13 @@ pub fn to_markdown(report: &Report) -> String {
     let _ = writeln!(
         text,
         "mtled {} ({}), {}, {} on {} threads, {}, {}.",
-        p.version,
-        p.commit,
-        p.compiler,
-        p.processor,
+        inline(&p.version),
+        inline(&p.commit),
+        inline(&p.compiler),
+        inline(&p.processor),
         p.threads,
         duration(report.wall_seconds),
-        p.date
+        inline(&p.date)
     );
     text
 }
@@ -50,7 +50,7 @@ pub(super) fn without_details(text: &str) -> String {
 /// Changes compared with a baseline, the most urgent first.
 fn compared(text: &mut String, comparison: &Comparison) {
     let mark = mark(comparison.holds());
-    let (with, counts) = (&comparison.with, verdict_counts(comparison));
+    let (with, counts) = (inline(&comparison.with), verdict_counts(comparison));
     let _ = writeln!(text, "### {mark} Beside {with}: {counts}\n");
     let changes = || comparison.changes.iter().filter(|c| c.verdict != Verdict::Same);
     if changes().next().is_some() {
@@ -62,18 +62,29 @@ fn compared(text: &mut String, comparison: &Comparison) {
 fn failures(text: &mut String, report: &Report) {
     for study in &report.studies {
         if let Some(reason) = &study.failure {
-            let _ = writeln!(text, "- ❌ **{}** could not run: {}", cell(&study.id), cell(reason));
+            let _ =
+                writeln!(text, "- ❌ **{}** could not run: {}", inline(&study.id), inline(reason));
         }
     }
     for check in report.checks().filter(|check| !check.pass) {
-        let _ = writeln!(text, "- ❌ `{}`: {}", check.id, cell(&failure_text(check)));
+        let _ = writeln!(text, "- ❌ {}: {}", code(&check.id), inline(&failure_text(check)));
         if let Some(file) = check.failure_file() {
-            let _ = writeln!(text, "  The smallest case that shows it: [`{file}`]({file})");
+            let _ = writeln!(
+                text,
+                "  The smallest case that shows it: [{}]({})",
+                code(&file),
+                link(&file)
+            );
         }
     }
     if !report.bounds_hold() {
         text.push('\n');
     }
+}
+
+/// A path as the target of a link.
+fn link(path: &str) -> String {
+    path.replace('%', "%25").replace(' ', "%20").replace('(', "%28").replace(')', "%29")
 }
 
 fn studies(text: &mut String, report: &Report) {
@@ -97,9 +108,9 @@ fn checks<'a>(text: &mut String, checks: impl Iterator<Item = &'a Check>) {
     for check in checks {
         let _ = writeln!(
             text,
-            "| {} | `{}` | {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {} |",
             mark(check.pass),
-            check.id,
+            code_cell(&check.id),
             cell(&check.quantity),
             check.kind.name(),
             four_digits(check.value),
@@ -115,12 +126,12 @@ fn mark(pass: bool) -> &'static str {
 
 /// The tables and notes of a study.
 pub fn markdown_tables(study: &Study, provenance: &Provenance) -> String {
-    let mut text = format!("# {}\n\n{}\n", study.title, study.claim);
+    let mut text = format!("# {}\n\n{}\n", inline(&study.title), inline(&study.claim));
     for table in &study.tables {
-        let _ = write!(text, "\n## {}\n\n", table.title);
+        let _ = write!(text, "\n## {}\n\n", inline(&table.title));
         let headings = table.columns.iter().map(|column| match column.unit.as_str() {
             "" | "1" => cell(&column.name),
-            unit => format!("{} [{unit}]", cell(&column.name)),
+            unit => format!("{} [{}]", cell(&column.name), cell(unit)),
         });
         let _ = writeln!(text, "| {} |", headings.collect::<Vec<_>>().join(" | "));
         let _ = writeln!(text, "|{}", "---|".repeat(table.columns.len()));
@@ -135,7 +146,7 @@ pub fn markdown_tables(study: &Study, provenance: &Provenance) -> String {
     }
     text.push('\n');
     for note in &study.notes {
-        let _ = writeln!(text, "- {note}");
+        let _ = writeln!(text, "- {}", inline(note));
     }
     let Provenance { version, commit, processor, date, .. } = provenance;
     let _ = writeln!(text, "\nmtled {version} ({commit}), {processor}, {date}.");

@@ -21,4 +21,4 @@ pub mod write;
 pub use markdown::markdown_tables;
 pub use number::{bound_text, four_digits};
 pub use read::{ReportError, read_report};
-pub use write::{write_atomically, write_report};
+pub use write::{ensure_writable, write_atomically, write_report};

@@ -4,6 +4,7 @@ use super::change::{change_values, figure_text, ratio, verdict_counts};
 use super::html::{SCRIPT, STYLE, machine, pages};
 use super::labels::counts;
 use super::markdown_table::{cell, change_table};
+use crate::escape::printable_lines;
 use crate::study::{Change, Comparison, Report, Verdict};
 use minijinja::{Value, context};
 use std::fmt::Write;
@@ -22,7 +23,7 @@ pub fn to_html(before: &Report, now: &Report, comparison: &Comparison) -> anyhow
         same => change_values(&same),
         times => time_values(before, now),
     };
-    Ok(pages()?.get_template("compare.html")?.render(page)?)
+    Ok(printable_lines(&pages()?.get_template("compare.html")?.render(page)?))
 }
 
 /// The same in Markdown.

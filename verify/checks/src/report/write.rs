@@ -1,10 +1,12 @@
 //! The files of a report, written atomically.
 
 use super::{html, json, junit, markdown, svg};
+use crate::escape::file_name;
 use crate::study::{Report, Table};
 use anyhow::{Context, Result};
 use std::io::Write;
 use std::path::Path;
+use tempfile::{Builder, NamedTempFile};
 
 /// Writes results.json, junit.xml, index.html, summary.md and every figure into
 /// `dir`, which is created where it is missing.
@@ -35,7 +37,7 @@ fn write_failures(report: &Report, dir: &Path) -> Result<()> {
         match (check.failure_file(), &check.reproduce) {
             (Some(file), Some(case)) => write_atomically(&dir.join(file), case.as_bytes())?,
             _ => {
-                let old = dir.join(format!("failures/{}.toml", check.id.replace('/', "-")));
+                let old = dir.join(check.case_file());
                 if old.exists() {
                     std::fs::remove_file(&old)
                         .with_context(|| format!("cannot remove {}", old.display()))?;
@@ -50,7 +52,7 @@ fn write_failures(report: &Report, dir: &Path) -> Result<()> {
 fn write_figures(report: &Report, dir: &Path) -> Result<()> {
     for study in &report.studies {
         for (number, figure) in study.figures.iter().enumerate() {
-            let name = format!("{}-{}.svg", study.id, number + 1);
+            let name = file_name(&format!("{}-{}.svg", study.id, number + 1));
             write_atomically(&dir.join(name), svg::to_svg_file(figure).as_bytes())?;
         }
     }
@@ -58,30 +60,40 @@ fn write_figures(report: &Report, dir: &Path) -> Result<()> {
 }
 
 /// Writes a temporary file beside `path` and renames it, so that a reader sees
-/// the old bytes or the new ones and never a part; missing folders are created.
+/// the old bytes or the new ones and never a part; missing folders are created. Several
+/// threads and programs may write the same path, the last one wins.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
-    let name = path.file_name().with_context(|| format!("{} names no file", path.display()))?;
-    let mut hidden = std::ffi::OsString::from(".");
-    hidden.push(name);
-    hidden.push(format!(".{}.tmp", std::process::id()));
-    let temporary = path.with_file_name(hidden);
-    let written = write_then_rename(&temporary, path, bytes);
-    if written.is_err() {
-        // Best effort: the first error is the one to report.
-        let _ = std::fs::remove_file(&temporary);
-    }
-    written.with_context(|| format!("cannot write {}", path.display()))
+    path.file_name().with_context(|| format!("{} names no file", path.display()))?;
+    write_then_rename(path, bytes).with_context(|| format!("cannot write {}", path.display()))
 }
 
-fn write_then_rename(temporary: &Path, path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)?;
-    }
-    let mut file = std::fs::File::create(temporary)?;
+fn write_then_rename(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)?;
+    let mut file = temporary(folder)?;
     file.write_all(bytes)?;
-    file.sync_all()?;
-    drop(file);
-    std::fs::rename(temporary, path)
+    file.as_file().sync_all()?;
+    file.persist(path)?;
+    Ok(())
+}
+
+/// A file of a name that no other has, `.….tmp`, which is removed unless it is renamed.
+fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
+    let mut builder = Builder::new();
+    builder.prefix(".").suffix(".tmp");
+    // As any other new file; temporary ones are for their owner alone by default.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+/// Makes a folder where it is missing and tries to write into it, so that a long run does
+/// not end with files that cannot be written.
+pub fn ensure_writable(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder)
+        .and_then(|()| temporary(folder).map(drop))
+        .with_context(|| format!("cannot write into the folder {}", folder.display()))
 }
 
 #[cfg(test)]
@@ -131,6 +143,60 @@ mod tests {
                 |folder: &tempfile::TempDir| std::fs::read(folder.path().join(file)).unwrap();
             assert!(read(&first) == read(&second), "{file}");
         }
+    }
+
+    #[test]
+    fn threads_that_write_one_file_leave_one_whole_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("record.json");
+        let write = |n: u8| (0..50).try_for_each(|_| write_atomically(&path, &[n; 5000]));
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..4).map(|n| scope.spawn(move || write(n))).collect();
+            threads.into_iter().for_each(|thread| thread.join().unwrap().unwrap());
+        });
+        let bytes = std::fs::read(&path).unwrap();
+        assert!(bytes.len() == 5000 && bytes.iter().all(|b| *b == bytes[0]));
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_can_be_read_by_whom_other_new_files_can() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (ours, usual) = (folder.path().join("ours"), folder.path().join("usual"));
+        write_atomically(&ours, b"x").unwrap();
+        std::fs::write(&usual, b"x").unwrap();
+        let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&usual));
+    }
+
+    #[test]
+    fn names_in_a_report_cannot_lead_out_of_its_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("deep/out");
+        let mut report = sample::compared();
+        for study in &mut report.studies {
+            study.id = format!("../../{}", study.id);
+            for check in &mut study.checks {
+                check.id = format!("../{}", check.id);
+            }
+        }
+        write_report(&report, &out).unwrap();
+        let beside = |path: &Path| std::fs::read_dir(path).unwrap().count();
+        assert_eq!((beside(folder.path()), beside(&folder.path().join("deep"))), (1, 1));
+        let files = ["results.json", "junit.xml", "index.html", "summary.md"];
+        assert_eq!(beside(&out), files.len() + 2);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_written_is_named_before_anything_is_made_for_it() {
+        let folder = tempfile::tempdir().unwrap();
+        ensure_writable(&folder.path().join("new/folder")).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path().join("new/folder")).unwrap().count(), 0);
+        std::fs::write(folder.path().join("file"), b"x").unwrap();
+        let error = ensure_writable(&folder.path().join("file/inside")).unwrap_err();
+        assert!(format!("{error:#}").contains("file/inside"), "{error:#}");
     }
 
     #[test]

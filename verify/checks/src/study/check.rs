@@ -1,6 +1,7 @@
 //! Figures and the bounds that they must keep.
 
 use super::nan_as_null;
+use crate::escape::file_name;
 use serde::{Deserialize, Serialize};
 
 /// Where a bound comes from. The three kinds never mix.
@@ -113,7 +114,12 @@ impl Check {
     /// File of a report with the input that reproduces a failure, relative to the
     /// report's folder; None where the check passes or has no such input.
     pub fn failure_file(&self) -> Option<String> {
-        let shown = !self.pass && self.reproduce.is_some();
-        shown.then(|| format!("failures/{}.toml", self.id.replace('/', "-")))
+        (!self.pass && self.reproduce.is_some()).then(|| self.case_file())
+    }
+
+    /// File of a report for the input that reproduces a failure of this check, relative to
+    /// the report's folder.
+    pub fn case_file(&self) -> String {
+        format!("failures/{}.toml", file_name(&self.id))
     }
 }

@@ -1,8 +1,12 @@
 //! Options that several commands share.
 
 use crate::accuracy::Group;
+use crate::explore::store::Store;
 use crate::explore::sweep::ReferenceSource;
+use anyhow::{Context, Result};
 use clap::Args;
+use mtled_checks::escape::file_name;
+use mtled_checks::report::ensure_writable;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -10,6 +14,19 @@ pub struct StoreArgs {
     /// Folder of the records; stored runs are not repeated.
     #[arg(long, default_value = "reports/runs", value_name = "DIR", help_heading = "Files")]
     pub store: PathBuf,
+}
+
+impl StoreArgs {
+    /// The store, which can be made where it is missing. One that is there may be one that
+    /// can only be read.
+    pub fn open(&self) -> Result<Store> {
+        if !self.store.is_dir() {
+            let there = self.store.ancestors().find(|folder| folder.exists());
+            ensure_writable(there.unwrap_or(Path::new(".")))
+                .with_context(|| format!("cannot make the store {}", self.store.display()))?;
+        }
+        Ok(Store::new(&self.store))
+    }
 }
 
 /// How errors are measured and where files go.
@@ -43,7 +60,7 @@ impl ErrorArgs {
     /// Folder of the report, by default `path` below `reports`.
     pub fn out(&self, path: &[&str]) -> PathBuf {
         let preset =
-            || path.iter().fold(Path::new("reports").to_path_buf(), |to, part| to.join(part));
+            || path.iter().fold(PathBuf::from("reports"), |to, part| to.join(file_name(part)));
         self.out.clone().unwrap_or_else(preset)
     }
 }

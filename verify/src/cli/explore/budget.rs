@@ -5,9 +5,10 @@ use crate::cli::common::{Common, command_line};
 use crate::cli::progress::ManyRuns;
 use crate::cli::publish::{publish, report_of};
 use crate::explore::budget::{BudgetRequest, budget_study, budget_text, measure_budget};
-use crate::explore::store::{Source, Store, TaskRunner};
+use crate::explore::store::{Source, TaskRunner};
 use anyhow::Result;
 use clap::Args;
+use mtled_checks::report::ensure_writable;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
@@ -23,7 +24,7 @@ pub struct BudgetArgs {
 
 pub fn budget(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
     let start = Instant::now();
-    let store = Store::new(&arguments.error.store.store);
+    let store = arguments.error.store.open()?;
     let source = Source::find(&arguments.case, store.folder())?;
     let request = BudgetRequest {
         source: source.clone(),
@@ -31,6 +32,8 @@ pub fn budget(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
         group: arguments.error.quantity,
         clouds: arguments.clouds.into(),
     };
+    let out = arguments.error.out(&["budget", &source.name]);
+    ensure_writable(&out)?;
     let runs = ManyRuns::new(common);
     let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress) };
     let budget = match runs.finish(measure_budget(&request, &runner))? {
@@ -38,6 +41,5 @@ pub fn budget(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
         Err(code) => return Ok(code),
     };
     let report = report_of("budget", budget_study(&budget, &command_line()), start);
-    let out = arguments.error.out(&["budget", &source.name]);
     publish(&report, &out, common, &|| budget_text(&budget))
 }

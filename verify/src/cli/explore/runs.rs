@@ -1,12 +1,15 @@
 //! `mtled runs` and `mtled merge`.
 
 use super::args::StoreArgs;
-use crate::cli::common::{Common, print_data};
-use crate::explore::store::{RunOutcome, RunRecord, Store, solver_identity};
-use anyhow::{Result, bail};
+use crate::cli::common::{COULD_NOT_RUN, Common};
+use crate::cli::streams::print_json;
+use crate::explore::store::{Contents, Corrupt, RunOutcome, RunRecord, Store, solver_identity};
+use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
 use comfy_table::{Table, presets};
-use std::path::PathBuf;
+use mtled_checks::escape::printable;
+use serde_json::json;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Subcommand)]
 pub enum RunsCommand {
@@ -22,9 +25,12 @@ pub enum RunsCommand {
     /// Remove records of other versions of the solver and temporary files of killed
     /// programs.
     Prune {
-        /// Remove every record.
+        /// Remove every record, corrupt ones too.
         #[arg(long)]
         all: bool,
+        /// Remove records that cannot be read or are not what their names say, too.
+        #[arg(long)]
+        corrupt: bool,
         #[command(flatten)]
         store: StoreArgs,
     },
@@ -44,18 +50,26 @@ pub fn runs(command: &RunsCommand, common: &Common) -> Result<u8> {
     match command {
         RunsCommand::List(store) => list(&Store::new(&store.store), common),
         RunsCommand::Show { key, store } => show(&Store::new(&store.store), key),
-        RunsCommand::Prune { all, store } => prune(&Store::new(&store.store), *all),
+        RunsCommand::Prune { all, corrupt, store } => {
+            prune(&Store::new(&store.store), *all, *corrupt, common)
+        }
     }
 }
 
+/// Names the files that are no records; the exit code says whether there are any.
+fn name_corrupt(corrupt: &[Corrupt], common: &Common) -> u8 {
+    corrupt.iter().for_each(|corrupt| common.complain(&corrupt.error));
+    if corrupt.is_empty() { 0 } else { COULD_NOT_RUN }
+}
+
 fn list(store: &Store, common: &Common) -> Result<u8> {
-    let records = store.all()?;
+    let Contents { records, corrupt } = store.contents()?;
     let json = || Ok(serde_json::to_string(&records)? + "\n");
     let count = records.len();
     common.print_result(&json, &|| {
         format!("{}\n{count} records in {}\n", table(&records), store.folder().display())
     })?;
-    Ok(0)
+    Ok(name_corrupt(&corrupt, common))
 }
 
 fn table(records: &[RunRecord]) -> Table {
@@ -66,14 +80,14 @@ fn table(records: &[RunRecord]) -> Table {
         let settings: Vec<String> = record.settings.iter().map(|s| s.to_string()).collect();
         let outcome = match &record.outcome {
             RunOutcome::Done { .. } => "done".to_string(),
-            RunOutcome::Failed { reason, .. } => reason.chars().take(60).collect(),
+            RunOutcome::Failed { reason, .. } => printable(reason).chars().take(60).collect(),
         };
         let this = record.solver == solver_identity();
         table.add_row([
-            record.key[..12.min(record.key.len())].to_string(),
+            record.key.chars().take(12).collect(),
             format!("{:?}", record.job).to_lowercase(),
-            record.case.clone(),
-            settings.join(", "),
+            printable(&record.case),
+            printable(&settings.join(", ")),
             format!("{:.2}", record.cpu_s()),
             outcome,
             if this { "this version" } else { "another" }.into(),
@@ -83,60 +97,112 @@ fn table(records: &[RunRecord]) -> Table {
 }
 
 fn show(store: &Store, key: &str) -> Result<u8> {
-    let found: Vec<RunRecord> =
-        store.all()?.into_iter().filter(|record| record.key.starts_with(key)).collect();
-    match found.as_slice() {
+    let Contents { mut records, corrupt } = store.contents()?;
+    records.retain(|record| record.key.starts_with(key));
+    match records.as_slice() {
         [one] => {
-            print_data(&(serde_json::to_string_pretty(one)? + "\n"))?;
+            print_json(&(serde_json::to_string_pretty(one)? + "\n"))?;
             Ok(0)
         }
-        [] => bail!("{} has no record with the key {key}", store.folder().display()),
+        [] => match corrupt
+            .into_iter()
+            .find(|corrupt| corrupt.key().is_some_and(|k| k.starts_with(key)))
+        {
+            Some(corrupt) => Err(corrupt.error.into()),
+            None => bail!("{} has no record with the key {key}", store.folder().display()),
+        },
         many => bail!("{} keys begin with {key}; give more digits", many.len()),
     }
 }
 
-fn prune(store: &Store, all: bool) -> Result<u8> {
+/// Removes records of other versions, or all. A file that was meant to be a record but is
+/// none is removed on request, any other file never.
+fn prune(store: &Store, all: bool, corrupt_too: bool, common: &Common) -> Result<u8> {
+    let Contents { records, corrupt } = store.contents()?;
+    let old = records.iter().filter(|record| all || record.solver != solver_identity());
     let mut removed = 0;
-    for record in store.all()? {
-        if all || record.solver != solver_identity() {
-            store.remove(&record.key)?;
-            removed += 1;
-        }
+    for record in old {
+        store.remove(&record.key)?;
+        removed += 1;
     }
+    let (bad, left): (Vec<Corrupt>, Vec<Corrupt>) =
+        corrupt.into_iter().partition(|bad| (all || corrupt_too) && bad.key().is_some());
     let leftovers = store.leftovers()?;
-    leftovers.iter().try_for_each(std::fs::remove_file)?;
-    print_data(&format!(
-        "{removed} records removed, {} temporary files removed\n",
-        leftovers.len()
-    ))?;
-    Ok(0)
+    for file in bad.iter().map(|bad| &bad.file).chain(&leftovers) {
+        std::fs::remove_file(file).with_context(|| format!("cannot remove {}", file.display()))?;
+    }
+    let (corrupt, temporary) = (bad.len(), leftovers.len());
+    let counts = json!({ "records": removed, "corrupt": corrupt, "temporary": temporary });
+    common.print_result(&|| Ok(format!("{}\n", json!({ "removed": counts }))), &|| {
+        let corrupt = if corrupt > 0 {
+            format!(", {corrupt} corrupt records removed")
+        } else {
+            String::new()
+        };
+        format!("{removed} records removed, {temporary} temporary files removed{corrupt}\n")
+    })?;
+    Ok(name_corrupt(&left, common))
 }
 
-pub fn merge(arguments: &MergeArgs) -> Result<u8> {
+/// What merging has done.
+#[derive(Default)]
+struct Merged {
+    added: usize,
+    known: usize,
+    code: u8,
+}
+
+pub fn merge(arguments: &MergeArgs, common: &Common) -> Result<u8> {
+    if let Some(folder) = arguments.from.iter().find(|folder| !folder.is_dir()) {
+        bail!("there is no store {}", folder.display());
+    }
     let into = Store::new(&arguments.into);
-    let (mut added, mut known) = (0, 0);
+    let mut merged = Merged::default();
     for folder in &arguments.from {
-        if !folder.is_dir() {
-            bail!("there is no store {}", folder.display());
+        let Contents { records, corrupt } = Store::new(folder).contents()?;
+        merged.code = merged.code.max(name_corrupt(&corrupt, common));
+        for record in &records {
+            merged.add(record, folder, &into, common)?;
         }
-        for record in Store::new(folder).all()? {
-            match into.find(&record.key)? {
-                // Runs are deterministic; only their timings may differ.
-                Some(old) if old.outcome != record.outcome => bail!(
+    }
+    let Merged { added, known, code } = merged;
+    common.print_result(
+        &|| Ok(format!("{}\n", json!({ "added": added, "known": known }))),
+        &|| format!("{added} records added, {known} were there already\n"),
+    )?;
+    Ok(code)
+}
+
+impl Merged {
+    fn add(
+        &mut self,
+        record: &RunRecord,
+        from: &Path,
+        into: &Store,
+        common: &Common,
+    ) -> Result<()> {
+        match into.find(&record.key) {
+            // Runs are deterministic; only their timings may differ.
+            Ok(Some(old)) if old.outcome != record.outcome => {
+                common.complain(format!(
                     "the record {} differs between {} and {}: the programs that made \
                      them do not give the same results",
                     record.key,
-                    folder.display(),
-                    arguments.into.display()
-                ),
-                Some(_) => known += 1,
-                None => {
-                    into.write(&record)?;
-                    added += 1;
-                }
+                    from.display(),
+                    into.folder().display()
+                ));
+                self.code = COULD_NOT_RUN;
+            }
+            Ok(Some(_)) => self.known += 1,
+            Ok(None) => {
+                into.write(record)?;
+                self.added += 1;
+            }
+            Err(corrupt) => {
+                common.complain(corrupt);
+                self.code = COULD_NOT_RUN;
             }
         }
+        Ok(())
     }
-    print_data(&format!("{added} records added, {known} were there already\n"))?;
-    Ok(0)
 }

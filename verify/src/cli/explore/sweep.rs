@@ -9,6 +9,8 @@ use crate::explore::store::{Source, Store, TaskRunner};
 use crate::explore::sweep::{Axis, Plan, Subject, Sweep};
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use mtled_checks::report::ensure_writable;
+use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -56,32 +58,39 @@ fn part(text: &str) -> Result<(usize, usize), String> {
 
 pub fn sweep(subject: Subject, arguments: &SweepArgs, common: &Common) -> Result<u8> {
     let start = Instant::now();
-    let store = Store::new(&arguments.error.store.store);
+    let store = arguments.error.store.open()?;
     let sweep = definition(subject, arguments, &store)?;
     let runs = ManyRuns::new(common);
     let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress) };
     if let Some(part) = arguments.shard {
         return Ok(match runs.finish(sweep.run_part(&runner, part))? {
             Ok(count) => {
-                common.say(&format!("{count} runs are stored"));
+                let json = || Ok(format!("{}\n", json!({ "stored": count })));
+                common.print_summary(&json, &|| format!("{count} runs are stored\n"))?;
                 0
             }
             Err(code) => code,
         });
     }
+    let out = arguments.error.out(&[subject.name()]);
+    ensure_writable(&out)?;
     let study = match runs.finish(sweep.run(&runner))? {
         Ok(study) => study,
         Err(code) => return Ok(code),
     };
     let report = report_of(subject.name(), study, start);
-    publish(&report, &arguments.error.out(&[subject.name()]), common, &|| tables(&report))
+    publish(&report, &out, common, &|| tables(&report))
 }
 
 fn definition(subject: Subject, arguments: &SweepArgs, store: &Store) -> Result<Sweep> {
     let plan = arguments.plan.as_deref().map(Plan::read).transpose()?.unwrap_or_default();
     let names = if arguments.cases.is_empty() { &plan.cases } else { &arguments.cases };
     if names.is_empty() {
-        bail!("no case is named; give a case file, or a name that `mtled case list` prints");
+        let plan = arguments.plan.as_deref().map(|plan| format!("{}: ", plan.display()));
+        bail!(
+            "{}no case is named; give a case file, or a name that `mtled case list` prints",
+            plan.unwrap_or_default()
+        );
     }
     let sources = names.iter().map(|name| Source::find(name, store.folder()));
     let sources = sources.collect::<Result<Vec<_>>>().context("the case cannot be used")?;

@@ -13,7 +13,8 @@ use crate::explore::tune::{
 use crate::scene::{Knob, Setting, with_absolute_paths};
 use anyhow::{Result, bail};
 use clap::Args;
-use mtled_checks::report::write_atomically;
+use mtled_checks::escape::file_name;
+use mtled_checks::report::{ensure_writable, write_atomically};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -78,7 +79,7 @@ fn with_unit(text: &str, units: &[(&str, f64)]) -> Option<f64> {
 }
 
 pub fn tune_cases(arguments: &TuneArgs, common: &Common) -> Result<u8> {
-    let store = Store::new(&arguments.error.store.store);
+    let store = arguments.error.store.open()?;
     let names: Vec<String> = match arguments.all_cases {
         true => CASES.iter().map(|(name, _)| name.to_string()).collect(),
         false => arguments.cases.clone(),
@@ -127,11 +128,12 @@ fn tune_one(
     let start = Instant::now();
     let runs = ManyRuns::new(common);
     let runner = TaskRunner { store, notify: &|progress| runs.show(progress) };
+    let out = arguments.error.out(&["tune", &request.source.name]);
+    ensure_writable(&out)?;
     let tuned = match runs.finish(tune(request, runner))? {
         Ok(tuned) => tuned,
         Err(code) => return Ok(code),
     };
-    let out = arguments.error.out(&["tune", &request.source.name]);
     let report = report_of("tune", tune_study(request, &tuned), start);
     let file = write_case(request, &tuned, &out)?;
     publish(&report, &out, common, &|| {
@@ -149,7 +151,7 @@ fn write_case(request: &TuneRequest, tuned: &Tuned, out: &Path) -> Result<Option
     settings.extend(tuned.candidates[winner.candidate].settings.iter().cloned());
     let base = request.source.file.parent().unwrap_or(Path::new("."));
     let text = with_absolute_paths(&request.source.text_with(&settings)?, base)?;
-    let file = out.join(format!("{}.tuned.toml", request.source.name));
+    let file = out.join(file_name(&format!("{}.tuned.toml", request.source.name)));
     write_atomically(&file, text.as_bytes())?;
     Ok(Some(file))
 }
@@ -163,11 +165,13 @@ fn tune_many(
     let start = Instant::now();
     let runs = ManyRuns::new(common);
     let runner = TaskRunner { store, notify: &|progress| runs.show(progress) };
+    let out = arguments.error.out(&["tune"]);
+    ensure_writable(&out)?;
     let recommendation = match runs.finish(recommend(requests, runner))? {
         Ok(recommendation) => recommendation,
         Err(code) => return Ok(code),
     };
     let study = recommendation_study(&recommendation, &command_line());
     let report = report_of("tune", study, start);
-    publish(&report, &arguments.error.out(&["tune"]), common, &|| tables(&report))
+    publish(&report, &out, common, &|| tables(&report))
 }

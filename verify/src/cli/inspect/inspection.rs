@@ -1,6 +1,7 @@
 //! What is known about a case before it is run.
 #![allow(non_snake_case)]
 
+use crate::machine::peak_memory;
 use crate::run::Prepared;
 use crate::scene::Case;
 use clap::ValueEnum;
@@ -49,6 +50,8 @@ pub struct Inspection<'a> {
     pub critical: CriticalStep,
     /// Node with the largest part of the stiffest mode, with its local spacing \[m\].
     pub weakest: Place,
+    /// Largest memory before zero-energy modes were searched for \[bytes\].
+    pub peak: Option<u64>,
     /// None where they were not searched for.
     pub modes: Option<ZeroEnergyModes>,
 }
@@ -63,6 +66,7 @@ pub fn examine<'a>(
     let sizes = || (0..discretisation.supports.len()).map(|q| discretisation.supports.row(q).len());
     let critical =
         critical_time_step(model, &vec![0.0; model.size()], 0.0, None, &mut Workspace::new(model));
+    let peak = peak_memory();
     let searched = match search {
         Search::Auto => model.positions.len() <= LARGEST_SEARCH,
         Search::Always => true,
@@ -82,6 +86,7 @@ pub fn examine<'a>(
         spacings: ends(&discretisation.cloud.spacing, &model.positions),
         weakest: weakest(prepared, &critical),
         critical,
+        peak,
         modes,
     })
 }

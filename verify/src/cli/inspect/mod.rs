@@ -3,8 +3,9 @@
 mod inspection;
 mod text;
 
-use super::common::{COULD_NOT_RUN, Common, Format, print_data};
-use super::load::{diagnose, load};
+use super::common::{Common, Format};
+use super::load::{load, located};
+use super::streams::{print_json, print_text};
 use crate::run::prepare;
 use clap::Args;
 use inspection::{Search, examine};
@@ -13,7 +14,7 @@ use text::{advice, to_json, to_text};
 
 #[derive(Debug, Args)]
 pub struct InspectArgs {
-    /// Case file (TOML).
+    /// Case file (TOML), or name of a bundled case.
     case: PathBuf,
     /// Whether to search for zero-energy modes: "auto" does so up to 20 000 nodes, which takes
     /// seconds.
@@ -22,23 +23,14 @@ pub struct InspectArgs {
 }
 
 pub fn inspect(arguments: &InspectArgs, common: &Common) -> anyhow::Result<u8> {
-    let Some(case) = load(&arguments.case) else { return Ok(COULD_NOT_RUN) };
-    let shown = prepare(&case.problem).and_then(|prepared| {
-        let inspection = examine(&case, &prepared, arguments.modes)?;
-        Ok(match common.format {
-            Format::Json => format!("{}\n", to_json(&inspection)),
-            Format::Human if common.quiet => advice(&inspection).join("\n") + "\n",
-            Format::Human => to_text(&inspection),
-        })
-    });
-    match shown {
-        Ok(text) => {
-            print_data(&text)?;
-            Ok(0)
-        }
-        Err(error) => {
-            eprintln!("{}", diagnose(&case, &error));
-            Ok(COULD_NOT_RUN)
-        }
+    let case = load(&arguments.case)?;
+    let prepared = prepare(&case.problem).map_err(|error| located(&case, &error))?;
+    let inspection =
+        examine(&case, &prepared, arguments.modes).map_err(|error| located(&case, &error))?;
+    match common.format {
+        Format::Json => print_json(&format!("{}\n", to_json(&inspection)))?,
+        Format::Human if common.quiet => print_text(&(advice(&inspection).join("\n") + "\n"))?,
+        Format::Human => print_text(&to_text(&inspection))?,
     }
+    Ok(0)
 }

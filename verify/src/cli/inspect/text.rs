@@ -1,12 +1,12 @@
 //! An inspection as text and as JSON.
 
 use super::inspection::{Inspection, LARGEST_SEARCH, Place};
-use crate::machine::peak_memory;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Footprint;
 use mtled::discretisation::Warning;
 use mtled::model::zero_energy::{CapturedMotion, ZERO_ENERGY_FRACTION, ZeroEnergyModes};
 use mtled::problem::{Dimension, Motion};
+use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
 use serde_json::{Value, json};
 
@@ -33,7 +33,7 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let (few, many) = inspection.support;
     let mut lines = vec![
-        format!("{}: {}", case.name, case.title),
+        printable(&format!("{}: {}", case.name, case.title)),
         format!(
             "nodes               {nodes}, {} of them on the boundary; all are covered",
             discretisation.cloud.on_boundary.iter().filter(|b| **b).count()
@@ -90,11 +90,16 @@ fn step_text(inspection: &Inspection) -> [String; 2] {
     ]
 }
 
+/// Memory of set-up and run without what is recorded \[bytes\].
+fn estimate(inspection: &Inspection) -> f64 {
+    Footprint::counted(&inspection.case.problem, &inspection.prepared.discretisation).bytes
+}
+
 /// Peak of the memory during the set-up, and its estimate.
 fn memory_text(inspection: &Inspection) -> Option<String> {
-    let (peak, model) = (peak_memory()? as f64, &inspection.prepared.model);
+    let (peak, model) = (inspection.peak? as f64, &inspection.prepared.model);
     let (nodes, points) = (model.positions.len() as f64, model.point_positions.len() as f64);
-    let estimate = Footprint::of(&inspection.case.problem).ok()?.bytes;
+    let estimate = estimate(inspection);
     Some(format!(
         "                    {:.0} MB at the peak of the set-up ({:.0} estimated): {:.0} bytes per point, {:.0} per \
          node",
@@ -134,15 +139,22 @@ fn modes_text(modes: Option<&ZeroEnergyModes>) -> Vec<String> {
     lines
 }
 
+/// Doubts about the discretisation and about the problem.
+fn warnings(inspection: &Inspection) -> impl Iterator<Item = Warning> {
+    let prepared = inspection.prepared;
+    prepared.discretisation.warnings().into_iter().chain(prepared.model.warnings.clone())
+}
+
 /// What the user should change, in sentences.
 pub fn advice(inspection: &Inspection) -> Vec<String> {
-    let (discretisation, problem) = (&inspection.prepared.discretisation, &inspection.case.problem);
+    let problem = &inspection.case.problem;
     let mut advice: Vec<String> = Vec::new();
     if let Some(modes) = &inspection.modes {
         if modes.at_least() > 0 {
             advice.push(
-                "There are motions without strain energy, which grow without any warning: use smaller cells. \
-                 discretisation.grid.cells_per_spacing = 1.26 gives two points per node in 3-D."
+                "There are motions without strain energy, which grow without any warning: use smaller cells \
+                 where they are largest. discretisation.grid.cells_per_spacing = 1.26 without cell and \
+                 refine gives two points per node in 3-D, also where the nodes are refined."
                     .into(),
             );
         }
@@ -154,7 +166,7 @@ pub fn advice(inspection: &Inspection) -> Vec<String> {
             ));
         }
     }
-    advice.extend(discretisation.warnings().iter().map(|warning| {
+    advice.extend(warnings(inspection).map(|warning| {
         let text = warning.to_string();
         text[..1].to_uppercase() + &text[1..] + "."
     }));
@@ -223,8 +235,8 @@ pub fn to_json(inspection: &Inspection) -> Value {
             "position_m": array(&inspection.weakest.position),
         },
         "bytes_per_step": model.bytes_per_step(),
-        "estimated_memory_bytes": Footprint::of(&case.problem).ok().map(|f| f.bytes.round()),
-        "peak_memory_bytes": peak_memory(),
+        "estimated_memory_bytes": estimate(inspection).round(),
+        "peak_memory_bytes": inspection.peak,
         "zero_energy_modes": inspection.modes.as_ref().map(|modes| json!({
             "count": modes.count,
             "at_least": modes.at_least(),
@@ -237,7 +249,7 @@ pub fn to_json(inspection: &Inspection) -> Value {
                 "position_m": array(&motion.position),
             })).collect::<Vec<_>>(),
         })),
-        "warnings": discretisation.warnings().iter().map(Warning::to_string).collect::<Vec<_>>(),
+        "warnings": warnings(inspection).map(|warning| warning.to_string()).collect::<Vec<_>>(),
         "advice": advice(inspection),
     })
 }

@@ -49,7 +49,7 @@ fn check(arguments: &CheckArgs, common: &Common) -> Result<u8> {
         format!("{}\n", check_table(&stored))
     })?;
     let mistakes: Vec<String> = stored.iter().filter_map(StoredReference::mistake).collect();
-    mistakes.iter().for_each(|mistake| eprintln!("{mistake}"));
+    mistakes.iter().for_each(|mistake| common.complain(mistake));
     Ok(u8::from(!mistakes.is_empty()))
 }
 
@@ -62,7 +62,7 @@ fn show(case: &str, from: &ReferenceArgs, common: &Common) -> Result<u8> {
             Ok(0)
         }
         Err(reason) => {
-            eprintln!("{reason}");
+            common.complain(reason);
             Ok(COULD_NOT_RUN)
         }
     }

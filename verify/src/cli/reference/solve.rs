@@ -1,9 +1,10 @@
 //! `mtled reference solve`: runs the Python side.
 
 use super::stored::case_names;
-use crate::cli::common::{Common, STOPPED, print_data};
+use crate::cli::common::{Common, Format, STOPPED};
 use crate::cli::progress::progress_bar;
 use crate::cli::python::{Python, checkout, python_for};
+use crate::cli::streams::{print_json, print_text};
 use crate::reference::compare::{TOLERANCE, compare};
 use crate::reference::{CODES, ReferenceFile, read_reference};
 use crate::run::interrupted;
@@ -11,7 +12,9 @@ use crate::scene::{one_error, read_case};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use indicatif::ProgressBar;
+use mtled_checks::report::ensure_writable;
 use serde::Deserialize;
+use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -70,17 +73,25 @@ pub fn solve(arguments: &SolveReferenceArgs, common: &Common) -> Result<u8> {
     if partial && !arguments.compare && arguments.out.is_none() {
         bail!("--mesh needs --out DIR or --compare, since single meshes are not a reference");
     }
-    let mut code = 0;
+    let out = arguments.out.clone().unwrap_or_else(|| reference.join("data"));
+    if !arguments.compare {
+        ensure_writable(&out)?;
+    }
+    let (mut code, mut done) = (0, Vec::new());
     for name in CODES.iter().filter(|c| arguments.code.as_deref().is_none_or(|code| code == **c)) {
-        let python = python_for(name, &reference, &|text| common.say(text))?;
+        let python = python_for(name, &reference, &|text| common.note(text))?;
         for case in &cases {
+            let reference = &reference;
             let job =
-                Job { arguments, common, reference: &reference, python: &python, case, code: name };
-            match job.run()? {
+                Job { arguments, common, reference, out: &out, python: &python, case, code: name };
+            match job.run(&mut done)? {
                 None => return Ok(STOPPED),
                 Some(other) => code = code.max(other),
             }
         }
+    }
+    if common.format == Format::Json {
+        print_json(&format!("{:#}\n", json!({ "schema_version": 1, "solutions": done })))?;
     }
     Ok(code)
 }
@@ -90,14 +101,15 @@ struct Job<'a> {
     arguments: &'a SolveReferenceArgs,
     common: &'a Common,
     reference: &'a Path,
+    out: &'a Path,
     python: &'a Python,
     case: &'a str,
     code: &'a str,
 }
 
 impl Job<'_> {
-    /// The exit code; none if the user stopped it.
-    fn run(&self) -> Result<Option<u8>> {
+    /// The exit code; none if the user stopped it. What it has done is added to `done`.
+    fn run(&self, done: &mut Vec<Value>) -> Result<Option<u8>> {
         let scratch = tempfile::tempdir()?;
         let solution = scratch.path().join("solution.json");
         let bar = progress_bar(self.common);
@@ -107,21 +119,27 @@ impl Job<'_> {
             return Ok(None);
         }
         if self.arguments.compare {
-            return self.compared(&solution).map(Some);
+            return self.compared(&solution, done).map(Some);
         }
-        let out = self.arguments.out.clone().unwrap_or_else(|| self.reference.join("data"));
-        std::fs::create_dir_all(&out)?;
         if self.arguments.meshes.is_empty() {
             let mut merge = self.python.module(self.reference);
-            merge.arg("merge").arg(self.case_file()).arg("--data").arg(&out).arg(&solution);
+            merge.arg("merge").arg(self.case_file()).arg("--data").arg(self.out).arg(&solution);
             run(merge, &mut |_| {}).with_context(|| self.label())?;
         } else {
-            std::fs::copy(&solution, out.join(format!("{}.{}.json", self.case, self.code)))?;
+            std::fs::copy(&solution, self.out.join(format!("{}.{}.json", self.case, self.code)))?;
         }
-        if !self.common.quiet {
-            print_data(&format!("{}: written to {}\n", self.label(), out.display()))?;
-        }
+        done.push(
+            json!({ "case": self.case, "code": self.code, "out": self.out.display().to_string() }),
+        );
+        self.print(&format!("{}: written to {}\n", self.label(), self.out.display()))?;
         Ok(Some(0))
+    }
+
+    fn print(&self, text: &str) -> Result<()> {
+        if self.common.format == Format::Human && !self.common.quiet {
+            print_text(text)?;
+        }
+        Ok(())
     }
 
     fn label(&self) -> String {
@@ -152,16 +170,15 @@ impl Job<'_> {
     }
 
     /// Compares a solution with the stored one; the exit code is 0 if they are the same, else 1.
-    fn compared(&self, solution: &Path) -> Result<u8> {
+    fn compared(&self, solution: &Path, done: &mut Vec<Value>) -> Result<u8> {
         let case = read_case(&self.case_file()).map_err(one_error)?;
-        let data = self.arguments.out.clone().unwrap_or_else(|| self.reference.join("data"));
-        let path = data.join(format!("{}.json", self.case));
+        let path = self.out.join(format!("{}.json", self.case));
         let text = std::fs::read_to_string(&path)
             .with_context(|| format!("{}: cannot read {}", self.case, path.display()))?;
         let stored = match read_reference(&case, &text) {
             Ok(stored) => stored,
             Err(error) => {
-                eprintln!("{error}");
+                self.common.complain(error);
                 return Ok(1);
             }
         };
@@ -175,14 +192,21 @@ impl Job<'_> {
                 change.relative,
                 change.quantity
             );
-            if change.relative <= TOLERANCE {
-                if !self.common.quiet {
-                    print_data(&format!("{text}\n"))?;
-                }
+            let same = change.relative <= TOLERANCE;
+            if same {
+                self.print(&format!("{text}\n"))?;
             } else {
-                eprintln!("{text}; more than {TOLERANCE:.0e}");
+                self.common.complain(format!("{text}; more than {TOLERANCE:.0e}"));
                 code = 1;
             }
+            done.push(json!({
+                "case": self.case,
+                "code": self.code,
+                "elements": change.elements,
+                "quantity": change.quantity,
+                "largest_change": change.relative,
+                "same": same,
+            }));
         }
         Ok(code)
     }

@@ -3,6 +3,7 @@
 use super::stored::{Referenced, StoredReference};
 use crate::reference::{Agreement, Basis};
 use comfy_table::{ContentArrangement, LineStyle, Table, presets};
+use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
 use serde_json::{Value, json};
 
@@ -57,7 +58,8 @@ fn check_row(stored: &StoredReference) -> Vec<String> {
 
 /// Everything about one case.
 pub fn show_text(reference: &Referenced) -> String {
-    let mut text = format!("{}: {}\n", reference.case.name, reference.case.title);
+    let title = format!("{}: {}", reference.case.name, reference.case.title);
+    let mut text = printable(&title) + "\n";
     for solution in &reference.file.solutions {
         let packages: Vec<String> =
             solution.packages.iter().map(|(name, version)| format!("{name} {version}")).collect();

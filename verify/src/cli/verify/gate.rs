@@ -1,10 +1,13 @@
 //! The baseline of `mtled verify`, and annotations for GitHub Actions.
 
+use crate::cli::streams::to_standard_error;
+use anyhow::Context;
 use clap::Args;
+use mtled_checks::escape::printable_lines;
 use mtled_checks::gate::{
     Baseline, Clouds, GateError, Reason, compare, difference, read_baseline, update,
 };
-use mtled_checks::report::{github, read_report, write_atomically};
+use mtled_checks::report::{ensure_writable, github, read_report, write_atomically};
 use mtled_checks::study::Report;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -58,6 +61,9 @@ impl GateArgs {
             Err(GateError::Absent { .. } | GateError::Version { .. }) => None,
             Err(error) => return Err(error.into()),
         };
+        // A baseline that cannot be written must not be discovered after a long run.
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        ensure_writable(folder.unwrap_or(Path::new(".")))?;
         let reason = Reason::new(self.reason.as_deref().unwrap_or_default())?;
         let clouds: Vec<Report> =
             self.scatter.iter().map(|path| read_report(path)).collect::<Result<_, _>>()?;
@@ -106,15 +112,18 @@ impl Gate {
 pub fn report_to_github(report: &Report, folder: &Path) -> anyhow::Result<()> {
     if std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true") {
         for line in github::annotations(report, folder) {
-            eprintln!("{line}");
+            to_standard_error(&printable_lines(&line));
         }
     }
-    let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()) else {
-        return Ok(());
-    };
+    let path = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty());
+    let Some(path) = path.map(PathBuf::from) else { return Ok(()) };
     let written = std::fs::metadata(&path).map_or(0, |meta| meta.len() as usize);
     let capacity = github::SUMMARY_LIMIT.saturating_sub(written);
-    let mut file = std::fs::OpenOptions::new().create(true).append(true).open(&path)?;
-    file.write_all(github::step_summary(report, capacity).as_bytes())?;
-    Ok(())
+    let mut file = std::fs::OpenOptions::new();
+    let written = file
+        .create(true)
+        .append(true)
+        .open(&path)
+        .and_then(|mut file| file.write_all(github::step_summary(report, capacity).as_bytes()));
+    written.with_context(|| format!("cannot write {}", path.display()))
 }

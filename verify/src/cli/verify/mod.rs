@@ -10,7 +10,7 @@ use crate::studies::{Definition, STUDIES};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use gate::{GateArgs, report_to_github};
-use mtled_checks::report::{human, json, read, read_report, write_report};
+use mtled_checks::report::{ensure_writable, human, json, read, read_report, write_report};
 use mtled_checks::study::{Report, Study};
 use progress::Progress;
 use rayon::prelude::*;
@@ -31,7 +31,7 @@ pub struct VerifyArgs {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..1_000_000))]
     seed: u64,
     /// Folder for index.html, results.json, junit.xml and summary.md.
-    #[arg(long, default_value = "reports/verify")]
+    #[arg(long, default_value = "reports/verify", value_name = "DIR")]
     out: PathBuf,
     #[command(flatten)]
     gate: GateArgs,
@@ -46,6 +46,7 @@ enum SuiteName {
 pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
     let chosen = chosen(arguments.only.as_deref())?;
     let gate = arguments.gate.read()?;
+    ensure_writable(&arguments.out)?;
     let whole = chosen.len() == STUDIES.len();
     let mut report = run(&chosen, arguments, common)?;
     if crate::run::interrupted() {
@@ -55,12 +56,13 @@ pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
     // The report is read back, so that `mtled report` writes the same pages from the file.
     let report = read::from_json(&json::to_json(&report), &arguments.out.join("results.json"))?;
     write_report(&report, &arguments.out)?;
-    common.print_summary(&|| Ok(json::to_json(&report)), &|| {
+    // All files come before standard output, which may be closed.
+    gate.write(&report, whole)?.iter().for_each(|line| common.note(line));
+    report_to_github(&report, &arguments.out)?;
+    common.print_coloured_summary(&|| Ok(json::to_json(&report)), &|| {
         let table = human::to_table(&report, common.colours());
         format!("{table}\nreport: {}\n", arguments.out.join("index.html").display())
     })?;
-    report_to_github(&report, &arguments.out)?;
-    gate.write(&report, whole)?.iter().for_each(|line| common.say(line));
     let could_run = report.studies.iter().all(|study| study.failure.is_none());
     Ok(match (report.passed(), could_run) {
         (true, _) => 0,

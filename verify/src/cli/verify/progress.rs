@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 const LARGEST_FRACTION: f64 = 0.95;
 
 pub struct Progress {
+    common: Common,
     bar: ProgressBar,
     lines: bool,
     count: usize,
@@ -47,7 +48,7 @@ impl Progress {
         }));
         let bar = if common.draws() { drawn(&state) } else { ProgressBar::hidden() };
         let lines = !common.quiet && !common.draws();
-        Progress { bar, lines, count: studies.len(), state }
+        Progress { common: *common, bar, lines, count: studies.len(), state }
     }
 
     pub fn begin(&self, id: &str) {
@@ -64,7 +65,7 @@ impl Progress {
         let line =
             format!("[{finished}/{}] {} ({:.1} s)", self.count, study.title, study.wall_seconds);
         if self.lines {
-            eprintln!("{line}");
+            self.common.note(&line);
         } else {
             self.bar.println(line);
         }

@@ -3,6 +3,7 @@
 use super::measure::ErrorBudget;
 use crate::explore::label::{optional, percent};
 use comfy_table::{CellAlignment, ContentArrangement, presets};
+use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
 use mtled_checks::study::{
     Cell, Figure, Plot, SeriesStyle, Study, Table, axis, number, styled, text,
@@ -51,7 +52,7 @@ fn head(budget: &ErrorBudget) -> Vec<String> {
     let ErrorBudget { source, base, total, reference, other_clouds, group, .. } = budget;
     let figure = |name: &str| base.figure(name).map_or("–".into(), four_digits);
     let mut lines = vec![
-        format!("{}: {}", source.name, source.case.title),
+        printable(&format!("{}: {}", source.name, source.case.title)),
         format!(
             "  {} nodes, {} quadrature points, {} nodes per support",
             figure("nodes"),

@@ -1,6 +1,8 @@
 //! Records in files.
 
 use super::record::{RunRecord, SCHEMA_VERSION};
+use super::task::KEY_DIGITS;
+use mtled_checks::escape::printable_json;
 use mtled_checks::report::write_atomically;
 use std::path::{Path, PathBuf};
 
@@ -14,24 +16,49 @@ pub struct Store {
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// A file or folder cannot be read.
-    #[error("{file} cannot be read: {source}")]
+    #[error("{} cannot be read: {source}", file.display())]
     Unreadable {
         /// Path of the file.
-        file: String,
+        file: PathBuf,
         /// What went wrong.
         source: std::io::Error,
     },
     /// A file is not a record of this program.
-    #[error("{file} is not a record of a run ({reason}); remove it, or name another store")]
+    #[error(
+        "{} is not a record of a run ({reason}); `mtled runs prune --corrupt` removes it", file.display()
+    )]
     NotARecord {
         /// Path of the file.
-        file: String,
+        file: PathBuf,
         /// What is wrong with it.
         reason: String,
     },
+    /// A text is not the key of a record.
+    #[error(
+        "`{0}` is not the key of a record, which has {KEY_DIGITS} digits from 0 to 9 and a to f"
+    )]
+    NotAKey(String),
     /// A record cannot be written.
     #[error("{0:#}")]
     Unwritable(anyhow::Error),
+}
+
+/// What a store contains.
+#[derive(Debug, Default)]
+pub struct Contents {
+    /// Every record that can be read, by key.
+    pub records: Vec<RunRecord>,
+    /// Files in the place of records that are none.
+    pub corrupt: Vec<Corrupt>,
+}
+
+/// A file in the place of a record that is none.
+#[derive(Debug)]
+pub struct Corrupt {
+    /// Its path.
+    pub file: PathBuf,
+    /// What is wrong with it.
+    pub error: StoreError,
 }
 
 impl Store {
@@ -45,35 +72,44 @@ impl Store {
         &self.folder
     }
 
-    fn file(&self, key: &str) -> PathBuf {
-        self.folder.join(&key[..2.min(key.len())]).join(format!("{key}.json"))
+    /// Where the record of a key is; only a key leads to a file.
+    fn file(&self, key: &str) -> Result<PathBuf, StoreError> {
+        match is_key(key) {
+            true => Ok(self.folder.join(&key[..2]).join(format!("{key}.json"))),
+            false => Err(StoreError::NotAKey(key.to_string())),
+        }
     }
 
     /// The record of a key, if there is one.
     pub fn find(&self, key: &str) -> Result<Option<RunRecord>, StoreError> {
-        let file = self.file(key);
+        let file = self.file(key)?;
         if file.exists() { read(&file).map(Some) } else { Ok(None) }
     }
 
     /// Writes a record completely or not at all.
     pub fn write(&self, record: &RunRecord) -> Result<(), StoreError> {
+        let file = self.file(&record.key)?;
         let text = serde_json::to_string(record).map_err(|e| StoreError::Unwritable(e.into()))?;
-        write_atomically(&self.file(&record.key), (text + "\n").as_bytes())
-            .map_err(StoreError::Unwritable)
+        let text = printable_json(&text) + "\n";
+        write_atomically(&file, text.as_bytes()).map_err(StoreError::Unwritable)
     }
 
     /// Deletes a record.
     pub fn remove(&self, key: &str) -> Result<(), StoreError> {
-        let file = self.file(key);
+        let file = self.file(key)?;
         std::fs::remove_file(&file).map_err(|error| unreadable(&file, error))
     }
 
-    /// Every record, by key.
-    pub fn all(&self) -> Result<Vec<RunRecord>, StoreError> {
-        self.files(|name| name.ends_with(".json") && !name.starts_with('.'))?
-            .iter()
-            .map(|file| read(file))
-            .collect()
+    /// Every record, and what is in the place of one.
+    pub fn contents(&self) -> Result<Contents, StoreError> {
+        let mut contents = Contents::default();
+        for file in self.files(|name| name.ends_with(".json") && !name.starts_with('.'))? {
+            match read(&file) {
+                Ok(record) => contents.records.push(record),
+                Err(error) => contents.corrupt.push(Corrupt { file, error }),
+            }
+        }
+        Ok(contents)
     }
 
     /// Temporary files of programs that were killed.
@@ -85,19 +121,39 @@ impl Store {
         let mut files = Vec::new();
         for folder in entries(&self.folder)?.iter().filter(|path| has_records(path)) {
             let inside = entries(folder)?;
-            files.extend(inside.into_iter().filter(|path| {
-                path.file_name().and_then(|name| name.to_str()).is_some_and(&matches)
-            }));
+            files.extend(inside.into_iter().filter(|path| matches(name_of(path))));
         }
         files.sort();
         Ok(files)
     }
 }
 
-/// Whether a folder is one of those with records.
+impl Corrupt {
+    /// The key in the name of the file; none where it was not meant to be a record.
+    pub fn key(&self) -> Option<&str> {
+        key_of(&self.file)
+    }
+}
+
+fn is_key(text: &str) -> bool {
+    text.len() == KEY_DIGITS && text.bytes().all(|c| matches!(c, b'0'..=b'9' | b'a'..=b'f'))
+}
+
+/// The key of the record that belongs into a file.
+fn key_of(file: &Path) -> Option<&str> {
+    let key = name_of(file).strip_suffix(".json").filter(|key| is_key(key))?;
+    (name_of(file.parent()?) == &key[..2]).then_some(key)
+}
+
+fn name_of(path: &Path) -> &str {
+    path.file_name().and_then(|name| name.to_str()).unwrap_or_default()
+}
+
+/// Whether a folder, which must not be a link to another place, is one of those with records.
 fn has_records(path: &Path) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    path.is_dir() && name.len() == 2 && name.chars().all(|c| c.is_ascii_hexdigit())
+    let name = name_of(path);
+    let is_folder = path.symlink_metadata().is_ok_and(|meta| meta.is_dir());
+    is_folder && name.len() == 2 && name.chars().all(|c| c.is_ascii_hexdigit())
 }
 
 /// Paths in a folder; none where it does not exist.
@@ -110,20 +166,100 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
 }
 
 fn unreadable(file: &Path, source: std::io::Error) -> StoreError {
-    StoreError::Unreadable { file: file.display().to_string(), source }
+    StoreError::Unreadable { file: file.to_path_buf(), source }
 }
 
 fn read(file: &Path) -> Result<RunRecord, StoreError> {
-    let text = std::fs::read_to_string(file).map_err(|error| unreadable(file, error))?;
-    let refused =
-        |reason: String| StoreError::NotARecord { file: file.display().to_string(), reason };
+    let refused = |reason: String| StoreError::NotARecord { file: file.to_path_buf(), reason };
+    let key = key_of(file).ok_or_else(|| refused("its name is not a key".into()))?;
+    let bytes = std::fs::read(file).map_err(|error| unreadable(file, error))?;
     let record: RunRecord =
-        serde_json::from_str(&text).map_err(|error| refused(error.to_string()))?;
+        serde_json::from_slice(&bytes).map_err(|error| refused(error.to_string()))?;
     if record.schema_version != SCHEMA_VERSION {
         return Err(refused(format!(
             "its layout is {}, this program reads {SCHEMA_VERSION}",
             record.schema_version
         )));
     }
+    if record.key != key {
+        return Err(refused(format!("it has the key `{}`", record.key)));
+    }
     Ok(record)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explore::store::{Job, RunOutcome, Stage, Timings};
+
+    const KEY: &str = "0123456789abcdef0123456789abcdef";
+
+    fn record(key: &str) -> RunRecord {
+        let (processor, date) = (String::new(), String::new());
+        RunRecord {
+            schema_version: SCHEMA_VERSION,
+            key: key.into(),
+            job: Job::Solve,
+            case: "cube".into(),
+            solver: "another".into(),
+            settings: Vec::new(),
+            times_s: Vec::new(),
+            outcome: RunOutcome::Failed { stage: Stage::Refused, reason: "none".into() },
+            timings: Timings { set_up_cpu_s: 0.0, solve_cpu_s: 0.0, processor, date },
+        }
+    }
+
+    fn put(folder: &Path, name: &str, key: &str) -> PathBuf {
+        let file = folder.join(name);
+        write_atomically(&file, serde_json::to_string(&record(key)).unwrap().as_bytes()).unwrap();
+        file
+    }
+
+    #[test]
+    fn only_a_key_leads_to_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::new(&folder.path().join("store"));
+        let long = "é".repeat(16);
+        for key in
+            ["../../outside", "", "ab", "/etc/passwd", "é", long.as_str(), &KEY.to_uppercase()]
+        {
+            assert!(matches!(store.write(&record(key)), Err(StoreError::NotAKey(_))), "{key}");
+            assert!(matches!(store.remove(key), Err(StoreError::NotAKey(_))), "{key}");
+            assert!(matches!(store.find(key), Err(StoreError::NotAKey(_))), "{key}");
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        store.write(&record(KEY)).unwrap();
+        assert_eq!(store.find(KEY).unwrap(), Some(record(KEY)));
+        store.remove(KEY).unwrap();
+        assert_eq!(store.find(KEY).unwrap(), None);
+    }
+
+    #[test]
+    fn files_that_are_no_records_are_named_beside_the_records() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        put(path, &format!("01/{KEY}.json"), KEY);
+        let renamed = put(path, "ab/ab23456789abcdef0123456789abcdef.json", "../../outside");
+        let misplaced = put(path, &format!("02/{KEY}.json"), KEY);
+        let other = put(path, "ab/notes.json", KEY);
+        std::fs::write(path.join("ab/ab.json"), [0xff, 0xfe]).unwrap();
+        let Contents { records, corrupt } = Store::new(path).contents().unwrap();
+        assert_eq!(records, [record(KEY)]);
+        let files: Vec<&Path> = corrupt.iter().map(|corrupt| corrupt.file.as_path()).collect();
+        assert_eq!(files, [&misplaced, &path.join("ab/ab.json"), &renamed, &other]);
+        let meant: Vec<bool> = corrupt.iter().map(|corrupt| corrupt.key().is_some()).collect();
+        assert_eq!(meant, [false, false, true, false]);
+        assert!(corrupt[2].error.to_string().contains("it has the key `../../outside`"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_inside_a_store_leads_nowhere() {
+        let folder = tempfile::tempdir().unwrap();
+        let (store, outside) = (folder.path().join("store"), folder.path().join("01"));
+        put(&outside, &format!("{KEY}.json"), KEY);
+        std::fs::create_dir(&store).unwrap();
+        std::os::unix::fs::symlink(&outside, store.join("01")).unwrap();
+        assert!(Store::new(&store).contents().unwrap().records.is_empty());
+    }
 }

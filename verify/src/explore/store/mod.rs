@@ -14,7 +14,7 @@ mod record;
 mod runs;
 mod task;
 
-pub use disk::{Store, StoreError};
+pub use disk::{Contents, Corrupt, Store, StoreError};
 pub use perform::COMPRESSIONS;
 pub use record::{Figures, RunOutcome, RunRecord, Stage, Timings};
 pub use runs::{Progress, Stopped, TaskRunner};

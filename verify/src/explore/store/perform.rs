@@ -9,14 +9,14 @@ use crate::accuracy::{SAMPLES, values};
 use crate::machine::provenance;
 use crate::reference::is_dynamic;
 use crate::run::{
-    Prepared, Recorder, Solved, Work, integrate, prepare_to_run, refuse_beyond_memory,
+    Prepared, Recorder, Solved, Work, estimated_memory, integrate, prepare_to_run,
+    refuse_beyond_memory,
 };
 use crate::scene::Case;
 use crate::specimens::stable_step::{largest_stable_step, trial_velocity};
 use anyhow::Result;
 use cpu_time::ThreadTime;
 use mtled::algebra::tensor::{Matrix3, Vector3};
-use mtled::discretisation::Footprint;
 use mtled::error::Error;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
@@ -29,7 +29,7 @@ pub fn perform(task: &Task) -> Result<Option<RunRecord>> {
     }
     let start = ThreadTime::now();
     let mut set_up_cpu_s = None;
-    let prepared = match refuse_beyond_memory(&case.problem) {
+    let prepared = match refuse_beyond_memory(&case) {
         Err(shortage) => Err(shortage.to_string()),
         Ok(()) => prepare_to_run(&case.problem).map_err(|error| error.to_string()),
     };
@@ -43,6 +43,7 @@ pub fn perform(task: &Task) -> Result<Option<RunRecord>> {
     let cpu_s = start.elapsed().as_secs_f64();
     let set_up_cpu_s = set_up_cpu_s.unwrap_or(cpu_s);
     let provenance = provenance();
+    let outcome = outcome.map(with_finite_figures);
     Ok(outcome.map(|outcome| RunRecord {
         schema_version: SCHEMA_VERSION,
         key: String::new(),
@@ -61,6 +62,14 @@ pub fn perform(task: &Task) -> Result<Option<RunRecord>> {
     }))
 }
 
+/// JSON has no infinity and no NaN: a record with one could not be read again.
+fn with_finite_figures(mut outcome: RunOutcome) -> RunOutcome {
+    if let RunOutcome::Done { figures, .. } = &mut outcome {
+        figures.retain(|_, figure| figure.is_finite());
+    }
+    outcome
+}
+
 fn run_job(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOutcome>> {
     let (stage, more) = match task.job {
         Job::Solve => return solve(task, case, prepared),
@@ -73,20 +82,16 @@ fn run_job(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOut
         Ok(mut more) => {
             let mut figures = discretisation_figures(case, &prepared);
             figures.append(&mut more);
-            let warnings = warnings(&prepared);
+            let warnings = prepared.doubts(&case.problem);
             RunOutcome::Done { figures, values: Vec::new(), work: None, warnings }
         }
     }))
 }
 
-fn warnings(prepared: &Prepared) -> Vec<String> {
-    prepared.discretisation.warnings().iter().map(|warning| warning.to_string()).collect()
-}
-
 fn solve(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOutcome>> {
     let mut recorder = Recorder::new(case, &prepared, 0)?;
     let mut figures = discretisation_figures(case, &prepared);
-    let mut warnings = warnings(&prepared);
+    let mut warnings = prepared.doubts(&case.problem);
     let solved = match integrate(&case.problem, prepared, &mut recorder) {
         Ok(solved) => solved,
         Err(error) => {
@@ -102,7 +107,7 @@ fn solve(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOutco
     if let Some(misfit) = boundary_misfit(&case.problem, &solved)? {
         figures.insert("held_misfit".into(), misfit);
     }
-    warnings.extend(solved.summary.collapsed_point(&solved.prepared.model).map(|c| c.to_string()));
+    warnings.extend(solved.doubts());
     Ok(Some(RunOutcome::Done {
         figures,
         values: values(case, &record, &task.times)?,
@@ -131,9 +136,8 @@ fn discretisation_figures(case: &Case, prepared: &Prepared) -> Figures {
         figures.insert("defect_of_gradients".into(), correction.defect * correction.residual);
         figures.insert("correction_iterations".into(), correction.iterations as f64);
     }
-    if let Ok(footprint) = Footprint::of(&case.problem) {
-        figures.insert("estimated_memory_bytes".into(), footprint.bytes.round());
-    }
+    let memory = estimated_memory(case, discretisation);
+    figures.insert("estimated_memory_bytes".into(), memory.round());
     figures
 }
 

@@ -6,6 +6,7 @@ use super::record::RunRecord;
 use super::task::Task;
 use crate::run::interrupted;
 use anyhow::{Context, Result};
+use std::collections::HashMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -46,17 +47,40 @@ pub struct TaskRunner<'a> {
 impl TaskRunner<'_> {
     /// The records of `tasks`, in their order. Tasks that are not in the store are run, as
     /// many at a time as there are threads, each on one thread so that its CPU time is its
-    /// own.
+    /// own. Equal tasks are run once.
     pub fn records(&self, tasks: &[Task]) -> Result<Vec<RunRecord>> {
+        let (mut different, mut places) = (Vec::new(), HashMap::new());
+        let mut order = Vec::with_capacity(tasks.len());
+        for task in tasks {
+            let key = task.key().with_context(|| task.label())?;
+            order.push(*places.entry(key.clone()).or_insert_with(|| {
+                different.push((key, task));
+                different.len() - 1
+            }));
+        }
+        let records = self.different(&different)?;
+        // A record may have been made for a case of another name, or for other words that
+        // mean the same.
+        let label = |(place, task): (usize, &Task)| RunRecord {
+            case: task.source.name.clone(),
+            settings: task.settings.clone(),
+            ..records[place].clone()
+        };
+        Ok(order.into_iter().zip(tasks).map(label).collect())
+    }
+
+    /// The records of tasks with different keys.
+    fn different(&self, tasks: &[(String, &Task)]) -> Result<Vec<RunRecord>> {
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let slots: Vec<Mutex<Option<RunRecord>>> = tasks.iter().map(|_| Mutex::default()).collect();
         let work = || -> Result<()> {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
             loop {
                 let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(task) = tasks.get(index).filter(|_| !interrupted()) else { return Ok(()) };
+                let next = tasks.get(index).filter(|_| !interrupted());
+                let Some((key, task)) = next else { return Ok(()) };
                 let label = task.label();
-                let result = pool.install(|| record(self.store, task));
+                let result = pool.install(|| record(self.store, key, task));
                 let Some((record, stored)) = result.with_context(|| label.clone())? else {
                     return Ok(());
                 };
@@ -85,13 +109,45 @@ impl TaskRunner<'_> {
 
 /// The record of a task and whether it was stored before; none where the user has
 /// stopped the run.
-fn record(store: &Store, task: &Task) -> Result<Option<(RunRecord, bool)>> {
-    let key = task.key()?;
-    if let Some(record) = store.find(&key)? {
+fn record(store: &Store, key: &str, task: &Task) -> Result<Option<(RunRecord, bool)>> {
+    if let Some(record) = store.find(key)? {
         return Ok(Some((record, true)));
     }
     let Some(mut record) = perform(task)? else { return Ok(None) };
-    record.key = key;
+    record.key = key.to_string();
     store.write(&record)?;
     Ok(Some((record, false)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explore::store::{Job, Source};
+    use crate::scene::{Knob, Setting};
+
+    #[test]
+    fn equal_tasks_are_run_once_and_each_gets_the_record() {
+        let folder = tempfile::tempdir().unwrap();
+        let source = Source::find("uniaxial_bar", folder.path()).unwrap();
+        let task = |spacing: &str| Task {
+            job: Job::Consistency,
+            source: source.clone(),
+            settings: vec![Setting::word(Knob::Spacing, spacing)],
+            times: Vec::new(),
+        };
+        let store = Store::new(&folder.path().join("runs"));
+        let counted = Mutex::new(Vec::new());
+        let notify = |progress: Progress| {
+            counted.lock().unwrap().push((progress.of, progress.stored));
+        };
+        let runner = TaskRunner { store: &store, notify: &notify };
+        let tasks = [task("x2"), task("x1.6"), task("x2"), task("x2.0"), task("x2")];
+        let records = runner.records(&tasks).unwrap();
+        assert_eq!(*counted.lock().unwrap(), [(2, false); 2]);
+        assert_eq!(records.len(), 5);
+        assert!([2, 3, 4].iter().all(|&n| records[n].outcome == records[0].outcome));
+        assert!(records[0].outcome != records[1].outcome);
+        let settings = |record: &RunRecord| record.settings.clone();
+        assert!(records.iter().map(settings).eq(tasks.iter().map(|task| task.settings.clone())));
+    }
 }

@@ -1,12 +1,15 @@
 //! Cases and the runs that are made of them.
 
 use crate::bundled::{CASES, unpack};
-use crate::scene::{Case, EditError, Setting, edited, one_error, parse_case};
+use crate::scene::{Case, EditError, Setting, edited, one_error, parse_case, read_text};
 use anyhow::{Context, Result, anyhow};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// Number of hexadecimal digits in the key of a record.
+pub(super) const KEY_DIGITS: usize = 32;
 
 /// Kind of run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -39,7 +42,8 @@ impl Source {
     pub fn find(name: &str, folder: &Path) -> Result<Arc<Source>> {
         let path = PathBuf::from(name);
         let bundled = CASES.iter().any(|(bundled, _)| *bundled == name);
-        let file = match (path.exists(), bundled) {
+        // A folder of that name is no case.
+        let file = match (path.exists() && !(bundled && path.is_dir()), bundled) {
             (true, _) => path,
             (false, true) => unpack(folder)?.join(format!("{name}.toml")),
             (false, false) => {
@@ -49,8 +53,7 @@ impl Source {
                 ));
             }
         };
-        let text = std::fs::read_to_string(&file)
-            .with_context(|| format!("cannot read {}", file.display()))?;
+        let text = read_text(&file).with_context(|| format!("cannot read {}", file.display()))?;
         let case = parse(&text, &file)?;
         Ok(Arc::new(Source { name: case.name.clone(), file, case }))
     }
@@ -97,7 +100,7 @@ impl Task {
         }
         hash.update(serde_json::to_string(&self.job)?);
         self.times.iter().for_each(|time| hash.update(time.to_bits().to_le_bytes()));
-        Ok(hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect())
+        Ok(hash.finalize().iter().take(KEY_DIGITS / 2).map(|byte| format!("{byte:02x}")).collect())
     }
 
     /// Case and settings.

@@ -5,6 +5,9 @@ use crate::scene::{Knob, Level, Setting};
 /// More levels than this on one axis are taken for a typing error.
 const MOST_LEVELS: usize = 1000;
 
+/// More runs than this of one case are taken for a typing error.
+const MOST_RUNS: f64 = 1e5;
+
 /// One knob and its levels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -41,6 +44,28 @@ pub enum AxisError {
         /// Number of its levels.
         count: f64,
     },
+    /// The combinations of all ranges on all clouds are none, or too many.
+    #[error(
+        "{combinations} combinations on {clouds} clouds each are {} runs; it must be 1 to {MOST_RUNS}: \
+             use shorter ranges or fewer clouds",
+        combinations * clouds
+    )]
+    Runs {
+        /// Number of combinations of levels.
+        combinations: f64,
+        /// Clouds per combination.
+        clouds: f64,
+    },
+}
+
+/// Refuses ranges whose combinations, on so many clouds each, are no runs or too many.
+pub fn refuse_too_many_runs(axes: &[Axis], clouds: usize) -> Result<(), AxisError> {
+    let combinations: f64 = axes.iter().map(|axis| axis.levels.len() as f64).product();
+    let clouds = clouds as f64;
+    match (1.0..=MOST_RUNS).contains(&(combinations * clouds)) {
+        true => Ok(()),
+        false => Err(AxisError::Runs { combinations, clouds }),
+    }
 }
 
 fn names() -> String {
@@ -55,7 +80,8 @@ impl Axis {
         Axis::parse(knob, text)
     }
 
-    /// `1.4`, `1.4,1.8`, `linear,quadratic`, or `1.4..2.6:0.2` with both ends included.
+    /// `1.4`, `1.4,1.8`, `linear,quadratic`, or `1.4..2.6:0.2` with both ends included; a
+    /// level that is repeated counts once.
     pub fn parse(knob: Knob, text: &str) -> Result<Axis, AxisError> {
         let refused = || AxisError::Range { knob: knob.name(), text: text.into() };
         let mut levels = Vec::new();
@@ -76,9 +102,25 @@ impl Axis {
                     Err(_) => Level::Word(part.to_string()),
                 }),
             }
+            if levels.len() > MOST_LEVELS {
+                let (text, count) = (text.into(), levels.len() as f64);
+                return Err(AxisError::TooMany { knob: knob.name(), text, count });
+            }
         }
-        Ok(Axis { knob, levels })
+        let mut different: Vec<Level> = Vec::with_capacity(levels.len());
+        for level in levels {
+            if !different.iter().any(|known| equal(known, &level)) {
+                different.push(level);
+            }
+        }
+        Ok(Axis { knob, levels: different })
     }
+}
+
+/// Whether two levels are the same, however their numbers are written.
+fn equal(a: &Level, b: &Level) -> bool {
+    let words = |level: &Level| matches!(level, Level::Word(_));
+    a == b || words(a) && words(b) && number_of(a).is_some() && number_of(a) == number_of(b)
 }
 
 /// From `first` to `last`, both included, rounded to nine digits, so that 1.4 + 0.2 is
@@ -91,7 +133,7 @@ fn range(
     text: &str,
 ) -> Result<Vec<Level>, AxisError> {
     let count = ((last - first) / step + 1e-9).floor() + 1.0;
-    if !(step != 0.0 && count.is_finite() && count >= 1.0) {
+    if !(step != 0.0 && step.is_finite() && count.is_finite() && count >= 1.0) {
         return Err(AxisError::Range { knob: knob.name(), text: text.into() });
     }
     if count > MOST_LEVELS as f64 {
@@ -150,15 +192,37 @@ mod tests {
     }
 
     #[test]
+    fn a_level_that_is_given_twice_counts_once() {
+        assert_eq!(numbers("1.4,1.8,1.40,1.4..1.8:0.2"), [1.4, 1.8, 1.6]);
+        let axis = Axis::parse(Knob::Spacing, "x1,x1.0,x2,x1,1").unwrap();
+        let [one, two] = ["x1", "x2"].map(|word| Level::Word(word.into()));
+        assert_eq!(axis.levels, [one, two, Level::Number(1.0)]);
+    }
+
+    #[test]
     fn typing_errors_are_reported() {
-        for text in ["", "1.4..2", "1..2:0", "2..1:0.5", "nan", "1,,2", "a..b:1"] {
+        for text in ["", "1.4..2", "1..2:0", "1..2:inf", "2..1:0.5", "nan", "1,,2", "a..b:1"] {
             let error = Axis::parse(Knob::Dilation, text).unwrap_err();
             assert!(matches!(error, AxisError::Range { .. }), "{text}: {error}");
         }
         let error = Axis::parse(Knob::Dilation, "0..1:1e-9").unwrap_err();
         assert!(matches!(error, AxisError::TooMany { .. }), "{error}");
+        let text = vec!["0..900:1"; 2000].join(",");
+        let error = Axis::parse(Knob::Dilation, &text).unwrap_err();
+        assert!(matches!(error, AxisError::TooMany { count: 1802.0, .. }), "{error}");
         let error = Axis::named("dilatoin", "1").unwrap_err();
         assert!(error.to_string().contains("dilation"), "{error}");
+    }
+
+    #[test]
+    fn too_many_runs_are_refused_before_they_are_listed() {
+        let long = |knob| Axis::parse(knob, "0..1:0.002,2..3:0.004").unwrap();
+        let axes = [Knob::Dilation, Knob::CellsPerSpacing, Knob::Load, Knob::Jitter].map(long);
+        for (axes, clouds) in [(&axes[..], 1), (&[], 4_000_000_000_000), (&[], 0)] {
+            let error = refuse_too_many_runs(axes, clouds).unwrap_err().to_string();
+            assert!(error.contains("runs; it must be 1 to 100000"), "{error}");
+        }
+        assert_eq!(refuse_too_many_runs(&axes[..1], 3), Ok(()));
     }
 
     #[test]

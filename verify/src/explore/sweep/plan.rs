@@ -1,6 +1,7 @@
 //! Studies defined in a TOML file.
 
 use super::axis::{Axis, AxisError};
+use crate::scene::read_text;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -54,7 +55,7 @@ impl Plan {
     /// Reads a plan; paths of cases are relative to its folder.
     pub fn read(path: &Path) -> Result<Plan, PlanError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
+        let text = read_text(path)
             .map_err(|source| PlanError::Unreadable { file: file.clone(), source })?;
         let mut plan: Plan = toml_edit::de::from_str(&text).map_err(|error| {
             let at = error.span().map_or(0, |span| span.start);

@@ -1,5 +1,6 @@
 //! Runs the tasks of a study and builds its report.
 
+use super::axis::refuse_too_many_runs;
 use super::convergence::add_convergence;
 use super::definition::{MeasuredCase, Sweep};
 use super::reference::find_reference;
@@ -13,6 +14,7 @@ impl Sweep {
     /// Runs only part `part` (from 1) of `parts`, without a report; returns the number of
     /// its runs.
     pub fn run_part(&self, runner: &TaskRunner, (part, parts): (usize, usize)) -> Result<usize> {
+        refuse_too_many_runs(&self.axes, self.clouds)?;
         let mut tasks = Vec::new();
         for source in &self.sources {
             tasks.extend(self.reference.tasks(source, &self.axes));
@@ -26,6 +28,7 @@ impl Sweep {
 
     /// Runs what is not stored yet and builds the study.
     pub fn run(&self, runner: &TaskRunner) -> Result<Study> {
+        refuse_too_many_runs(&self.axes, self.clouds)?;
         let mut cases = Vec::new();
         for source in &self.sources {
             let reference = match self.subject.job() {

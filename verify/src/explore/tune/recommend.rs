@@ -4,6 +4,7 @@ use super::design::{Candidate, candidates};
 use super::score::{expected, order};
 use super::trial::{Goal, Trial, TrialRunner, TuneRequest};
 use crate::explore::store::{Stopped, TaskRunner};
+use crate::explore::sweep::refuse_too_many_runs;
 use anyhow::{Context, Result, bail};
 use mtled_checks::measure::median;
 
@@ -66,6 +67,7 @@ pub fn recommend(requests: &[TuneRequest], tasks: TaskRunner) -> Result<Recommen
     let (mut cases, mut skipped, mut columns) = (Vec::new(), Vec::new(), Vec::new());
     let mut all: Vec<Candidate> = Vec::new();
     for request in requests {
+        refuse_too_many_runs(&request.axes, FACTORS.len())?;
         match column(request, tasks) {
             Ok((candidates, ratios)) => {
                 // The cases do not have the same candidates: masses are tried in dynamics only.

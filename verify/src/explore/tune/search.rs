@@ -7,6 +7,7 @@ use super::score::{expected, expected_factor, order};
 use super::trial::{Goal, Trial, TrialRunner, TuneRequest};
 use crate::accuracy::Group;
 use crate::explore::store::TaskRunner;
+use crate::explore::sweep::refuse_too_many_runs;
 use anyhow::{Result, bail};
 
 /// Spacings of the rounds over that of the case \[–\].
@@ -52,6 +53,7 @@ pub struct Tuned {
 
 /// Searches; runs that are stored are not repeated.
 pub fn tune(request: &TuneRequest, tasks: TaskRunner) -> Result<Tuned> {
+    refuse_too_many_runs(&request.axes, ROUNDS.len())?;
     let mut runner = TrialRunner::new(request, tasks)?;
     let mut trials = Vec::new();
     let solver = best_solver(&mut runner, &mut trials)?;

@@ -3,7 +3,7 @@
 use crate::files::error::Mistake;
 use mtled::algebra::tensor::Vector3;
 
-const EXPECTED: &str = "two or three numbers x, y, z";
+const EXPECTED: &str = "two or three finite numbers x, y, z, as many in every line";
 
 pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     let mut reader = csv::ReaderBuilder::new()
@@ -13,6 +13,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
         .trim(csv::Trim::All)
         .from_reader(bytes);
     let mut columns = None;
+    let mut width = None;
     let mut points = Vec::new();
     for row in reader.records() {
         let row = row
@@ -22,6 +23,11 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
             let text = row.iter().collect::<Vec<_>>().join(",");
             Mistake::BadLine { line, text: text.chars().take(60).collect(), expected: EXPECTED }
         };
+        // Empty cells, as of a comma at the end of a line, are no column.
+        let width = *width.get_or_insert(row.len());
+        if row.iter().skip(width).any(|cell| !cell.is_empty()) {
+            return Err(bad());
+        }
         let columns: &mut Vec<usize> = match &mut columns {
             Some(columns) => columns,
             empty => {
@@ -35,11 +41,15 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
                 columns
             }
         };
-        let cell = |column: &usize| row.get(*column).and_then(|cell| cell.parse::<f64>().ok());
+        let cell = |column: &usize| row.get(*column).and_then(finite);
         let values: Vec<f64> = columns.iter().map(cell).collect::<Option<_>>().ok_or_else(bad)?;
         points.push(Vector3::new(values[0], values[1], values.get(2).copied().unwrap_or(0.0)));
     }
     Ok(points)
+}
+
+fn finite(cell: &str) -> Option<f64> {
+    cell.parse::<f64>().ok().filter(|number| number.is_finite())
 }
 
 /// Columns of x, y and optionally z in a header.

@@ -1,6 +1,6 @@
 //! The POINTS of a legacy VTK file, ASCII or binary (big-endian).
 
-use super::rows::from_rows;
+use super::rows::from_stated;
 use crate::files::bytes::{ByteOrder, Scalar, start_of};
 use crate::files::error::Mistake;
 use mtled::algebra::tensor::Vector3;
@@ -19,20 +19,19 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
             ["BINARY"] if binary.is_none() => binary = Some(true),
             ["ASCII"] if binary.is_none() => binary = Some(false),
             ["POINTS", count, kind] => {
-                let (count, scalar) = match (count.parse::<usize>(), kind) {
-                    (Ok(count), "float") => (count, Scalar::F32),
-                    (Ok(count), "double") => (count, Scalar::F64),
+                let (points, scalar) = match (count.parse::<usize>(), kind) {
+                    (Ok(points), "float") => (points, Scalar::F32),
+                    (Ok(points), "double") => (points, Scalar::F64),
                     _ => {
                         let expected = "POINTS, a count, and float or double";
                         return Err(Mistake::BadLine { line: number, text: line, expected });
                     }
                 };
-                let count = 3 * count;
                 let values = match binary {
-                    Some(true) => big_endian(rest, count, scalar)?,
-                    _ => ascii(rest, count)?,
+                    Some(true) => big_endian(rest, points, scalar)?,
+                    _ => ascii(rest),
                 };
-                return Ok(from_rows(&values, 3));
+                return from_stated(&values, points);
             }
             _ => {}
         }
@@ -51,20 +50,20 @@ fn next_line(rest: &mut &[u8]) -> Option<String> {
     Some(line)
 }
 
-fn big_endian(bytes: &[u8], count: usize, scalar: Scalar) -> Result<Vec<f64>, Mistake> {
-    let expected = count.saturating_mul(scalar.size());
-    let data = bytes.get(..expected);
-    let data = data.ok_or(Mistake::Truncated { expected, found: bytes.len() })?;
+/// As many numbers as stated; only a keyword may follow.
+fn big_endian(bytes: &[u8], points: usize, scalar: Scalar) -> Result<Vec<f64>, Mistake> {
+    let expected = points.saturating_mul(3).saturating_mul(scalar.size());
+    let found = bytes.len();
+    let (data, rest) =
+        bytes.split_at_checked(expected).ok_or(Mistake::Truncated { expected, found })?;
+    if rest.trim_ascii_start().first().is_some_and(|next| !next.is_ascii_alphabetic()) {
+        return Err(Mistake::Excess { expected });
+    }
     Ok(data.chunks_exact(scalar.size()).map(|word| scalar.read(word, ByteOrder::Big)).collect())
 }
 
-fn ascii(bytes: &[u8], count: usize) -> Result<Vec<f64>, Mistake> {
+/// All numbers up to the next keyword.
+fn ascii(bytes: &[u8]) -> Vec<f64> {
     let text = String::from_utf8_lossy(bytes);
-    let words = text.split_whitespace().map_while(|word| word.parse::<f64>().ok());
-    let values: Vec<f64> = words.take(count).collect();
-    if values.len() < count {
-        let reason = format!("there are {} coordinates of {count}", values.len());
-        return Err(Mistake::Undecodable { encoding: "ASCII", reason });
-    }
-    Ok(values)
+    text.split_whitespace().map_while(|word| word.parse::<f64>().ok()).collect()
 }

@@ -31,7 +31,7 @@ fn checked(points: Vec<Vector3>) -> Result<Vec<Vector3>, Mistake> {
         return Err(Mistake::NoPoints);
     }
     match points.iter().position(|point| !point.iter().all(|c| c.is_finite())) {
-        Some(point) => Err(Mistake::NotFinite { point }),
+        Some(point) => Err(Mistake::NotFinite { point: point + 1 }),
         None => Ok(points),
     }
 }

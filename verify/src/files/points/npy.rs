@@ -31,7 +31,12 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     let count = usize::try_from(header.shape[0]).unwrap_or(usize::MAX);
     let expected = count.saturating_mul(columns).saturating_mul(scalar.size());
     let found = data.len();
-    let data = data.get(..expected).ok_or(Mistake::Truncated { expected, found })?;
+    if found != expected {
+        return Err(match found < expected {
+            true => Mistake::Truncated { expected, found },
+            false => Mistake::Excess { expected },
+        });
+    }
     let words = data.chunks_exact(scalar.size());
     let values: Vec<f64> = words.map(|word| scalar.read(word, order)).collect();
     if !header.by_columns {

@@ -1,4 +1,5 @@
 use super::{csv, legacy_vtk, npy, read, vtu};
+use crate::files::Mistake;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, write::ZlibEncoder};
@@ -151,7 +152,11 @@ fn files_without_usable_points_are_refused() {
     std::fs::write(&path, "x,y,z\n").unwrap();
     assert!(read(&path).unwrap_err().to_string().contains("no points"));
     std::fs::write(&path, "1,2,inf\n").unwrap();
-    assert!(read(&path).unwrap_err().to_string().contains("not finite"));
+    assert!(read(&path).unwrap_err().to_string().contains("finite numbers"));
+    let nan = vtu_text("", "format=\"ascii\"", "0 0.5 1 -2 nan 3.5", "");
+    let path = folder.path().join("nodes.vtu");
+    std::fs::write(&path, nan).unwrap();
+    assert!(read(&path).unwrap_err().to_string().contains("point 2 has a coordinate"));
     assert!(read(&folder.path().join("nodes.xyz")).is_err());
 }
 
@@ -167,4 +172,71 @@ fn binary_points_cut_short_anywhere_are_refused_or_read_but_never_panic() {
     (0..vtu.len()).for_each(|end| drop(vtu::parse(&vtu[..end])));
     let npy = npy_bytes("<f8", "(2, 3)", "False", &little());
     assert!((0..npy.len()).all(|end| npy::parse(&npy[..end]).is_err()));
+}
+
+#[test]
+fn rows_of_csv_with_another_number_of_columns_or_no_numbers_are_refused() {
+    for (text, line) in [
+        ("x,y,z\n1,2,3\n4,5,6,7\n", "line 3 is `4,5,6,7`"),
+        ("1,2\n4,5,6\n", "line 2 is `4,5,6`"),
+        ("1,2,3\n4,5,nan\n", "line 2 is `4,5,nan`"),
+        ("1,2,3\n4,1e999,6\n", "line 2 is `4,1e999,6`"),
+    ] {
+        let message = csv::parse(text.as_bytes()).unwrap_err().to_string();
+        assert!(message.contains(line), "{message}");
+    }
+    assert_eq!(csv::parse(b"x,y,z\n0,0.5,1,\n-2,0.25,3.5,\n").unwrap(), expected());
+}
+
+#[test]
+fn points_of_another_number_than_stated_are_refused() {
+    let message = |error: Mistake| error.to_string();
+    let vtk = |count: usize, numbers: &str| {
+        let header = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\n";
+        legacy_vtk::parse(format!("{header}POINTS {count} float\n{numbers}\n").as_bytes())
+    };
+    for (count, found) in [(1, "0 0 0 1 1 1"), (2, "0 0 0 1 1"), (usize::MAX / 2, "0 0 0")] {
+        assert!(message(vtk(count, found).unwrap_err()).contains("coordinates, and has"));
+    }
+    let data = COORDINATES.map(f64::to_be_bytes).concat();
+    let header = b"# vtk DataFile Version 3.0\ntitle\nBINARY\nDATASET POLYDATA\nPOINTS 2 float\n";
+    let error = legacy_vtk::parse(&[&header[..], &data].concat()).unwrap_err();
+    assert!(matches!(error, Mistake::Excess { expected: 24 }), "{error}");
+    let text = vtu_text("", "format=\"ascii\"", "0 0.5 1 -2 0.25 3.5 7 7 7", "");
+    assert!(message(vtu::parse(&text).unwrap_err()).contains("states 2 points"));
+    let npy = npy_bytes("<f8", "(1, 3)", "False", &little());
+    assert!(matches!(npy::parse(&npy).unwrap_err(), Mistake::Excess { expected: 24 }));
+}
+
+#[test]
+fn points_of_two_components_or_several_pieces_are_refused() {
+    let text = String::from_utf8(vtu_text("", "format=\"ascii\"", "0 1 2 3", "")).unwrap();
+    let flat = text.replace("NumberOfComponents=\"3\"", "NumberOfComponents=\"2\"");
+    let message = vtu::parse(flat.as_bytes()).unwrap_err().to_string();
+    assert!(message.contains("`NumberOfComponents` is `2`; expected 3"), "{message}");
+    let text = text.replace("0 1 2 3", "0 0.5 1 -2 0.25 3.5");
+    let two = text.replace("</Piece>", "</Piece><Piece NumberOfPoints=\"0\"></Piece>");
+    let message = vtu::parse(two.as_bytes()).unwrap_err().to_string();
+    assert!(message.contains("2 pieces; merge them"), "{message}");
+}
+
+#[test]
+fn texts_inside_the_array_of_a_vtu_file_are_no_coordinates() {
+    let range = "0 0.5 1 -2 0.25 3.5\
+                 <InformationKey name=\"L2_NORM_RANGE\"><Value index=\"0\">1</Value>\
+                 <Value index=\"1\">4</Value><Value index=\"2\">4</Value></InformationKey>";
+    let text = vtu_text("", "format=\"ascii\"", range, "");
+    assert_eq!(vtu::parse(&text).unwrap(), expected());
+}
+
+#[test]
+fn a_compressed_block_longer_than_stated_is_refused() {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(&[0; 1 << 20]).unwrap();
+    let block = encoder.finish().unwrap();
+    let header = [1, 48, 0, block.len() as u32].map(u32::to_le_bytes).concat();
+    let content = STANDARD.encode(header) + &STANDARD.encode(block);
+    let text = vtu_text("compressor=\"vtkZLibDataCompressor\"", "format=\"binary\"", &content, "");
+    let message = vtu::parse(&text).unwrap_err().to_string();
+    assert!(message.contains("has not the 48 bytes that are stated"), "{message}");
 }

@@ -1,8 +1,8 @@
 //! The points of a VTU file: ASCII, or binary inline or appended, plain or
 //! compressed by zlib.
 
-use super::rows::from_rows;
-use crate::files::bytes::{ByteOrder, Scalar, start_of};
+use super::rows::from_stated;
+use crate::files::bytes::{ByteOrder, LONGEST, Scalar, start_of};
 use crate::files::error::Mistake;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -25,8 +25,12 @@ struct Storage {
 
 pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     let appended = find(bytes, b"<AppendedData");
-    let (file, array, text) = points_array(&bytes[..appended.unwrap_or(bytes.len())])?;
+    let PointsArray { file, piece, array, text } =
+        points_array(&bytes[..appended.unwrap_or(bytes.len())])?;
     let storage = storage(&file)?;
+    if let Some(components) = array.get("NumberOfComponents").filter(|&n| n != "3") {
+        return Err(Mistake::bad_field("NumberOfComponents", components, "3 for points"));
+    }
     let scalar = match array.get("type").map(String::as_str) {
         Some("Float32") => Scalar::F32,
         Some("Float64") => Scalar::F64,
@@ -52,7 +56,14 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
             ));
         }
     };
-    Ok(from_rows(&values, 3))
+    match piece.get("NumberOfPoints") {
+        None => from_stated(&values, values.len() / 3),
+        Some(text) => {
+            let points = text.trim().parse();
+            let bad = |_| Mistake::bad_field("NumberOfPoints", text, "a whole number");
+            from_stated(&values, points.map_err(bad)?)
+        }
+    }
 }
 
 fn damaged(encoding: &'static str, reason: String) -> Mistake {
@@ -63,23 +74,43 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
     bytes.windows(what.len()).position(|window| window == what)
 }
 
-/// Attributes of VTKFile and of the DataArray in Points, and its text.
-fn points_array(xml: &[u8]) -> Result<(Attributes, Attributes, String), Mistake> {
+/// Attributes of VTKFile, of its only Piece and of the DataArray in Points, and its text.
+struct PointsArray {
+    file: Attributes,
+    piece: Attributes,
+    array: Attributes,
+    text: String,
+}
+
+fn points_array(xml: &[u8]) -> Result<PointsArray, Mistake> {
     let mut reader = Reader::from_reader(xml);
-    let (mut file, mut array) = (None, None);
+    let (mut file, mut pieces, mut array) = (None, Vec::new(), None);
     let (mut in_points, mut text, mut buffer) = (false, String::new(), Vec::new());
+    // Elements that are open inside the array: their texts are no coordinates.
+    let mut open: Option<usize> = None;
     loop {
         let event = reader.read_event_into(&mut buffer);
         match event.map_err(|error| damaged("XML", error.to_string()))? {
             Event::Start(tag) if tag.name().as_ref() == b"VTKFile" => file = Some(attributes(&tag)),
+            Event::Start(tag) | Event::Empty(tag) if tag.name().as_ref() == b"Piece" => {
+                pieces.push(attributes(&tag));
+            }
             Event::Start(tag) if tag.name().as_ref() == b"Points" => in_points = true,
-            Event::Start(tag) | Event::Empty(tag)
+            Event::Start(tag)
+                if in_points && tag.name().as_ref() == b"DataArray" && array.is_none() =>
+            {
+                array = Some(attributes(&tag));
+                open = Some(0);
+            }
+            Event::Empty(tag)
                 if in_points && tag.name().as_ref() == b"DataArray" && array.is_none() =>
             {
                 array = Some(attributes(&tag));
             }
-            Event::Text(part) if in_points => text += &String::from_utf8_lossy(&part),
-            Event::End(tag) if tag.name().as_ref() == b"Points" => break,
+            Event::Start(_) => open = open.map(|inside| inside + 1),
+            Event::Text(part) if open == Some(0) => text += &String::from_utf8_lossy(&part),
+            Event::End(tag) if tag.name().as_ref() == b"Points" => in_points = false,
+            Event::End(_) => open = open.and_then(|inside| inside.checked_sub(1)),
             Event::Eof => break,
             _ => {}
         }
@@ -88,7 +119,11 @@ fn points_array(xml: &[u8]) -> Result<(Attributes, Attributes, String), Mistake>
     let format = "a VTU file (XML with <VTKFile>)";
     let file = file.ok_or(Mistake::WrongFormat { format, start: start_of(xml) })?;
     let array = array.ok_or(Mistake::MissingField { field: "Points/DataArray" })?;
-    Ok((file, array, text))
+    if pieces.len() > 1 {
+        return Err(Mistake::SeveralPieces { pieces: pieces.len() });
+    }
+    let piece = pieces.pop().unwrap_or_default();
+    Ok(PointsArray { file, piece, array, text })
 }
 
 fn attributes(tag: &BytesStart) -> Attributes {
@@ -183,6 +218,10 @@ impl Storage {
     /// Blocks: their number, size, size of the last, compressed sizes, data.
     fn inflate(&self, bytes: &[u8]) -> Result<Vec<u8>, Mistake> {
         let blocks = self.length(bytes, 0)?;
+        if blocks == 0 {
+            return Ok(Vec::new());
+        }
+        let (size, partial) = (self.length(bytes, 1)?, self.length(bytes, 2)?);
         let mut start = blocks.saturating_add(3).saturating_mul(self.lengths.size());
         let mut out = Vec::new();
         for block in 0..blocks {
@@ -190,8 +229,15 @@ impl Storage {
             let found = bytes.len().saturating_sub(start);
             let data = bytes.get(start..start.saturating_add(expected));
             let data = data.ok_or(Mistake::Truncated { expected, found })?;
-            let inflated = ZlibDecoder::new(data).read_to_end(&mut out);
+            let size = if block + 1 < blocks || partial == 0 { size } else { partial };
+            let before = out.len();
+            // One byte more than stated, to notice that there is one.
+            let inflated = ZlibDecoder::new(data).take(size as u64 + 1).read_to_end(&mut out);
             inflated.map_err(|error| damaged("zlib", error.to_string()))?;
+            if out.len() - before != size || out.len() as u64 > LONGEST {
+                let reason = format!("block {block} has not the {size} bytes that are stated");
+                return Err(damaged("zlib", reason));
+            }
             start += expected;
         }
         Ok(out)

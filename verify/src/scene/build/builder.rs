@@ -1,5 +1,6 @@
 //! Mistakes and shared state of the conversion.
 
+use crate::files::visit_bytes;
 use crate::scene::deserialise::nearest;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::document::Document;
@@ -71,6 +72,12 @@ impl Builder<'_> {
         self.refuse_if(value == 0, key, "is 0; it must be at least 1");
     }
 
+    /// Requires no more than `most` of something.
+    pub fn at_most(&mut self, key: &str, what: &str, count: f64, most: f64) {
+        let message = format!("asks for {count} {what}; at most {most} are allowed");
+        self.refuse_if(count > most, key, message);
+    }
+
     /// A direction of length one.
     pub fn direction(&mut self, key: &str, value: &[f64; 3]) -> Vector3 {
         let vector = Vector3::from(*value);
@@ -123,9 +130,8 @@ impl Builder<'_> {
 
     /// Adds a file that the case refers to, to the hash of the case.
     pub fn hash_file(&mut self, key: &str, path: &Path) {
-        match std::fs::read(path) {
-            Ok(bytes) => self.hash.update(bytes),
-            Err(error) => self.mistake(key, format!("cannot read {}: {error}", path.display())),
+        if let Err(error) = visit_bytes(path, |bytes| self.hash.update(bytes)) {
+            self.mistake(key, error);
         }
     }
 }

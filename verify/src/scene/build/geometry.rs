@@ -96,7 +96,7 @@ impl Builder<'_> {
             let message = format!("is [{}, {}]; the second must be larger", z[0], z[1]);
             self.mistake(&format!("{key}.z"), message);
         }
-        Shape::Polygon { points: points.to_vec(), z: (z[0], z[1]) }
+        Shape::Polygon { points: points.to_vec().into(), z: (z[0], z[1]) }
     }
 
     fn union(&mut self, key: &str, parts: &[ShapeFormat]) -> Option<Shape> {
@@ -280,5 +280,15 @@ fn first_map(shape: &Shape) -> Option<Arc<LabelMap>> {
         Shape::Union(parts) => parts.iter().find_map(first_map),
         Shape::Difference(first, second) => first_map(first).or_else(|| first_map(second)),
         _ => None,
+    }
+}
+
+/// Whether the lengths of a shape were read from a file.
+pub fn comes_from_a_file(shape: &Shape) -> bool {
+    match shape {
+        Shape::Labels(_) | Shape::Surface(_) => true,
+        Shape::Union(parts) => parts.iter().any(comes_from_a_file),
+        Shape::Difference(first, second) => comes_from_a_file(first) || comes_from_a_file(second),
+        _ => false,
     }
 }

@@ -42,14 +42,13 @@ pub fn build(
     let problem = builder.problem(format);
     let probes = builder.probes(format);
     let outputs = builder.outputs(&format.output);
-    let problem_hash = problem_hash(document.text(), base_dir)
-        // A missing file has been reported at its key.
-        .inspect_err(|reason| {
-            if builder.mistakes.is_empty() {
-                builder.mistake("", reason);
-            }
-        })
-        .unwrap_or_default();
+    // The files that a case names are read again only where they can be used.
+    let problem_hash = match builder.mistakes.is_empty() {
+        true => problem_hash(document.text(), base_dir)
+            .inspect_err(|reason| builder.mistake("", reason))
+            .unwrap_or_default(),
+        false => String::new(),
+    };
     let Builder { mistakes, hash, .. } = builder;
     match problem {
         Some(problem) if mistakes.is_empty() => Ok(Case {

@@ -2,10 +2,13 @@
 
 use crate::files;
 use crate::scene::build::builder::Builder;
+use crate::scene::build::geometry::comes_from_a_file;
 use crate::scene::format::{
     BasisFormat, CloudFormat, DiscretisationFormat, GradientsFormat, GridFormat,
 };
-use mtled::geometry::Shape;
+use mtled::algebra::tensor::{Vector3, bounding_box};
+use mtled::discretisation::nodes::{refuse_far_nodes, refuse_fine_spacing};
+use mtled::geometry::GeometryError;
 use mtled::problem::{
     BackgroundGrid, Basis, Cloud, Dimension, Gradients, Recipe, Refinement, defaults,
 };
@@ -14,6 +17,9 @@ use mtled::problem::{
 const TOLERANCE: f64 = 1e-3;
 /// The same where the nodes come from a file \[m\].
 const TOLERANCE_OF_GIVEN_NODES: f64 = 1e-6;
+
+/// Nodes lie in a plane whose thickness is at most this fraction of its extent \[–\].
+const FLAT: f64 = 1e-6;
 
 /// Tolerance \[m\] of selectors that state none.
 pub fn tolerance(format: &DiscretisationFormat) -> f64 {
@@ -86,17 +92,27 @@ impl Builder<'_> {
         }
     }
 
-    /// Refuses a spacing that the body cannot hold.
+    /// Refuses a spacing that the body cannot hold, or that gives it too many nodes.
     fn spacing_fits(&mut self, spacing: f64) {
-        let Some((min, max)) = self.section.as_ref().and_then(Shape::bounding_box) else {
-            return;
-        };
+        let Some(section) = self.section.clone() else { return };
+        let Some((min, max)) = section.bounding_box() else { return };
         let edges = max - min;
         let smallest = edges.iter().copied().fold(f64::INFINITY, f64::min);
+        let unit = match comes_from_a_file(&section) {
+            true => "; is the `unit` of its file (\"m\" or \"mm\") right?",
+            false => "",
+        };
         if spacing > smallest {
             let message = format!(
-                "is {spacing} m; it must not be larger than the body, which is {smallest} m thick"
+                "is {spacing} m; it must not be larger than the body, which is {smallest} m thick{unit}"
             );
+            self.mistake("discretisation.spacing", message);
+        } else if spacing > 0.0
+            && let Err(error) = refuse_fine_spacing(&section, spacing, &self.dimension)
+        {
+            let largest = edges.iter().copied().filter(|edge| edge.is_finite()).fold(0.0, f64::max);
+            let message =
+                format!("is {spacing:?} m in a body that is {largest:?} m large: {error}{unit}");
             self.mistake("discretisation.spacing", message);
         }
     }
@@ -173,6 +189,7 @@ impl Builder<'_> {
         match files::points::read(&path) {
             Ok(mut nodes) => {
                 self.hash_file(key, &path);
+                self.nodes_fit(key, &nodes);
                 if let Dimension::PlaneStrain { z, .. } = self.dimension {
                     nodes.iter_mut().for_each(|node| node.z = z);
                 }
@@ -182,6 +199,33 @@ impl Builder<'_> {
                 self.mistake(key, error);
                 None
             }
+        }
+    }
+
+    /// Refuses nodes far outside the body, in one plane of a body in space, or in several
+    /// planes of a cross-section.
+    fn nodes_fit(&mut self, key: &str, nodes: &[Vector3]) {
+        let (lower, upper) = bounding_box(nodes);
+        let edges = upper - lower;
+        let flat = edges.z <= FLAT * edges.x.max(edges.y);
+        let far = (self.section.as_ref())
+            .and_then(|body| refuse_far_nodes(body, nodes, &self.dimension).err());
+        match far {
+            Some(error @ GeometryError::NodeFarOutside { node, .. }) => {
+                self.mistake(key, format!("point {}: {error}", node + 1));
+            }
+            _ if flat && !self.is_plane() => {
+                let message = "m; in 3d they need x, y and z";
+                self.mistake(key, format!("has all nodes at z = {} {message}", lower.z));
+            }
+            _ if !flat && self.is_plane() => {
+                let message = "m; in plane strain they lie in one plane";
+                self.mistake(
+                    key,
+                    format!("has nodes from z = {} m to {} {message}", lower.z, upper.z),
+                );
+            }
+            _ => {}
         }
     }
 
@@ -208,6 +252,8 @@ impl Builder<'_> {
         }
         Some(BackgroundGrid {
             cell: self.cell(key, format, recipe)?,
+            cells_per_spacing: follows(format, recipe)
+                .then(|| format.cells_per_spacing.unwrap_or(defaults::CELLS_PER_SPACING)),
             boundary_cell: format.boundary_cell,
             refinements,
             gauss_points,
@@ -239,11 +285,23 @@ impl Builder<'_> {
             }
             // The missing spacing has been noted already.
             (None, _, None) if recipe.cloud != CloudFormat::File => None,
+            (None, ratio, None) if follows(format, recipe) => {
+                self.positive(&format!("{key}.cells_per_spacing"), ratio.unwrap_or(1.0));
+                Some(f64::INFINITY)
+            }
             (None, _, None) => {
-                let message = "is missing; without a nodal spacing the cells need a length";
+                let message = "is missing; without a nodal spacing cells that are refined by hand \
+                               need a length";
                 self.mistake(&format!("{key}.cell"), message);
                 None
             }
         }
     }
+}
+
+/// Whether the grid follows a nodal spacing that varies: always, unless it is made by hand.
+fn follows(format: &GridFormat, recipe: &DiscretisationFormat) -> bool {
+    matches!(recipe.cloud, CloudFormat::Graded | CloudFormat::File)
+        && format.cell.is_none()
+        && format.refine.is_empty()
 }

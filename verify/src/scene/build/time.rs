@@ -8,6 +8,11 @@ use crate::scene::format::{
 use mtled::algebra::tensor::Vector3;
 use mtled::problem::{Dimension, Motion, Newton, Relaxation, StepControl};
 
+/// The most positions of a probe, samples of its history and frames of the fields.
+const MOST_POSITIONS: f64 = 1e6;
+const MOST_SAMPLES: f64 = 1e6;
+const MOST_FRAMES: f64 = 1e5;
+
 impl Builder<'_> {
     pub fn motion(&mut self, format: &TimeFormat) -> Motion {
         self.keys_of_method(format);
@@ -139,7 +144,7 @@ impl Builder<'_> {
     fn probe(&mut self, key: &str, row: &ProbeFormat, regions: &[&str]) -> Option<Probe> {
         let kind = match (&row.point, &row.lattice, &row.centre_of_mass) {
             (Some(point), None, None) => ProbeKind::Point(self.in_the_plane(point)),
-            (None, Some(lattice), None) => self.lattice(&format!("{key}.lattice"), lattice),
+            (None, Some(lattice), None) => self.lattice(&format!("{key}.lattice"), lattice)?,
             (None, None, Some(region)) => {
                 if !regions.contains(&region.as_str()) {
                     let key = format!("{key}.centre_of_mass");
@@ -170,7 +175,7 @@ impl Builder<'_> {
         }
     }
 
-    fn lattice(&mut self, key: &str, format: &LatticeFormat) -> ProbeKind {
+    fn lattice(&mut self, key: &str, format: &LatticeFormat) -> Option<ProbeKind> {
         for n in 0..3 {
             let (min, max) = (format.min[n], format.max[n]);
             if max < min {
@@ -179,11 +184,13 @@ impl Builder<'_> {
             }
             self.at_least_one(&format!("{key}.counts[{n}]"), format.counts[n]);
         }
+        let count: f64 = format.counts.iter().map(|&n| n as f64).product();
+        self.at_most(&format!("{key}.counts"), "positions", count, MOST_POSITIONS);
         if self.is_plane() && format.counts[2] != 1 {
             self.mistake(&format!("{key}.counts[2]"), "must be 1 in plane strain");
         }
         let (min, max) = (self.in_the_plane(&format.min), self.in_the_plane(&format.max));
-        ProbeKind::Lattice { min, max, counts: format.counts }
+        (count <= MOST_POSITIONS).then_some(ProbeKind::Lattice { min, max, counts: format.counts })
     }
 
     /// A point, in plane strain moved along z into the cross-section.
@@ -201,6 +208,8 @@ impl Builder<'_> {
             moment_about: Vector3::from(format.moment_about.unwrap_or_default()),
         };
         self.at_least_one("output.history", outputs.history);
+        self.at_most("output.history", "samples", outputs.history as f64, MOST_SAMPLES);
+        self.at_most("output.frames", "frames", outputs.frames as f64, MOST_FRAMES);
         outputs
     }
 }

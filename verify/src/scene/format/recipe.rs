@@ -172,10 +172,12 @@ choice! {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GridFormat {
-    /// Edge of the largest cells [m]; instead of cells_per_spacing.
+    /// Edge of the largest cells [m]; instead of cells_per_spacing. With it, or with
+    /// refine, the grid is made by hand and does not follow the nodes of a graded cloud
+    /// or of a file.
     pub cell: Option<f64>,
-    /// Cells along one nodal spacing [–]; instead of cell. 1.26 if both are
-    /// left out, two points per node in three dimensions.
+    /// Cells along one nodal spacing [–], along the local one where it varies; instead
+    /// of cell. 1.26 if both are left out, two points per node in three dimensions.
     pub cells_per_spacing: Option<f64>,
     /// Cells on the boundary are halved down to this edge [m].
     pub boundary_cell: Option<f64>,

@@ -87,8 +87,9 @@ pub struct LatticeFormat {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputFormat {
-    /// Number of VTU frames; 20 if left out. A static run that ends early has
-    /// fewer, and solver "newton" one for each part of the load.
+    /// Number of VTU frames after the first, at equal parts of the progress, the end among
+    /// them; 20 if left out. A static run that ends early has fewer, and solver "newton" at
+    /// most one for each part of the load; their frames are numbered, since they have no time.
     pub frames: Option<usize>,
     /// Number of samples of histories; 200 if left out.
     pub history: Option<usize>,

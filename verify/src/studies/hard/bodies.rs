@@ -35,7 +35,7 @@ pub fn square(width: f64) -> [[f64; 2]; 4] {
 
 /// A rotated square prism on the plane z = 0, `height` \[m\] high.
 pub fn prism(width: f64, height: f64) -> Shape {
-    Shape::Polygon { points: square(width).to_vec(), z: (0.0, height) }
+    Shape::Polygon { points: square(width).to_vec().into(), z: (0.0, height) }
 }
 
 /// Brain tissue of Horton 2007: Mooney–Rivlin, A = 1052 Pa, B = 0, ν = 0.49.

@@ -81,7 +81,7 @@ fn problem_in(frame: Frame, seed: u64) -> Result<Problem> {
     let corner = |p: [f64; 2]| [scale * p[0] + offset.x, scale * p[1] + offset.y];
     let z = move |fraction: f64| scale * fraction * SIZE + offset.z;
     let points = OUTLINE.map(turn).map(corner).to_vec();
-    let body = Shape::Polygon { points, z: (z(0.0), z(1.0)) };
+    let body = Shape::Polygon { points: points.into(), z: (z(0.0), z(1.0)) };
     let recipe = hard_recipe(scale * SIZE / 4.0, seed);
     let mut problem = free_body(Dimension::Three, body, rubber()?, recipe);
     let push = Vector3::new(0.1, 0.0, -0.2) * (scale * SIZE);

@@ -60,7 +60,8 @@ fn bridge(nodes: f64, spacing: f64) -> Result<Problem> {
         }
         corners
     });
-    let body = Shape::Polygon { points: outline.collect(), z: (0.0, 3.0 * spacing) };
+    let body =
+        Shape::Polygon { points: outline.collect::<Vec<_>>().into(), z: (0.0, 3.0 * spacing) };
     let mut problem = free_body(Dimension::Three, body, rubber()?, hard_recipe(spacing, 5));
     let along = Vector3::new(TURN.cos(), TURN.sin(), 0.0);
     let end = |sign: f64, by: Vector3| {

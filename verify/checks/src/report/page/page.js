@@ -28,7 +28,9 @@
     rows.forEach(function (entry) { body.appendChild(entry.row); });
   }
 
+  // A text that a spreadsheet would take for a formula gets an apostrophe, a number does not.
   function quoted(text) {
+    if (isNaN(number(text)) && /^\s*[=+\-@]/.test(text)) text = "'" + text;
     return /[",\r\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text;
   }
 

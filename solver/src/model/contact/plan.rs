@@ -1,4 +1,4 @@
-//! Nodes against rigid obstacles given as signed distance.
+//! Which nodes may touch the obstacles, and how they are kept out.
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::{Vector3, vector_at};
@@ -9,13 +9,15 @@ use crate::problem::{Friction, Obstacle, ObstacleSide, Problem};
 
 /// The obstacles of a problem and the nodes that may touch them: boundary nodes of
 /// which no component is prescribed for ever. A node with a single component that
-/// is never released may therefore enter an obstacle.
+/// is never released may therefore enter an obstacle ([`ContactPlan::penetrations`]).
 #[derive(Debug, Clone, Default)]
 pub struct ContactPlan {
     /// As stated in the problem; in a plane their sections.
     pub obstacles: Vec<Obstacle>,
     /// Boundary nodes without a permanently prescribed component.
     pub nodes: Vec<u32>,
+    /// The other boundary nodes.
+    pub excluded: Vec<u32>,
     /// Candidates are searched again when the body may have moved so far \[m\].
     pub skin: f64,
 }
@@ -45,9 +47,8 @@ impl ContactPlan {
         if problem.obstacles.is_empty() {
             return Ok(ContactPlan::default());
         }
-        let may_touch = |node: &u32| {
-            cloud.on_boundary[*node as usize] && !constraints.always_constrained(*node)
-        };
+        let boundary = (0..cloud.positions.len() as u32).filter(|n| cloud.on_boundary[*n as usize]);
+        let (excluded, nodes) = boundary.partition(|node| constraints.always_constrained(*node));
         let skin = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
         let section = |obstacle: &Obstacle| -> Result<Obstacle, Error> {
             let shape = obstacle.shape.section(&problem.dimension)?;
@@ -55,9 +56,39 @@ impl ContactPlan {
         };
         Ok(ContactPlan {
             obstacles: problem.obstacles.iter().map(section).collect::<Result<_, _>>()?,
-            nodes: (0..cloud.positions.len() as u32).filter(may_touch).collect(),
+            nodes,
+            excluded,
             skin,
         })
+    }
+}
+
+/// Gap over the mean nodal spacing below which a contact is closed \[–\].
+const CLOSED: f64 = 1e-6;
+
+impl ContactPlan {
+    /// Reference positions \[m\] of nodes in contact at displacements `u` \[component of
+    /// node\] \[m\], with the directions in which obstacles hold them.
+    pub fn closed(&self, positions: &[Vector3], u: &[f64]) -> Vec<(Vector3, Vector3)> {
+        let components = u.len() / positions.len();
+        let mut closed = Vec::new();
+        for obstacle in &self.obstacles {
+            for &node in &self.nodes {
+                let X = positions[node as usize];
+                let x = X + vector_at(u, node as usize, components);
+                if gap(obstacle, &x) < CLOSED * self.skin {
+                    match obstacle.friction {
+                        Friction::Frictionless => {
+                            closed.push((X, normal(obstacle, &x, components)));
+                        }
+                        Friction::NoSlip => {
+                            closed.extend((0..components).map(|k| (X, Vector3::ith(k, 1.0))));
+                        }
+                    }
+                }
+            }
+        }
+        closed
     }
 }
 
@@ -81,6 +112,30 @@ fn normal(obstacle: &Obstacle, x: &Vector3, components: usize) -> Vector3 {
         normal.z = 0.0;
     }
     normal.try_normalize(1e-12).unwrap_or_else(Vector3::zeros)
+}
+
+/// Gap left after a node is moved to the surface, over the depth of its entry \[–\].
+const LEFT_OPEN: f64 = 1e-6;
+/// Secants towards the surface; a gap that is a distance needs none.
+const MOST_SECANTS: usize = 6;
+
+/// Moves `x` \[m\], where the gap is `opening` \[m\], along the normal to the surface. A gap
+/// that is not a distance, as between the samples of a label map, would leave it beside
+/// the surface by a length in proportion to its last move, and each change of the step or
+/// of the damping would strike all nodes in contact.
+fn onto_surface(obstacle: &Obstacle, x: &Vector3, opening: f64, components: usize) -> Vector3 {
+    let n = normal(obstacle, x, components);
+    let (mut last, mut moved) = ((0.0, opening), -opening);
+    for _ in 0..MOST_SECANTS {
+        let left = gap(obstacle, &(x + n * moved));
+        let slope = (left - last.1) / (moved - last.0);
+        if left.abs() <= LEFT_OPEN * opening.abs() || slope.is_nan() || slope < 0.1 {
+            break;
+        }
+        last = (moved, left);
+        moved -= left / slope;
+    }
+    x + n * moved
 }
 
 impl ContactState {
@@ -134,7 +189,7 @@ impl ContactState {
             stuck.map(|index| self.anchors.swap_remove(index));
             return None;
         }
-        let nearest = x - normal(obstacle, x, components) * opening;
+        let nearest = onto_surface(obstacle, x, opening, components);
         match (obstacle.friction, stuck) {
             (Friction::Frictionless, _) => Some(nearest),
             (Friction::NoSlip, Some(index)) => Some(self.anchors[index].2),

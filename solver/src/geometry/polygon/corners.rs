@@ -1,24 +1,6 @@
-//! Polygons in the plane.
+//! Areas, orders and parts of polygons given by their corners.
 
 use std::collections::BTreeMap;
-
-/// Signed distance to a simple polygon \[m\], negative inside, whichever way it runs.
-pub fn polygon_distance(points: &[[f64; 2]], x: f64, y: f64) -> f64 {
-    let mut squared = f64::INFINITY;
-    let mut inside = false;
-    let mut a = points[points.len() - 1];
-    for &b in points {
-        let (ex, ey) = (b[0] - a[0], b[1] - a[1]);
-        let (wx, wy) = (x - a[0], y - a[1]);
-        let t = ((wx * ex + wy * ey) / (ex * ex + ey * ey)).clamp(0.0, 1.0);
-        squared = squared.min((wx - t * ex).powi(2) + (wy - t * ey).powi(2));
-        if (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / ey * ex {
-            inside = !inside;
-        }
-        a = b;
-    }
-    if inside { -squared.sqrt() } else { squared.sqrt() }
-}
 
 /// Signed area of a polygon \[m²\], positive if it runs anticlockwise.
 pub fn polygon_area(points: &[[f64; 2]]) -> f64 {

@@ -3,16 +3,17 @@
 use crate::algebra::packed::largest;
 use crate::error::Error;
 use crate::model::Model;
+use crate::model::rigid_motions::free_rigid_motions;
 use crate::motion::balance::Imbalance;
 use crate::motion::observe::{Continue, Observer, notify};
+use crate::motion::relaxation::damping::Damping;
+use crate::motion::relaxation::stability::{Stability, fastest_node};
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, Scheme, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};
 use crate::motion::summary::{Convergence, Summary};
 use crate::problem::Relaxation;
 
-/// Steps between two estimates of the lowest frequency.
-const ESTIMATE_EVERY: usize = 10;
 /// Steps between two assessments of the error.
 const ASSESS_EVERY: usize = 20;
 /// Slowest decay of the error per step that two assessments can resolve \[–\].
@@ -30,13 +31,16 @@ pub(crate) fn relax(
     let mut buffers = Buffers::new(model, observer.tracks_work());
     let mut control = StepController::new(model, settings.step, state, &mut buffers)?;
     let mut damping = Damping::new(model, settings);
+    let mut stability = Stability::default();
+    let mut decay = Decay::default();
     let mut convergence = Convergence { estimated_error: f64::INFINITY, residual: f64::INFINITY };
     notify(model, state, &mut buffers, 1.0, 0.0, observer);
     // At a turning point a single increment says nothing: take the largest
     // since the last assessment.
     let (mut increment, mut increment_before) = (0.0f64, f64::INFINITY);
     let mut residuals = 0;
-    for count in 1..=settings.max_steps {
+    let unobstructed = model.contact.obstacles.is_empty();
+    for count in 1.. {
         if control.reevaluate(model, state, &mut buffers) {
             damping.reset();
         }
@@ -46,12 +50,17 @@ pub(crate) fn relax(
         let report =
             step(model, &scheme, load_time(count - 1), load_time(count), state, &mut buffers);
         control.record(model, state, &mut buffers, &report);
-        check_divergence(model, state, &report)?;
-        increment = increment.max(report.largest_increment);
-        damping.update(model, state, &buffers, state.time_step);
         let loaded = count > settings.load_steps;
+        check_divergence(model, state, &report)
+            .map_err(|error| stability.explain(slid_away(model, state, error)))?;
+        increment = increment.max(report.largest_increment);
+        let curvature = damping.update(model, state, &buffers);
+        let still = || model.constraints.hold_still(load_time(count - 1), load_time(count));
+        if let Some(curvature) = curvature.filter(|_| unobstructed && still()) {
+            stability.observe(model, state, &damping.change, curvature);
+        }
         // The last assessment says how far it came, should it not converge.
-        let last = count == settings.max_steps;
+        let last = count >= settings.max_steps;
         if loaded && count.is_multiple_of(ASSESS_EVERY) || last {
             let rate = rate(damping.c, increment / increment_before);
             // One window may lie at a turning point, two do not.
@@ -71,76 +80,82 @@ pub(crate) fn relax(
         let stop =
             notify(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
         if converged || stop {
-            let summary = control.summary(state, residuals, stop);
+            let stability_products = match converged {
+                true => stability.search(model, state, &mut buffers.workspace),
+                false => 0,
+            };
+            let summary = control.summary(state, residuals, stop && !converged);
             // Stopped early, it may never have been assessed.
             let relaxation = convergence.residual.is_finite().then_some(convergence);
-            return Ok(Summary { relaxation, ..summary });
+            let instability = stability.found;
+            return Ok(Summary { relaxation, instability, stability_products, ..summary });
+        }
+        if last || decay.has_stalled(count, report.largest_increment) && loaded {
+            // For the records: the state that is kept.
+            notify(model, state, &mut buffers, jacobian, 1.0, observer);
+            let error = not_converged(model, settings, state, &convergence, count);
+            return Err(stability.explain(error));
         }
     }
-    Err(Error::NotConverged {
-        steps: settings.max_steps,
+    unreachable!("the loop returns")
+}
+
+/// A body that slides away along obstacles, with what does not hold it.
+fn slid_away(model: &Model, state: &State, error: Error) -> Error {
+    let is_far = matches!(error, Error::Diverged { .. }) && !model.contact.obstacles.is_empty();
+    match free_rigid_motions(model, state.time, &vec![0.0; model.size()]) {
+        free if is_far && free > 0 => Error::NotHeld { free, then: Box::new(error) },
+        _ => error,
+    }
+}
+
+/// What is left to be said of a run that ends too far from equilibrium.
+fn not_converged(
+    model: &Model,
+    settings: &Relaxation,
+    state: &State,
+    convergence: &Convergence,
+    steps: usize,
+) -> Error {
+    let (node, moving) = fastest_node(model, &state.velocity);
+    Error::NotConverged {
+        steps,
+        stalled: steps < settings.max_steps,
         error: convergence.estimated_error,
         tolerance: settings.tolerance * largest(&state.displacement),
         residual: convergence.residual,
-    })
-}
-
-/// Adapts the damping factor c to the lowest frequency in motion.
-struct Damping {
-    c: f64,
-    since: usize,
-    displacement_change: Vec<f64>,
-    force_before: Vec<f64>,
-}
-
-impl Damping {
-    fn new(model: &Model, settings: &Relaxation) -> Damping {
-        // Initially as if the load took one period of the slowest mode.
-        let kappa = (settings.load_steps as f64 / std::f64::consts::PI).max(2.0);
-        let zeros = vec![0.0; model.size()];
-        Damping {
-            c: factor(kappa),
-            since: 0,
-            displacement_change: zeros.clone(),
-            force_before: zeros,
-        }
-    }
-
-    /// Drops the last differences, which belong to another step.
-    fn reset(&mut self) {
-        self.since = 0;
-    }
-
-    /// ω² = |Σ Δu·Δf|/Σ m Δu², κ = 2/(ωΔt), c = (κ − 1)/(κ + 1)
-    /// (Joldes, Wittek, Miller 2011, eqs. 17–22).
-    fn update(&mut self, model: &Model, state: &State, buffers: &Buffers, time_step: f64) {
-        self.since += 1;
-        if self.since == ESTIMATE_EVERY - 1 {
-            self.force_before.copy_from_slice(&buffers.f_int);
-            self.displacement_change.copy_from_slice(&state.velocity);
-        }
-        if self.since < ESTIMATE_EVERY {
-            return;
-        }
-        self.since = 0;
-        let (mut stiffness, mut inertia) = (0.0, 0.0);
-        let d = model.components;
-        for (node, mass) in model.inertia.iter().enumerate() {
-            for i in d * node..d * (node + 1) {
-                let change = time_step * self.displacement_change[i];
-                stiffness += change * (buffers.f_int[i] - self.force_before[i]);
-                inertia += mass * change * change;
-            }
-        }
-        let omega = (stiffness.abs() / inertia).sqrt();
-        if omega.is_finite() && omega > 0.0 {
-            self.c = factor((2.0 / (omega * time_step)).max(1.5));
-        }
+        node,
+        position: model.positions[node],
+        moving: moving * state.time_step,
+        free: free_rigid_motions(model, state.time, &state.displacement),
     }
 }
 
-fn factor(kappa: f64) -> f64 {
-    (kappa - 1.0) / (kappa + 1.0)
+/// Whether the movement still decays. The largest increments of the second quarter and of
+/// the second half of all steps are compared whenever the number of steps has doubled:
+/// relaxation that converges makes them smaller by orders of magnitude, and one that has
+/// not even halved them will not end within ten times as many.
+#[derive(Default)]
+struct Decay {
+    /// Of the last window of steps, and so far of this one \[m\].
+    increments: (f64, f64),
+}
+
+/// Steps after which the decay is judged for the first time.
+const JUDGED_FROM: usize = 40_000;
+
+impl Decay {
+    fn has_stalled(&mut self, count: usize, increment: f64) -> bool {
+        let (before, now) = &mut self.increments;
+        *now = now.max(increment);
+        let window = JUDGED_FROM / 4;
+        if !(count.is_multiple_of(window) && (count / window).is_power_of_two()) {
+            return false;
+        }
+        let stalled = count >= JUDGED_FROM && *now > 0.5 * *before;
+        (*before, *now) = (*now, 0.0);
+        stalled
+    }
 }
 
 /// Factor by which the error decays in a step (method book, eq. 20.3): c' = c + 0.2(1 − c)
@@ -184,5 +199,6 @@ fn progress(count: usize, settings: &Relaxation, convergence: &Convergence, size
         true => (relative.min(1.0).ln() / settings.tolerance.ln()).clamp(0.0, 1.0),
         false => 0.0,
     };
-    0.5 * loaded + 0.5 * fallen
+    // Not at its end before the residual confirms the error.
+    (0.5 * loaded + 0.5 * fallen).min(0.999)
 }

@@ -1,0 +1,7 @@
+//! Nodes against rigid obstacles given as signed distance (method book, section 16).
+
+mod check;
+mod plan;
+
+pub(crate) use check::check_obstacles;
+pub use plan::{ContactPlan, ContactState, gap};

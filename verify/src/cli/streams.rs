@@ -1,0 +1,39 @@
+//! The two output streams: data on standard output, messages on standard error. Nothing
+//! else in the program writes to them.
+
+use mtled_checks::escape::{printable_json, printable_lines};
+use std::io::{self, ErrorKind, Write};
+
+/// Writes a line to standard error. Where nobody can read it, the program goes on: what it
+/// computes is worth more than its messages.
+pub fn to_standard_error(line: &str) {
+    let _ = writeln!(io::stderr().lock(), "{line}");
+}
+
+/// Writes to standard output as it is. It is no error if the reader ends early, as `head`
+/// does.
+pub fn print_data(data: &str) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    or_reader_has_ended(out.write_all(data.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Writes text for people, which may contain texts from files.
+pub fn print_text(text: &str) -> io::Result<()> {
+    print_data(&printable_lines(text))
+}
+
+/// Writes a JSON document.
+pub fn print_json(document: &str) -> io::Result<()> {
+    print_data(&printable_json(document))
+}
+
+/// The result of writing to standard output, where a reader may end early.
+pub fn or_reader_has_ended(result: io::Result<()>) -> io::Result<()> {
+    match result {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        Err(error) => {
+            Err(io::Error::new(error.kind(), format!("cannot write to standard output: {error}")))
+        }
+        Ok(()) => Ok(()),
+    }
+}
