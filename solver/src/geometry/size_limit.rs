@@ -16,7 +16,7 @@ pub(crate) const BOUNDARY_NODES: SizeLimit =
     SizeLimit { what: "boundary nodes", most: 2e7, remedy: "use a larger spacing" };
 pub(crate) const PANELS: SizeLimit = SizeLimit {
     what: "boundary panels",
-    most: 1e8,
+    most: 1e7,
     remedy: "use a larger spacing, or move nodes that are much closer than others apart",
 };
 pub(crate) const DISTANCE_SAMPLES: SizeLimit =

@@ -60,6 +60,20 @@ fn patch(point: &Vector3, normal: &Vector3, (lower, upper): Bounds) -> (Vector3,
     (middle - (middle - point).dot(normal) * normal, 0.5 * (upper - lower).norm())
 }
 
+/// A member of a composite may be much larger than the body.
+fn refuse_large_member(
+    shape: &Shape,
+    size: f64,
+    dimension: &Dimension,
+) -> Result<(), GeometryError> {
+    let Ok((lower, upper)) = shape.finite_bounds(dimension) else { return Ok(()) };
+    let extent = upper - lower;
+    // Bands are as fine everywhere as the longest radius wants them.
+    let round = matches!(shape, Shape::Ellipsoid { .. });
+    let extent = if round { Vector3::repeat(extent.max()) } else { extent };
+    PANELS.check(FILLED * pieces_of_box(&extent, size, dimension))
+}
+
 /// Panels whose area is a length, of a section.
 fn curve_panels(
     shape: &Shape,
@@ -67,6 +81,8 @@ fn curve_panels(
     z: f64,
     around: Bounds,
 ) -> Result<Vec<Panel>, GeometryError> {
+    let flat = Dimension::PlaneStrain { thickness: 1.0, z };
+    refuse_large_member(shape, size, &flat)?;
     match shape {
         Shape::Polygon { points, .. } => Ok(line_panels(&anticlockwise(points), size, z)),
         Shape::Ellipsoid { centre, radii } => Ok(ellipse_panels(centre, radii, size, z)),
@@ -94,6 +110,7 @@ fn curve_panels(
 }
 
 fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>, GeometryError> {
+    refuse_large_member(shape, size, &Dimension::Three)?;
     match shape {
         Shape::Box { min, max } => Ok(box_panels(min, max, size)),
         Shape::Cylinder { base, axis, radius, height } => {

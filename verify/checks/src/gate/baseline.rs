@@ -108,6 +108,12 @@ pub fn read_baseline(path: &Path) -> Result<Baseline, GateError> {
 }
 
 impl Baseline {
+    /// Refuses to judge a run of another suite.
+    pub fn check_suite(&self, run: &str) -> Result<(), GateError> {
+        let (baseline, run) = (self.suite.clone(), run.to_string());
+        if baseline == run { Ok(()) } else { Err(GateError::Suite { baseline, run }) }
+    }
+
     /// The accepted figure of a check.
     pub fn check(&self, id: &str) -> Option<&Stored> {
         let found = self.checks.binary_search_by(|stored| stored.id.as_str().cmp(id)).ok()?;

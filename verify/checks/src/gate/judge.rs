@@ -9,10 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Judges every check of the studies that were run; `whole` if those were all
 /// studies of the suite, so that absent checks count as missing.
 pub fn compare(report: &Report, baseline: &Baseline, whole: bool) -> Result<Comparison, GateError> {
-    if baseline.suite != report.suite {
-        let (baseline, run) = (baseline.suite.clone(), report.suite.clone());
-        return Err(GateError::Suite { baseline, run });
-    }
+    baseline.check_suite(&report.suite)?;
     let with = match baseline.history.last() {
         Some(last) => format!("the baseline of {} (commit {})", last.date, last.commit),
         None => "a baseline without a history".to_string(),

@@ -1,5 +1,6 @@
 //! results.json: the whole report, one check and one study per line.
 
+use crate::escape::printable_json;
 use crate::study::{Comparison, Figure, Report, Study, Table};
 use serde::Serialize;
 
@@ -39,7 +40,7 @@ pub fn to_json(report: &Report) -> String {
     }
     let body: Vec<String> =
         fields.iter().map(|(name, text)| format!("  \"{name}\": {text}")).collect();
-    format!("{{\n{}\n}}\n", body.join(",\n"))
+    printable_json(&format!("{{\n{}\n}}\n", body.join(",\n")))
 }
 
 /// One change per line.

@@ -48,12 +48,13 @@ pub enum Gate {
 }
 
 impl GateArgs {
-    pub fn read(&self) -> anyhow::Result<Gate> {
+    /// What is to be done with a run of a suite.
+    pub fn read(&self, suite: &str) -> anyhow::Result<Gate> {
         if !self.update_baseline {
-            return match &self.baseline {
-                Some(path) => Ok(Gate::Compare(read_baseline(path)?)),
-                None => Ok(Gate::None),
-            };
+            let Some(path) = &self.baseline else { return Ok(Gate::None) };
+            let baseline = read_baseline(path)?;
+            baseline.check_suite(suite).with_context(|| path.display().to_string())?;
+            return Ok(Gate::Compare(baseline));
         }
         let path = self.baseline.clone().unwrap_or_else(|| BASELINE.into());
         let old = match read_baseline(&path) {

@@ -37,6 +37,12 @@ pub struct VerifyArgs {
     gate: GateArgs,
 }
 
+impl VerifyArgs {
+    fn suite_name(&self) -> String {
+        format!("{:?}", self.suite).to_lowercase()
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum SuiteName {
     Quick,
@@ -45,7 +51,7 @@ enum SuiteName {
 
 pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
     let chosen = chosen(arguments.only.as_deref())?;
-    let gate = arguments.gate.read()?;
+    let gate = arguments.gate.read(&arguments.suite_name())?;
     ensure_writable(&arguments.out)?;
     let whole = chosen.len() == STUDIES.len();
     let mut report = run(&chosen, arguments, common)?;
@@ -88,7 +94,7 @@ fn run(chosen: &[&Definition], arguments: &VerifyArgs, common: &Common) -> anyho
         SuiteName::Quick => Suite::Quick,
         SuiteName::Full => Suite::Full,
     };
-    let name = format!("{:?}", arguments.suite).to_lowercase();
+    let name = arguments.suite_name();
     let bench = Workbench::new(suite, arguments.seed, &arguments.out)?;
     let ids: Vec<&str> = chosen.iter().map(|study| study.id).collect();
     let earlier = read_report(&arguments.out).ok().filter(|earlier| earlier.suite == name);

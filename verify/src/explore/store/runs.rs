@@ -52,6 +52,9 @@ impl TaskRunner<'_> {
         let (mut different, mut places) = (Vec::new(), HashMap::new());
         let mut order = Vec::with_capacity(tasks.len());
         for task in tasks {
+            if interrupted() {
+                return Err(Stopped { done: 0, of: tasks.len() }.into());
+            }
             let key = task.key().with_context(|| task.label())?;
             order.push(*places.entry(key.clone()).or_insert_with(|| {
                 different.push((key, task));
