@@ -1,6 +1,7 @@
 //! `mtled report`.
 
 use super::common::Common;
+use anyhow::Context;
 use clap::Args;
 use mtled_checks::gate::{compare as compare_with, compare_runs, read_baseline};
 use mtled_checks::report::{human, json, read_report, two_runs, write_atomically, write_report};
@@ -34,7 +35,8 @@ fn rebuild(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
     let mut report = read_report(&arguments.run)?;
     if let Some(path) = &arguments.baseline {
         // The file does not say which studies were left out on purpose: none counts as missing.
-        report.comparison = Some(compare_with(&report, &read_baseline(path)?, false)?);
+        let comparison = compare_with(&report, &read_baseline(path)?, false);
+        report.comparison = Some(comparison.with_context(|| path.display().to_string())?);
     }
     let same = || match arguments.run.is_dir() {
         true => arguments.run.clone(),
