@@ -12,7 +12,7 @@ use mtled::algebra::tensor::Matrix3;
 use mtled::error::Error;
 use mtled::motion::internal_force::projected_mean_stress;
 use mtled::problem::{Motion, Problem};
-use mtled_checks::escape::{csv_text, file_name};
+use mtled_checks::escape::{csv_text, file_name, printable_json};
 use mtled_checks::report::write_atomically;
 use serde_json::Value;
 use std::io::ErrorKind;
@@ -42,7 +42,7 @@ pub fn write_failed(
 }
 
 fn write_result(result: &Value, dir: &Path) -> Result<String> {
-    let text = serde_json::to_string_pretty(result)? + "\n";
+    let text = printable_json(&serde_json::to_string_pretty(result)?) + "\n";
     write_atomically(&dir.join("result.json"), text.as_bytes())?;
     Ok(text)
 }
