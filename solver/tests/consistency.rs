@@ -20,6 +20,11 @@ fn consistent(mut problem: Problem, tolerance: f64) -> Discretisation {
     Discretisation::new(&problem).unwrap()
 }
 
+fn second_order(mut problem: Problem, tolerance: f64) -> Discretisation {
+    problem.recipe.gradients = Gradients::SecondOrder { tolerance };
+    Discretisation::new(&problem).unwrap()
+}
+
 /// Largest Σ_q w_q Grad φ_a over interior nodes, whose φ is 0 on the boundary.
 fn largest_interior_sum(discretisation: &Discretisation) -> f64 {
     let nodes = &discretisation.cloud;
@@ -39,16 +44,22 @@ fn largest_interior_sum(discretisation: &Discretisation) -> f64 {
 fn inside_the_body_the_sum_of_weighted_gradients_vanishes() {
     let problem = jittered(cube(8), 0.3, 1);
     let plain = largest_interior_sum(&Discretisation::new(&problem).unwrap());
-    let corrected = largest_interior_sum(&consistent(problem, 1e-12));
     assert!(plain > 1e-7, "{plain}");
-    assert!(corrected < 1e-10 * plain, "{corrected} after {plain}");
+    for discretise in [consistent, second_order] {
+        let corrected = largest_interior_sum(&discretise(problem.clone(), 1e-12));
+        assert!(corrected < 1e-10 * plain, "{corrected} after {plain}");
+    }
 }
 
 #[test]
 fn changed_gradients_still_differentiate_linear_fields() {
-    for problem in [jittered(cube(6), 0.4, 2), jittered(square(9), 0.4, 2)] {
+    let problems = [jittered(cube(6), 0.4, 2), jittered(square(9), 0.4, 2)];
+    let both = [consistent, second_order];
+    for (problem, discretise) in
+        problems.iter().flat_map(|p| both.map(|discretise| (p, discretise)))
+    {
         let d = problem.dimension.components();
-        let discretisation = consistent(problem, 1e-3);
+        let discretisation = discretise(problem.clone(), 1e-3);
         let rows = &discretisation.supports;
         for q in 0..rows.len() {
             let mut sum = Vector3::zeros();
@@ -79,9 +90,46 @@ fn iterations_do_not_grow_with_the_number_of_nodes_nor_on_slender_bodies() {
         ("jittered", jittered(cube(12), 0.4, 3)),
         ("beam", beam),
     ] {
-        let correction = consistent(problem, 1e-3).correction.unwrap();
-        assert!(correction.residual <= 1e-3, "{name}: {correction:?}");
-        assert!(correction.iterations <= 20, "{name}: {correction:?}");
+        for discretise in [consistent, second_order] {
+            let correction = discretise(problem.clone(), 1e-3).correction.unwrap();
+            assert!(correction.residual <= 1e-3, "{name}: {correction:?}");
+            assert!(correction.iterations <= 20, "{name}: {correction:?}");
+            assert!(
+                correction.linear_stress_iterations.unwrap_or(0) <= 10,
+                "{name}: {correction:?}"
+            );
+        }
+    }
+}
+
+/// |Σ_q w_q ((x_q − X_a) ⊗ Grad φ_a + φ_a I)| over nodes so deep inside that φ_a is 0 on the
+/// boundary, in the mean \[m³\].
+fn mean_interior_moment(discretisation: &Discretisation) -> f64 {
+    let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
+    let nodes = &discretisation.cloud.positions;
+    let d = discretisation.dimension.components();
+    let mut moments = vec![Matrix3::zeros(); nodes.len()];
+    for (q, (X, weight)) in quadrature.positions.iter().zip(&quadrature.weights).enumerate() {
+        for entry in rows.row(q) {
+            let node = rows.nodes[entry] as usize;
+            let mut value = (X - nodes[node]) * rows.grad_phi[entry].transpose();
+            (0..d).for_each(|k| value[(k, k)] += rows.phi[entry]);
+            moments[node] += *weight * value;
+        }
+    }
+    let inside = |X: &Vector3| X.iter().take(d).all(|c| (c - 0.5 * EDGE).abs() < 0.2 * EDGE);
+    let deep: Vec<f64> = (moments.iter().zip(nodes))
+        .filter_map(|(moment, X)| inside(X).then(|| moment.norm()))
+        .collect();
+    deep.iter().sum::<f64>() / deep.len() as f64
+}
+
+#[test]
+fn of_second_order_gradients_nearly_integrate_linear_stresses() {
+    for problem in [jittered(cube(9), 0.3, 1), jittered(square(13), 0.3, 1)] {
+        let first = mean_interior_moment(&consistent(problem.clone(), 1e-3));
+        let second = mean_interior_moment(&second_order(problem, 1e-3));
+        assert!(second < 0.35 * first, "{second} after {first}");
     }
 }
 
@@ -136,11 +184,20 @@ fn a_material_that_changes_its_volume_is_not_projected() {
 /// A nearly incompressible cube in equilibrium with a field prescribed on its whole
 /// boundary, and its nodal parameters \[m\].
 fn prescribed_on_boundary(storage: GradientStorage, field: Field) -> (Model, Vec<f64>) {
+    let gradients = Gradients::Consistent { tolerance: 1e-13 };
+    prescribed_with(gradients, storage, field)
+}
+
+fn prescribed_with(
+    gradients: Gradients,
+    storage: GradientStorage,
+    field: Field,
+) -> (Model, Vec<f64>) {
     let mut problem = collocated(jittered(cube(6), 0.3, 4));
     problem = with_law(problem, neo_hookean(3000.0, 0.49));
     problem.recipe.volumetric_projection = VolumetricProjection::Patches;
     problem.recipe.gradient_storage = storage;
-    problem.recipe.gradients = Gradients::Consistent { tolerance: 1e-13 };
+    problem.recipe.gradients = gradients;
     let mut boundary = condition("boundary", Selector::All, [None; 3]);
     boundary.prescribed = Prescribed::Field(field);
     problem.conditions.push(boundary);
@@ -149,6 +206,16 @@ fn prescribed_on_boundary(storage: GradientStorage, field: Field) -> (Model, Vec
     let mut state = State::new(&model);
     simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();
     (model, state.displacement)
+}
+
+#[test]
+fn gradients_of_second_order_pass_the_patch_test() {
+    let H = Matrix3::new(0.08, 0.03, 0.01, 0.02, -0.05, 0.03, -0.01, 0.02, -0.02);
+    let gradients = Gradients::SecondOrder { tolerance: 1e-13 };
+    let (model, u) = prescribed_with(gradients, GradientStorage::Double, Field::of(move |X| H * X));
+    let error = |(node, X): (usize, &Vector3)| (vector_at(&u, node, 3) - H * X).amax();
+    let largest_error = model.positions.iter().enumerate().map(error).fold(0.0, f64::max);
+    assert!(largest_error < 1e-9 * largest(&u), "{largest_error}");
 }
 
 #[test]

@@ -197,6 +197,7 @@ mod tests {
             patches: vec![0],
             correction: Some(Correction {
                 iterations: 500,
+                linear_stress_iterations: None,
                 residual,
                 tolerance: 1e-3,
                 defect: 1.0,

@@ -182,6 +182,29 @@ pub enum Gradients {
         /// Remaining defect over that of plain gradients \[–\].
         tolerance: f64,
     },
+    /// The same, nearly for linear stresses too, with quadrature points moved until
+    /// they integrate functions of second order (method book, eqs. 7.6 and 9.11).
+    SecondOrder {
+        /// Of the divergence theorem, as above \[–\].
+        tolerance: f64,
+    },
+}
+
+impl Gradients {
+    /// Remaining defect over that of plain gradients \[–\]; `None` for plain ones.
+    pub fn tolerance(self) -> Option<f64> {
+        match self {
+            Gradients::Plain => None,
+            Gradients::Consistent { tolerance } | Gradients::SecondOrder { tolerance } => {
+                Some(tolerance)
+            }
+        }
+    }
+
+    /// Whether linear stresses are integrated too.
+    pub fn is_second_order(self) -> bool {
+        matches!(self, Gradients::SecondOrder { .. })
+    }
 }
 
 /// Precision of the stored Grad φ; all arithmetic is in double precision.

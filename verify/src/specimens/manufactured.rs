@@ -10,7 +10,7 @@ use mtled::geometry::{Shape, Surface};
 use mtled::material::Material;
 use mtled::problem::{
     Amplitude, BodyForce, Enforcement, Field, Gradients, InsideRule, MassRule, Prescribed, Problem,
-    VolumetricProjection,
+    VolumetricProjection, defaults,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -32,6 +32,8 @@ pub enum RecipeKind {
     Default,
     /// The default with 2 cells per spacing, eight points per node.
     Finer,
+    /// The default with gradients of second order.
+    SecondOrder,
     /// That of Horton 2007: plain gradients, cells kept whole where their centre is inside,
     /// nodal parameters prescribed, J at every point, masses split evenly; with at least
     /// this many points.
@@ -140,6 +142,10 @@ pub fn manufactured_problem(
     match kind {
         RecipeKind::Default => {}
         RecipeKind::Finer => problem.recipe.grid.cell = 0.5 / (nodes_per_edge - 1) as f64,
+        RecipeKind::SecondOrder => {
+            let tolerance = defaults::GRADIENT_TOLERANCE;
+            problem.recipe.gradients = Gradients::SecondOrder { tolerance };
+        }
         RecipeKind::Plain { points } => make_plain(&mut problem, points)?,
     }
     impose(&mut problem, oriented)?;

@@ -1,9 +1,10 @@
 //! An additive multilevel preconditioner (Bramble, Pasciak, Xu 1990) on
 //! nested lattices of quadratic B-splines.
 //!
-//! B r = D₀⁻¹ r + Σ_l P_l D_l⁻¹ P_lᵀ r: P_l evaluates coefficients of lattice l at
-//! the nodes, D_l estimates the diagonal of P_lᵀ K P_l (method book, eqs. 9.8 and
-//! 9.9). The number of iterations does not grow with the number of nodes.
+//! B r = Σ_l P_l D_l⁻¹ P_lᵀ r, to which the blocks of the nodes are added: P_l evaluates
+//! coefficients of lattice l at the nodes, D_l estimates the diagonal of P_lᵀ K P_l
+//! (method book, eqs. 9.8 and 9.9). The number of iterations does not grow with the
+//! number of nodes.
 #![allow(non_snake_case)]
 
 use crate::algebra::random::xorshift;
@@ -28,7 +29,6 @@ const SAMPLES_PER_TASK: usize = 50;
 pub(super) struct Multilevel {
     /// Functions of the finest lattice at each node.
     reaches: Vec<Reach>,
-    inverse_diagonal: Vec<f64>,
     /// From fine to coarse.
     levels: Vec<Level>,
 }
@@ -40,7 +40,8 @@ struct Level {
 
 impl Multilevel {
     pub fn new(operator: &Operator, layout: &Layout) -> Multilevel {
-        let diagonal = operator.diagonal();
+        let diagonal: Vec<f64> =
+            operator.diagonal::<1>().into_iter().map(|block| block.x).collect();
         let mean = layout.spacing.iter().sum::<f64>() / layout.spacing.len() as f64;
         let smallest = layout.spacing.iter().copied().fold(f64::INFINITY, f64::min);
         let mut edge = FINEST * smallest;
@@ -61,8 +62,7 @@ impl Multilevel {
         }
         let level = |lattice| level(operator, layout, lattice, &diagonal, &bending, &sample);
         let levels = lattices.into_par_iter().map(level).collect();
-        let inverse_diagonal = diagonal.iter().map(|d| inverse(*d)).collect();
-        Multilevel { reaches, inverse_diagonal, levels }
+        Multilevel { reaches, levels }
     }
 
     /// B r.
@@ -87,12 +87,12 @@ impl Multilevel {
             });
         }
         let finest = &moments[0];
-        let at_node = |((reach, r), d): ((&Reach, &Vector3), &f64)| {
-            let mut sum = r * *d;
+        let at_node = |reach: &Reach| {
+            let mut sum = Vector3::zeros();
             reach.for_each(|i, b| sum += b * finest[i]);
             sum
         };
-        self.reaches.par_iter().zip(r).zip(&self.inverse_diagonal).map(at_node).collect()
+        self.reaches.par_iter().map(at_node).collect()
     }
 
     /// Moments of a nodal field with the functions of the finest lattice.

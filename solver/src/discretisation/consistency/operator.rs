@@ -4,7 +4,7 @@
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::mls::inverse;
 use crate::discretisation::rows::Rows;
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix4, SMatrix, Vector4};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -32,6 +32,10 @@ pub struct Layout<'a> {
     pub components: usize,
 }
 
+/// The multipliers of a node, or the integrals that they belong to, by component of the
+/// gradient: one row for condition 2, three for condition 3.
+pub(super) type Nodal<const M: usize> = SMatrix<f64, M, 3>;
+
 /// K λ in one pass over the points. Parts run on any number of threads into sums of
 /// their own, which are added in the order of the parts.
 pub(super) struct Operator<'a> {
@@ -58,8 +62,23 @@ struct Part {
     nodes: Vec<u32>,
     /// \[local node\] \[m\]
     positions: Vec<Vector3>,
+    /// \[local node\] \[1/m\]
+    inverse_spacing: Vec<f64>,
     /// Local node of each entry.
     local: Vec<u32>,
+}
+
+/// An entry of a point's row, as a visitor sees it.
+struct Entry<const M: usize> {
+    point: usize,
+    /// Of all entries.
+    index: usize,
+    /// In the part.
+    node: usize,
+    /// W \[–\].
+    metric: f64,
+    /// See [`monomials`].
+    monomials: [f64; M],
 }
 
 /// Three components and a fourth that is not used.
@@ -134,7 +153,9 @@ impl<'a> Operator<'a> {
         }
         nodes.iter().for_each(|&node| places[node as usize] = NEW);
         let positions = nodes.iter().map(|&node| self.layout.nodes[node as usize]).collect();
-        Part { points, nodes, positions, local }
+        let inverse_spacing =
+            nodes.iter().map(|&node| 1.0 / self.layout.spacing[node as usize]).collect();
+        Part { points, nodes, positions, inverse_spacing, local }
     }
 
     /// p of an entry of point `q`.
@@ -151,28 +172,47 @@ impl<'a> Operator<'a> {
     }
 
     /// K λ.
-    pub fn apply(&self, multipliers: &[Vector3]) -> Vec<Vector3> {
-        let image = |part: &Part| {
+    pub fn apply<const M: usize>(&self, multipliers: &[Nodal<M>]) -> Vec<Nodal<M>> {
+        self.sums(|part, sums| {
             let values = part.gather(multipliers);
-            let mut sums = vec![Quad::default(); part.nodes.len()];
-            self.for_each_rest(part, &values, |q, _, node, metric, rest| {
-                let weight = self.layout.weights[q] * metric;
-                (0..4).for_each(|c| sums[node][c] += weight * rest[c]);
+            self.for_each_rest(part, &values, |entry: Entry<M>, rest| {
+                let weight = self.layout.weights[entry.point] * entry.metric;
+                let sum = &mut sums[entry.node];
+                for (m, monomial) in entry.monomials.iter().enumerate() {
+                    (0..4).for_each(|c| sum[m][c] += weight * monomial * rest[c]);
+                }
             });
-            sums
-        };
-        let images: Vec<Vec<Quad>> = self.parts.par_iter().map(image).collect();
-        let mut sum = vec![Vector3::zeros(); multipliers.len()];
-        for (part, image) in self.parts.iter().zip(images) {
-            for (&node, [x, y, z, _]) in part.nodes.iter().zip(image) {
-                sum[node as usize] += Vector3::new(x, y, z);
+        })
+    }
+
+    /// Σ_q w Grad φ_a of each node \[m²\], or
+    /// Σ_q w ((x_q − X_a) ⊗ Grad φ_a + φ_a I)/h_a.
+    pub fn integrals<const M: usize>(&self, gradients: &[Vector3]) -> Vec<Nodal<M>> {
+        self.sums(|part, sums| {
+            let first = self.starts[part.points.start];
+            for q in part.points.clone() {
+                let (X, weight) = (&self.layout.points[q], self.layout.weights[q]);
+                for entry in self.row(q) {
+                    let node = part.local[entry - first] as usize;
+                    let inverse_spacing = part.inverse_spacing[node];
+                    let offset = part.positions[node] - X;
+                    let monomials = monomials::<M>(&offset, inverse_spacing);
+                    let gradient = weight * gradients[entry];
+                    let sum: &mut [Quad; M] = &mut sums[node];
+                    for (m, monomial) in monomials.iter().enumerate() {
+                        (0..3).for_each(|c| sum[m][c] += monomial * gradient[c]);
+                    }
+                    if M == 3 {
+                        let value = weight * self.phi[entry] * inverse_spacing;
+                        (0..self.layout.components).for_each(|m| sum[m][m] += value);
+                    }
+                }
             }
-        }
-        sum
+        })
     }
 
     /// Adds dg = W (λ_a − fit) to the gradients of the entries.
-    pub fn change(&self, multipliers: &[Vector3], mut gradients: &mut [Vector3]) {
+    pub fn change<const M: usize>(&self, multipliers: &[Nodal<M>], mut gradients: &mut [Vector3]) {
         let mut pieces = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
             let (piece, others) = gradients.split_at_mut(part.local.len());
@@ -180,55 +220,99 @@ impl<'a> Operator<'a> {
             gradients = others;
         }
         self.parts.par_iter().zip(pieces).for_each(|(part, piece)| {
+            let first = self.starts[part.points.start];
             let values = part.gather(multipliers);
-            self.for_each_rest(part, &values, |_, entry, _, metric, [x, y, z, _]| {
-                piece[entry] += metric * Vector3::new(x, y, z);
+            self.for_each_rest(part, &values, |entry: Entry<M>, [x, y, z, _]| {
+                piece[entry.index - first] += entry.metric * Vector3::new(x, y, z);
             });
         });
     }
 
-    /// Calls `visit(point, entry of the part, local node, W, λ_a − fit)` for all
-    /// entries of a part.
+    /// Sums at the nodes of what `add` collects from each part.
+    fn sums<const M: usize>(&self, add: impl Fn(&Part, &mut [[Quad; M]]) + Sync) -> Vec<Nodal<M>> {
+        let of_part = |part: &Part| {
+            let mut sums = vec![[Quad::default(); M]; part.nodes.len()];
+            add(part, &mut sums);
+            sums
+        };
+        let parts: Vec<Vec<[Quad; M]>> = self.parts.par_iter().map(of_part).collect();
+        let mut all = vec![Nodal::<M>::zeros(); self.layout.nodes.len()];
+        for (part, sums) in self.parts.iter().zip(parts) {
+            for (&node, sum) in part.nodes.iter().zip(sums) {
+                all[node as usize] += Nodal::<M>::from_fn(|m, c| sum[m][c]);
+            }
+        }
+        all
+    }
+
+    /// Calls `visit(entry, λ_a − fit)` for all entries of a part, λ_a as seen from the point.
     #[inline(always)]
-    fn for_each_rest(
+    fn for_each_rest<const M: usize>(
         &self,
         part: &Part,
-        values: &[Quad],
-        mut visit: impl FnMut(usize, usize, usize, f64, Quad),
+        values: &[[Quad; M]],
+        mut visit: impl FnMut(Entry<M>, Quad),
     ) {
         let first = self.starts[part.points.start];
+        let mut seen = Vec::new();
         for q in part.points.clone() {
             let row = self.row(q);
             let (X, point) = (&self.layout.points[q], &self.points[q]);
             let (phi, nodes) =
                 (&self.phi[row.clone()], &part.local[row.start - first..row.end - first]);
             let mut moments = Affine::default();
+            seen.clear();
             for (phi, &node) in phi.iter().zip(nodes) {
+                let node = node as usize;
+                let offset = part.positions[node] - X;
+                let monomials = monomials::<M>(&offset, part.inverse_spacing[node]);
+                let mut value = Quad::default();
+                for (monomial, own) in monomials.iter().zip(&values[node]) {
+                    (0..4).for_each(|c| value[c] += monomial * own[c]);
+                }
                 let metric = phi.abs() + METRIC_FLOOR;
-                let p = local(&(part.positions[node as usize] - X), point.inverse_scale) * metric;
-                let value = &values[node as usize];
-                (0..4).for_each(|k| (0..4).for_each(|c| moments[k][c] += p[k] * value[c]));
+                let p = local(&offset, point.inverse_scale);
+                let weighted = p * metric;
+                (0..4).for_each(|k| (0..4).for_each(|c| moments[k][c] += weighted[k] * value[c]));
+                seen.push((monomials, p, value));
             }
             let fit = product(&point.gram_inverse, &moments);
-            for (entry, (phi, &node)) in (row.start - first..).zip(phi.iter().zip(nodes)) {
-                let p = local(&(part.positions[node as usize] - X), point.inverse_scale);
-                let mut rest = values[node as usize];
+            for (index, ((monomials, p, value), (phi, &node))) in
+                row.zip(seen.iter().zip(phi.iter().zip(nodes)))
+            {
+                let mut rest = *value;
                 (0..4).for_each(|k| (0..4).for_each(|c| rest[c] -= p[k] * fit[k][c]));
-                visit(q, entry, node as usize, phi.abs() + METRIC_FLOOR, rest);
+                let metric = phi.abs() + METRIC_FLOOR;
+                let node = node as usize;
+                visit(Entry { point: q, index, node, metric, monomials: *monomials }, rest);
             }
         }
     }
 
-    /// The diagonal of K.
-    pub fn diagonal(&self) -> Vec<f64> {
-        let terms = |part: &Part| -> Vec<f64> {
-            let point = |q: usize| self.row(q).map(move |entry| self.diagonal_term(q, entry));
-            part.points.clone().flat_map(point).collect()
+    /// The blocks of the nodes on the diagonal of K.
+    pub fn diagonal<const M: usize>(&self) -> Vec<SMatrix<f64, M, M>> {
+        let of_part = |part: &Part| {
+            let mut blocks = vec![SMatrix::<f64, M, M>::zeros(); part.nodes.len()];
+            let first = self.starts[part.points.start];
+            for q in part.points.clone() {
+                for entry in self.row(q) {
+                    let node = part.local[entry - first] as usize;
+                    let offset = part.positions[node] - self.layout.points[q];
+                    let m = SMatrix::<f64, M, 1>::from(monomials::<M>(
+                        &offset,
+                        part.inverse_spacing[node],
+                    ));
+                    blocks[node].ger(self.diagonal_term(q, entry), &m, &m, 1.0);
+                }
+            }
+            blocks
         };
-        let terms: Vec<Vec<f64>> = self.parts.par_iter().map(terms).collect();
-        let mut diagonal = vec![0.0; self.layout.nodes.len()];
-        for (&node, term) in self.nodes.iter().zip(terms.iter().flatten()) {
-            diagonal[node as usize] += term;
+        let parts: Vec<_> = self.parts.par_iter().map(of_part).collect();
+        let mut diagonal = vec![SMatrix::zeros(); self.layout.nodes.len()];
+        for (part, blocks) in self.parts.iter().zip(parts) {
+            for (&node, block) in part.nodes.iter().zip(blocks) {
+                diagonal[node as usize] += block;
+            }
         }
         diagonal
     }
@@ -241,12 +325,12 @@ impl<'a> Operator<'a> {
 }
 
 impl Part {
-    fn gather(&self, field: &[Vector3]) -> Vec<Quad> {
-        let quad = |&node: &u32| {
+    fn gather<const M: usize>(&self, field: &[Nodal<M>]) -> Vec<[Quad; M]> {
+        let quads = |&node: &u32| {
             let value = &field[node as usize];
-            [value.x, value.y, value.z, 0.0]
+            std::array::from_fn(|m| [value[(m, 0)], value[(m, 1)], value[(m, 2)], 0.0])
         };
-        self.nodes.iter().map(quad).collect()
+        self.nodes.iter().map(quads).collect()
     }
 }
 
@@ -254,6 +338,13 @@ impl Part {
 fn local(offset: &Vector3, inverse_scale: f64) -> Vector4<f64> {
     let scaled = offset * inverse_scale;
     Vector4::new(1.0, scaled.x, scaled.y, scaled.z)
+}
+
+/// What multiplies the rows of a node at a point: 1 for one row, the components of
+/// (x_q − X_a)/h_a for three, from the offset X_a − x_q.
+#[inline(always)]
+fn monomials<const M: usize>(offset: &Vector3, inverse_spacing: f64) -> [f64; M] {
+    std::array::from_fn(|m| if M == 1 { 1.0 } else { -offset[m] * inverse_spacing })
 }
 
 #[inline(always)]

@@ -1,10 +1,11 @@
 //! From the background grid to quadrature points.
 #![allow(non_snake_case)]
 
-use crate::algebra::tensor::Vector3;
+use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::quadrature::cell::Cell;
-use crate::discretisation::quadrature::cut::cut;
+use crate::discretisation::quadrature::cut::{cut, spread};
 use crate::discretisation::quadrature::gauss::gauss_legendre;
+use crate::discretisation::quadrature::second_order::{Moves, Piece};
 use crate::discretisation::quadrature::subdivision::{NodalSpacing, Subdivision};
 use crate::error::Error;
 use crate::geometry::{POINTS, Shape, indices};
@@ -45,6 +46,19 @@ struct PointCollector<'a> {
     /// Volume of a cell is edge^components × thickness.
     thickness: f64,
     out: Quadrature,
+    /// What each point stands for, if points are moved afterwards.
+    pieces: Option<Vec<Piece>>,
+}
+
+/// Inside part of a cell.
+#[derive(Clone, Default)]
+struct Moments {
+    /// \[m³\]
+    volume: f64,
+    /// \[m⁴\]
+    first: Vector3,
+    /// About the centre of the cell, if points are moved afterwards \[m⁵\].
+    second: Matrix3,
 }
 
 /// As [`quadrature_following`] on a grid that does not follow the nodes.
@@ -55,18 +69,19 @@ pub fn quadrature(
     dimension: &Dimension,
 ) -> Result<Quadrature, Error> {
     let unknown = NodalSpacing { within: &|_, _| f64::INFINITY, largest: f64::INFINITY };
-    quadrature_following(body, regions, grid, &unknown, dimension)
+    quadrature_following(body, regions, grid, &unknown, dimension, None)
 }
 
 /// Lays the grid over the body and collects its points, by the centre rule (Horton
 /// 2007, section 2.3) or by volume fractions, with a point at the centroid of the
-/// inside part of each region in a cell (method book, eq. 7.2).
+/// inside part of each region in a cell (method book, eq. 7.2), which may be moved.
 pub fn quadrature_following(
     body: &Shape,
     regions: &[Region],
     grid: &BackgroundGrid,
     spacing: &NodalSpacing,
     dimension: &Dimension,
+    moves: Option<&Moves>,
 ) -> Result<Quadrature, Error> {
     let (min, max) = body.bounding_box().ok_or(Error::NoQuadraturePoints)?;
     let (thickness, z) = match *dimension {
@@ -104,16 +119,25 @@ pub fn quadrature_following(
             components,
             thickness,
             out: Quadrature::default(),
+            pieces: moves.map(|_| Vec::new()),
         };
         for i in 0..size[0] {
             collector.visit(cell_at([i, row % size[1], row / size[1]]))?;
         }
-        Ok(collector.out)
+        Ok((collector.out, collector.pieces.unwrap_or_default()))
     };
-    let rows: Vec<Result<Quadrature, Error>> =
+    let rows: Vec<Result<_, Error>> =
         (0..size[1] * size[2]).into_par_iter().map(row_of_cells).collect();
-    let all = join(rows.into_iter().collect::<Result<_, _>>()?);
-    if all.positions.is_empty() { Err(Error::NoQuadraturePoints) } else { Ok(all) }
+    let (parts, pieces): (Vec<Quadrature>, Vec<Vec<Piece>>) =
+        rows.into_iter().collect::<Result<_, _>>()?;
+    let mut all = join(parts);
+    if all.positions.is_empty() {
+        return Err(Error::NoQuadraturePoints);
+    }
+    if let Some(moves) = moves {
+        moves.apply(&pieces.concat(), body, regions, &mut all);
+    }
+    Ok(all)
 }
 
 /// All parts in their order.
@@ -172,12 +196,15 @@ impl PointCollector<'_> {
     fn whole(&mut self, cell: &Cell) -> Result<(), Error> {
         let rule = gauss_legendre(self.grid.gauss_points);
         let layers: &[(f64, f64)] = if self.components == 3 { &rule } else { &[(0.0, 1.0)] };
+        // Two Gauss points integrate squares themselves.
+        let spread = if rule.len() == 1 { self.spread(cell) } else { Matrix3::zeros() };
         for &(z, wz) in layers {
             for &(y, wy) in &rule {
                 for &(x, wx) in &rule {
                     let X = cell.centre + Vector3::new(x, y, z) * cell.edge;
                     let weight = self.volume(cell) * wx * wy * wz;
                     self.push(X, weight, self.region_at(&X)?);
+                    self.add_piece(cell.edge / rule.len() as f64, spread);
                 }
             }
         }
@@ -188,24 +215,28 @@ impl PointCollector<'_> {
     fn parts(&mut self, cell: &Cell) -> Result<(), Error> {
         let depth = if self.components == 2 { FRACTION_DEPTH_PLANE } else { FRACTION_DEPTH };
         for part in cell.divide(self.grid.gauss_points, self.components) {
-            let mut moments = vec![(0.0, Vector3::zeros()); self.regions.len()];
-            self.measure(&part, depth, &mut moments)?;
-            for (region, (volume, moment)) in moments.into_iter().enumerate() {
+            let mut moments = vec![Moments::default(); self.regions.len()];
+            self.measure(&part, depth, &part.centre, &mut moments)?;
+            for (region, Moments { volume, first, second }) in moments.into_iter().enumerate() {
                 if volume > SMALLEST_FRACTION * self.volume(&part) {
-                    self.push(moment / volume, volume, region as u16);
+                    let centroid = first / volume;
+                    self.push(centroid, volume, region as u16);
+                    let offset = centroid - part.centre;
+                    self.add_piece(part.edge, second / volume - offset * offset.transpose());
                 }
             }
         }
         Ok(())
     }
 
-    /// Adds the inside volume of a cell and its first moment, by region: halves it
-    /// where the boundary is not flat; the smallest cells are cut as if it were.
+    /// Adds the inside volume of a cell and its moments, by region: halves it where the
+    /// boundary is not flat; the smallest cells are cut as if it were.
     fn measure(
         &self,
         cell: &Cell,
         depth: usize,
-        moments: &mut [(f64, Vector3)],
+        origin: &Vector3,
+        moments: &mut [Moments],
     ) -> Result<(), Error> {
         let distance = self.body.signed_distance(&cell.centre);
         let reach = cell.half_diagonal(self.components);
@@ -215,16 +246,16 @@ impl PointCollector<'_> {
         let is_cut = distance > -reach;
         let mixed = depth > 0 && self.regions.len() > 1 && self.is_mixed(cell);
         let one_plane = match (is_cut, mixed) {
-            (false, false) => Some((1.0, Vector3::zeros())),
+            (false, false) => Some((1.0, Vector3::zeros(), self.spread(cell))),
             (true, false) if depth > 0 => self.flat_cut(cell, distance),
             _ => None,
         };
-        let (fraction, shift) = match one_plane {
+        let (fraction, shift, spread) = match one_plane {
             Some(part) => part,
             None if depth > 0 => {
                 return cell
                     .children(self.components)
-                    .try_for_each(|child| self.measure(&child, depth - 1, moments));
+                    .try_for_each(|child| self.measure(&child, depth - 1, origin, moments));
             }
             None => self.axis_cut(cell, distance),
         };
@@ -232,16 +263,21 @@ impl PointCollector<'_> {
             let volume = fraction * self.volume(cell);
             let centroid = cell.centre + shift;
             let region = self.region_at(&centroid)? as usize;
-            moments[region].0 += volume;
-            moments[region].1 += centroid * volume;
+            let own = &mut moments[region];
+            own.volume += volume;
+            own.first += centroid * volume;
+            if self.pieces.is_some() {
+                let offset = centroid - origin;
+                own.second += (spread + offset * offset.transpose()) * volume;
+            }
         }
         Ok(())
     }
 
-    /// Inside fraction of a cell and the shift of its centroid where the boundary is
-    /// flat, judged by the signed distance at centre and corners (method book,
-    /// eq. 7.3).
-    fn flat_cut(&self, cell: &Cell, distance: f64) -> Option<(f64, Vector3)> {
+    /// Inside fraction of a cell, the shift of its centroid and its spread where the
+    /// boundary is flat, judged by the signed distance at centre and corners (method
+    /// book, eq. 7.3).
+    fn flat_cut(&self, cell: &Cell, distance: f64) -> Option<(f64, Vector3, Matrix3)> {
         let near = |value: f64| value.abs() <= FLAT * cell.edge;
         let half = 0.5 * cell.edge;
         let ends: &[[f64; 3]] = match self.components {
@@ -266,18 +302,23 @@ impl PointCollector<'_> {
             rises.iter().zip(ends).all(|(rise, end)| near(slope.dot(&Vector3::from(*end)) - rise));
         straight.then(|| {
             let (fraction, shift) = cut(distance, &(2.0 * slope));
-            (fraction, shift * cell.edge)
+            let spread = match self.pieces {
+                Some(_) => spread(distance, &(2.0 * slope)) * cell.edge.powi(2),
+                None => Matrix3::zeros(),
+            };
+            (fraction, shift * cell.edge, self.in_plane(spread))
         })
     }
 
-    /// Inside fraction of a small cell and the shift of its centroid, as if
+    /// Inside fraction of a small cell, the shift of its centroid and its spread, as if
     /// the boundary were a plane whose normal is the nearest axis: exact for
     /// boundaries along the grid, second order in the cell for others (method
     /// book, eq. 7.4).
-    fn axis_cut(&self, cell: &Cell, distance: f64) -> (f64, Vector3) {
+    fn axis_cut(&self, cell: &Cell, distance: f64) -> (f64, Vector3, Matrix3) {
         let fraction = (0.5 - distance / cell.edge).clamp(0.0, 1.0);
+        let mut spread = self.spread(cell);
         if fraction == 0.0 || fraction == 1.0 {
-            return (fraction, Vector3::zeros());
+            return (fraction, Vector3::zeros(), spread);
         }
         let mut normal = self.body.gradient(&cell.centre);
         if self.components == 2 {
@@ -286,7 +327,28 @@ impl PointCollector<'_> {
         let axis = normal.iamax();
         let mut shift = Vector3::zeros();
         shift[axis] = -normal[axis].signum() * 0.5 * (1.0 - fraction) * cell.edge;
-        (fraction, shift)
+        spread[(axis, axis)] *= fraction * fraction;
+        (fraction, shift, spread)
+    }
+
+    /// Second moments of a whole cell about its centre over its volume \[m²\].
+    fn spread(&self, cell: &Cell) -> Matrix3 {
+        self.in_plane(Matrix3::from_diagonal_element(cell.edge * cell.edge / 12.0))
+    }
+
+    /// Nothing is spread across a plane.
+    fn in_plane(&self, mut spread: Matrix3) -> Matrix3 {
+        if self.components == 2 {
+            spread.row_mut(2).fill(0.0);
+            spread.column_mut(2).fill(0.0);
+        }
+        spread
+    }
+
+    fn add_piece(&mut self, edge: f64, spread: Matrix3) {
+        if let Some(pieces) = &mut self.pieces {
+            pieces.push(Piece { edge, spread });
+        }
     }
 
     fn push(&mut self, X: Vector3, weight: f64, region: u16) {

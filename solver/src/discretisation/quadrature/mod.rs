@@ -4,9 +4,11 @@ mod cell;
 mod cut;
 mod gauss;
 mod grid;
+mod second_order;
 mod subdivision;
 
 pub use grid::{Quadrature, quadrature, quadrature_following};
+pub use second_order::Moves;
 pub use subdivision::{NodalSpacing, followed_edge};
 
 #[cfg(test)]

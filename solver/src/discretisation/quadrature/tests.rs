@@ -188,3 +188,61 @@ fn sizes_of_cells_that_are_no_lengths_are_refused() {
         assert_eq!(refusal(&grid), GeometryError::GaussPoints { count: gauss_points });
     }
 }
+
+/// ∫ |X − centre|² dV of a rule.
+fn second_moment(q: &Quadrature, centre: &Vector3) -> f64 {
+    q.positions.iter().zip(&q.weights).map(|(X, w)| w * (X - centre).norm_squared()).sum()
+}
+
+#[test]
+fn moved_points_integrate_functions_of_second_order() {
+    let grid = BackgroundGrid::with_cell(0.0113);
+    let mut refined = grid.clone();
+    let part = Selector::Inside { shape: ball(), tolerance: 0.0 };
+    refined.refinements = vec![Refinement { part, size: 0.006 }];
+    let (min, max) = (Vector3::new(0.24, 0.05, -0.25), Vector3::new(0.36, 0.13, -0.15));
+    let edges = max - min;
+    let block = edges.product() * edges.norm_squared() / 12.0;
+    let sphere = 0.8 * std::f64::consts::PI * 0.04f64.powi(5);
+    for (body, grid, middle, exact, bound) in [
+        (Shape::Box { min, max }, &grid, 0.5 * (min + max), block, 0.05),
+        (Shape::Box { min, max }, &refined, 0.5 * (min + max), block, 0.1),
+        (ball(), &grid, Vector3::new(0.3, 0.1, -0.2), sphere, 0.25),
+    ] {
+        let regions = [region("all", Selector::All)];
+        let unknown = NodalSpacing { within: &|_, _| f64::INFINITY, largest: f64::INFINITY };
+        let error = |moves: Option<&Moves>| {
+            let q = quadrature_following(&body, &regions, grid, &unknown, &Dimension::Three, moves);
+            second_moment(&q.unwrap(), &middle) / exact - 1.0
+        };
+        let (at_centroids, moved) = (error(None), error(Some(&Moves { stays: &|_| false })));
+        assert!(moved.abs() < bound * at_centroids.abs(), "{moved} after {at_centroids}");
+        assert_eq!(error(Some(&Moves { stays: &|_| true })), at_centroids);
+    }
+}
+
+#[test]
+fn moved_points_stay_in_the_plane_and_in_their_regions() {
+    let half = Shape::HalfSpace { point: Vector3::new(0.3, 0.0, 0.0), normal: Vector3::x() };
+    let regions = [
+        region("left", Selector::Inside { shape: half.clone(), tolerance: 0.0 }),
+        region("right", Selector::All),
+    ];
+    let dimension = Dimension::PlaneStrain { thickness: 0.1, z: 0.0 };
+    let body = Shape::Ellipsoid {
+        centre: Vector3::new(0.3, 0.1, 0.0),
+        radii: Vector3::new(0.05, 0.03, f64::INFINITY),
+    };
+    let grid = BackgroundGrid::with_cell(0.007);
+    let unknown = NodalSpacing { within: &|_, _| f64::INFINITY, largest: f64::INFINITY };
+    let rule = |moves: Option<&Moves>| {
+        quadrature_following(&body, &regions, &grid, &unknown, &dimension, moves).unwrap()
+    };
+    let (before, after) = (rule(None), rule(Some(&Moves { stays: &|_| false })));
+    assert!(before.positions != after.positions);
+    assert_eq!((&before.weights, &before.regions), (&after.weights, &after.regions));
+    for (X, region) in after.positions.iter().zip(&after.regions) {
+        assert!(X.z == 0.0 && body.signed_distance(X) <= 0.0, "{X}");
+        assert_eq!(half.signed_distance(X) <= 0.0, *region == 0, "{X}");
+    }
+}

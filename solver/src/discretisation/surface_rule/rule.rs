@@ -110,6 +110,11 @@ impl SurfaceRule {
         self.starts.push(self.points.len());
     }
 
+    /// The points: prescribed nodes first, then free panels \[m\].
+    pub fn positions(&self) -> &[Vector3] {
+        &self.positions
+    }
+
     /// φ at a point: the rows and which of them.
     fn row(&self, point: usize) -> (&Rows, usize) {
         match point.checked_sub(self.prescribed.len()) {

@@ -64,6 +64,11 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
              ones {:.1e}",
             correction.residual, correction.tolerance, correction.iterations, correction.defect
         ));
+        if let Some(iterations) = correction.linear_stress_iterations {
+            lines.push(format!(
+                "                    of second order: linear stresses nearly, {iterations} iterations"
+            ));
+        }
     }
     lines
 }

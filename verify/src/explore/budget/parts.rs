@@ -1,7 +1,7 @@
 //! The parts of an error, and the run that shows each.
 
 use crate::scene::{Case, Knob, Setting};
-use mtled::problem::{Basis, Gradients, Motion, VolumetricProjection};
+use mtled::problem::{Basis, Motion, VolumetricProjection};
 
 /// One part of the error.
 #[derive(Debug, Clone)]
@@ -36,15 +36,15 @@ fn part(name: &'static str, how: String, settings: Vec<Setting>) -> Part {
 }
 
 fn consistency(case: &Case) -> Part {
-    let (how, setting) = match case.problem.recipe.gradients {
-        Gradients::Consistent { tolerance } => {
+    let (how, setting) = match case.problem.recipe.gradients.tolerance() {
+        Some(tolerance) => {
             let tighter = 1e-4 * tolerance;
             (
                 format!("gradients consistent to {tighter:.0e} instead of {tolerance:.0e}"),
                 Setting::number(Knob::GradientTolerance, tighter),
             )
         }
-        _ => (
+        None => (
             "consistent gradients instead of plain ones".into(),
             Setting::word(Knob::Gradients, "consistent"),
         ),

@@ -83,9 +83,10 @@ impl Builder<'_> {
         self.positive(key, tolerance);
         match format.gradients.unwrap_or(GradientsFormat::Consistent) {
             GradientsFormat::Consistent => Gradients::Consistent { tolerance },
+            GradientsFormat::SecondOrder => Gradients::SecondOrder { tolerance },
             GradientsFormat::Plain => {
                 if format.gradient_tolerance.is_some() {
-                    self.mistake(key, "belongs to gradients = \"consistent\"");
+                    self.mistake(key, "belongs to gradients = \"consistent\" or \"second_order\"");
                 }
                 Gradients::Plain
             }

@@ -165,6 +165,9 @@ choice! {
         "plain" Plain,
         /// Changed as little as possible until the divergence theorem holds.
         "consistent" Consistent,
+        /// The same, nearly for linear stresses too, with quadrature points moved until
+        /// they integrate functions of second order.
+        "second_order" SecondOrder,
     }
 }
 
