@@ -118,9 +118,8 @@ fn mean_interior_moment(discretisation: &Discretisation) -> f64 {
         }
     }
     let inside = |X: &Vector3| X.iter().take(d).all(|c| (c - 0.5 * EDGE).abs() < 0.2 * EDGE);
-    let deep: Vec<f64> = (moments.iter().zip(nodes))
-        .filter_map(|(moment, X)| inside(X).then(|| moment.norm()))
-        .collect();
+    let pairs = moments.iter().zip(nodes).filter(|(_, X)| inside(X));
+    let deep: Vec<f64> = pairs.map(|(moment, _)| moment.norm()).collect();
     deep.iter().sum::<f64>() / deep.len() as f64
 }
 

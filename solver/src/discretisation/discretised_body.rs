@@ -58,12 +58,13 @@ impl Discretisation {
         let cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
         let approximation = approximation_of(&cloud, recipe, &dimension);
         let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
-        let mut quadrature = {
-            let at_edges = held_edges(problem, &cloud);
-            let stays = |X: &Vector3| at_edges(X, HELD_EDGE * spacing_at(X));
+        let mut quadrature = if recipe.gradients.is_second_order() {
+            let held = held_nodes(problem, &cloud);
+            let stays = |X: &Vector3| is_within(&held, X, approximation.mean_radius(X));
             let moves = Moves { stays: &stays };
-            let moves = recipe.gradients.is_second_order().then_some(&moves);
-            quadrature_of(problem, &body, &recipe.grid, &approximation, moves)?
+            quadrature_of(problem, &body, &recipe.grid, &approximation, Some(&moves))?
+        } else {
+            quadrature_of(problem, &body, &recipe.grid, &approximation, None)?
         };
         let spacing: Vec<f64> = quadrature.positions.par_iter().map(spacing_at).collect();
         let (thickness, components) = (dimension.thickness(), dimension.components());
@@ -167,31 +168,24 @@ fn approximation_of(cloud: &NodeCloud, recipe: &Recipe, dimension: &Dimension) -
     Approximation::new(cloud.positions.clone(), radius, basis, weight_function, dimension)
 }
 
-/// Quadrature points this close to the edge of a held part of the boundary are not moved
-/// \[spacing\]: stresses are singular there, and what holds for smooth ones makes bonded
-/// blocks 2 % stiffer.
-const HELD_EDGE: f64 = 2.0;
-
-/// Whether held and free nodes of the boundary are within a reach \[m\] of a place.
-fn held_edges(problem: &Problem, cloud: &NodeCloud) -> impl Fn(&Vector3, f64) -> bool {
+/// The held nodes of the boundary. Quadrature points in their supports are not moved:
+/// stresses are singular at the edges of what is held, and what holds for smooth ones makes
+/// bonded blocks 2 % stiffer.
+fn held_nodes(problem: &Problem, cloud: &NodeCloud) -> Option<Neighbours> {
     let held = prescribed_nodes(problem, cloud);
-    let places = |wanted: bool| {
-        let own = |&node: &usize| cloud.on_boundary[node] && held[node] == wanted;
-        let nodes = (0..cloud.positions.len()).filter(own);
-        let positions: Vec<Vector3> = nodes.map(|node| cloud.positions[node]).collect();
-        (!positions.is_empty()).then(|| Neighbours::new(&positions, 2.0 * cloud.smallest_spacing()))
-    };
-    let kinds = [places(true), places(false)];
-    move |X, reach| {
-        let is_near = |kind: &Option<Neighbours>| {
-            let mut found = false;
-            if let Some(near) = kind {
-                near.for_each_within(X, reach, |_, _| found = true);
-            }
-            found
-        };
-        kinds.iter().all(is_near)
+    let own = |&node: &usize| cloud.on_boundary[node] && held[node];
+    let nodes = (0..cloud.positions.len()).filter(own);
+    let positions: Vec<Vector3> = nodes.map(|node| cloud.positions[node]).collect();
+    (!positions.is_empty()).then(|| Neighbours::new(&positions, 2.0 * cloud.smallest_spacing()))
+}
+
+/// Whether a node is closer to a place than a reach \[m\].
+fn is_within(nodes: &Option<Neighbours>, X: &Vector3, reach: f64) -> bool {
+    let mut found = false;
+    if let Some(nodes) = nodes {
+        nodes.for_each_within(X, reach, |_, _| found = true);
     }
+    found
 }
 
 /// Quadrature points of the body, a section in a plane, on a grid that may follow the
