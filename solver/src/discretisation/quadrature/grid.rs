@@ -5,27 +5,13 @@ use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::quadrature::cell::Cell;
 use crate::discretisation::quadrature::cut::{cut, spread};
 use crate::discretisation::quadrature::gauss::gauss_legendre;
+use crate::discretisation::quadrature::rule::Quadrature;
 use crate::discretisation::quadrature::second_order::{Moves, Piece};
 use crate::discretisation::quadrature::subdivision::{NodalSpacing, Subdivision};
 use crate::error::Error;
 use crate::geometry::{POINTS, Shape, indices};
 use crate::problem::{BackgroundGrid, Dimension, InsideRule, Region};
 use rayon::prelude::*;
-
-/// Quadrature points of the whole body.
-#[derive(Debug, Clone, Default)]
-pub struct Quadrature {
-    /// \[point\] \[m\]
-    pub positions: Vec<Vector3>,
-    /// `quadrature_weight`, a reference volume \[point\] \[m³\].
-    pub weights: Vec<f64>,
-    /// Index of the region that each point belongs to \[point\].
-    pub regions: Vec<u16>,
-    /// Cells that gave points.
-    pub cells: usize,
-    /// Cells cut by the boundary or by a border between regions.
-    pub cut_cells: usize,
-}
 
 /// Halvings below a sub-cell when its inside volume is measured.
 const FRACTION_DEPTH: usize = 4;

@@ -4,10 +4,12 @@ mod cell;
 mod cut;
 mod gauss;
 mod grid;
+mod rule;
 mod second_order;
 mod subdivision;
 
-pub use grid::{Quadrature, quadrature, quadrature_following};
+pub use grid::{quadrature, quadrature_following};
+pub use rule::Quadrature;
 pub use second_order::Moves;
 pub use subdivision::{NodalSpacing, followed_edge};
 

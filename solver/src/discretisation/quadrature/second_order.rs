@@ -12,7 +12,7 @@ use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::mls::inverse;
 use crate::discretisation::moments::homogeneous;
 use crate::discretisation::neighbours::Neighbours;
-use crate::discretisation::quadrature::grid::Quadrature;
+use crate::discretisation::quadrature::rule::Quadrature;
 use crate::geometry::Shape;
 use crate::problem::Region;
 use nalgebra::{Matrix4, Vector4};
