@@ -104,9 +104,10 @@ impl Discretisation {
                 self.scale_weights(volume, owns);
             }
         }
+        let total = self.surface.scatter(nodes, &areas);
         let targets = Targets {
-            moments: second_order.then(|| self.boundary_moments(&areas)),
-            areas: self.surface.scatter(nodes, &areas),
+            moments: second_order.then(|| self.boundary_moments(&areas, &total)),
+            areas: total,
         };
         self.surface.store_areas(areas);
         let layout = Layout {
@@ -121,11 +122,10 @@ impl Discretisation {
         Ok(())
     }
 
-    /// ∮ (x − X_a) ⊗ φ_a N dA/h_a of each node from the vector areas of the points of the
-    /// boundary \[m²\].
-    fn boundary_moments(&self, areas: &[Vector3]) -> Vec<Matrix3> {
+    /// ∮ (x − X_a) ⊗ φ_a N dA/h_a of each node \[m²\] from the vector areas of the points of
+    /// the boundary and their `total` ∮ φ_a N dA at each node.
+    fn boundary_moments(&self, areas: &[Vector3], total: &[Vector3]) -> Vec<Matrix3> {
         let NodeCloud { positions, spacing, .. } = &self.cloud;
-        let total = self.surface.scatter(positions.len(), areas);
         let mut moments = vec![Matrix3::zeros(); positions.len()];
         for k in 0..self.dimension.components() {
             let weighted: Vec<Vector3> =

@@ -30,19 +30,11 @@ impl Shape {
         dimension: &Dimension,
     ) -> Result<Vec<Panel>, GeometryError> {
         positive("the panel size", size)?;
-        let refuse_too_many = |(lower, upper): &Bounds| {
-            PANELS.check(FILLED * pieces_of_box(&(upper - lower), size, dimension))
-        };
         match dimension {
-            Dimension::Three => {
-                let around = self.finite_bounds(dimension)?;
-                refuse_too_many(&around)?;
-                surface_panels(self, size, around)
-            }
+            Dimension::Three => surface_panels(self, size, self.finite_bounds(dimension)?),
             Dimension::PlaneStrain { thickness, z } => {
                 let section = self.section_at(*z)?;
                 let around = section.finite_bounds(dimension)?;
-                refuse_too_many(&around)?;
                 let mut panels = curve_panels(&section, size, *z, around)?;
                 panels.iter_mut().for_each(|panel| panel.area *= thickness);
                 Ok(panels)
@@ -60,12 +52,9 @@ fn patch(point: &Vector3, normal: &Vector3, (lower, upper): Bounds) -> (Vector3,
     (middle - (middle - point).dot(normal) * normal, 0.5 * (upper - lower).norm())
 }
 
-/// A member of a composite may be much larger than the body.
-fn refuse_large_member(
-    shape: &Shape,
-    size: f64,
-    dimension: &Dimension,
-) -> Result<(), GeometryError> {
+/// Refuses a shape, or a member of one that may be much larger than the body, before any of
+/// its panels is made.
+fn refuse_too_many(shape: &Shape, size: f64, dimension: &Dimension) -> Result<(), GeometryError> {
     let Ok((lower, upper)) = shape.finite_bounds(dimension) else { return Ok(()) };
     let extent = upper - lower;
     // Bands are as fine everywhere as the longest radius wants them.
@@ -82,7 +71,7 @@ fn curve_panels(
     around: Bounds,
 ) -> Result<Vec<Panel>, GeometryError> {
     let flat = Dimension::PlaneStrain { thickness: 1.0, z };
-    refuse_large_member(shape, size, &flat)?;
+    refuse_too_many(shape, size, &flat)?;
     match shape {
         Shape::Polygon { points, .. } => Ok(line_panels(&anticlockwise(points), size, z)),
         Shape::Ellipsoid { centre, radii } => Ok(ellipse_panels(centre, radii, size, z)),
@@ -110,7 +99,7 @@ fn curve_panels(
 }
 
 fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>, GeometryError> {
-    refuse_large_member(shape, size, &Dimension::Three)?;
+    refuse_too_many(shape, size, &Dimension::Three)?;
     match shape {
         Shape::Box { min, max } => Ok(box_panels(min, max, size)),
         Shape::Cylinder { base, axis, radius, height } => {
