@@ -7,14 +7,16 @@ use crate::discretisation::consistency::{
 };
 use crate::discretisation::mls::{Approximation, PoorSupport};
 use crate::discretisation::neighbours::Neighbours;
-use crate::discretisation::nodes::{NodeCloud, node_cloud};
+use crate::discretisation::nodes::{HeldParts, NodeCloud, node_cloud};
 use crate::discretisation::patches::sort_into_patches;
 use crate::discretisation::quadrature::{Moves, NodalSpacing, Quadrature, quadrature_following};
 use crate::discretisation::rows::{Evaluated, Requested, Rows};
 use crate::discretisation::surface_rule::SurfaceRule;
 use crate::error::Error;
-use crate::geometry::{Extent, Shape};
-use crate::problem::{BackgroundGrid, Dimension, EssentialCondition, Gradients, Problem, Recipe};
+use crate::geometry::{Extent, Panel, Shape};
+use crate::problem::{
+    BackgroundGrid, Cloud, Dimension, EssentialCondition, Gradients, Problem, Recipe,
+};
 use rayon::prelude::*;
 
 /// The body, discretised.
@@ -55,7 +57,8 @@ impl Discretisation {
         // In a plane the body is its cross-section, whose ends are no boundary.
         let body = problem.body.section(&dimension)?;
         let recipe = &problem.recipe;
-        let cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
+        let mut cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
+        let panels = panels_of(problem, &body, &mut cloud)?;
         let approximation = approximation_of(&cloud, recipe, &dimension);
         let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
         let mut quadrature = if recipe.gradients.is_second_order() {
@@ -72,7 +75,7 @@ impl Discretisation {
         let Evaluated { rows: supports, enlarged, worst_condition } =
             evaluate_all(&approximation, &quadrature.positions)?;
         check_coverage(&cloud, &supports)?;
-        let surface = surface_of(problem, &cloud, &approximation)?;
+        let surface = surface_of(problem, panels, &cloud, &approximation)?;
         let mut discretisation = Discretisation {
             dimension,
             cloud,
@@ -205,19 +208,42 @@ pub(crate) fn quadrature_of(
     quadrature_following(body, &problem.regions, grid, &spacing, &problem.dimension, moves)
 }
 
+/// The boundary in panels, if consistent gradients, tractions or held parts need it. Nodes
+/// of a cloud that is not given are put on the edges of held parts.
+fn panels_of(
+    problem: &Problem,
+    body: &Shape,
+    cloud: &mut NodeCloud,
+) -> Result<Option<Vec<Panel>>, Error> {
+    let given = matches!(problem.recipe.cloud, Cloud::Given { .. });
+    let held = !given && problem.conditions.iter().any(|c| c.extent == Extent::Surface);
+    if !held && !needs_surface(problem) {
+        return Ok(None);
+    }
+    let size = PANEL * cloud.smallest_spacing();
+    let panels = problem.body.boundary_panels(size, &problem.dimension)?;
+    if held {
+        HeldParts::new(body, &problem.conditions, &panels, size).place_nodes(cloud);
+    }
+    Ok(Some(panels))
+}
+
+fn needs_surface(problem: &Problem) -> bool {
+    problem.recipe.gradients != Gradients::Plain || !problem.loads.tractions.is_empty()
+}
+
 /// The surface rule, if consistent gradients or tractions need it.
 fn surface_of(
     problem: &Problem,
+    panels: Option<Vec<Panel>>,
     cloud: &NodeCloud,
     approximation: &Approximation,
 ) -> Result<SurfaceRule, Error> {
-    if problem.recipe.gradients == Gradients::Plain && problem.loads.tractions.is_empty() {
+    let Some(panels) = panels.filter(|_| needs_surface(problem)) else {
         return Ok(SurfaceRule::default());
-    }
-    let dimension = &problem.dimension;
-    let panels = problem.body.boundary_panels(PANEL * cloud.smallest_spacing(), dimension)?;
+    };
     let prescribed = prescribed_nodes(problem, cloud);
-    SurfaceRule::new(panels, cloud, approximation, &prescribed, dimension.components())
+    SurfaceRule::new(panels, cloud, approximation, &prescribed, problem.dimension.components())
         .map_err(|(position, poor)| outside(position, &poor))
 }
 

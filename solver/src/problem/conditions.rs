@@ -39,6 +39,14 @@ impl EssentialCondition {
             release: None,
         }
     }
+
+    /// Whether it says anything about a component.
+    pub fn prescribes(&self, component: usize) -> bool {
+        match self.prescribed {
+            Prescribed::Displacement(values) => values[component].is_some(),
+            Prescribed::Rotation { .. } | Prescribed::Field(_) => true,
+        }
+    }
 }
 
 /// What is prescribed at amplitude 1.

@@ -59,6 +59,13 @@ pub const STUDIES: &[Definition] = &[
         body: comparison::comparison,
     },
     Definition {
+        id: "held_patches",
+        title: "Held patches",
+        claim: "Where a held part ends within a face, energies hardly depend on the cloud and come \
+                nearer to those of finer clouds, whatever the shape of the part.",
+        body: comparison::held_patches::held_patches,
+    },
+    Definition {
         id: "benchmarks",
         title: "Published benchmarks",
         claim: "Cook's membrane and the flag of Turek and Hron bend and swing as published.",

@@ -27,6 +27,16 @@ impl NodeCloud {
         NodeCloud { positions, spacing, on_boundary }
     }
 
+    /// Keeps the nodes for which `stays` \[node\] is true.
+    pub(super) fn retain(&mut self, stays: &[bool]) {
+        fn kept<T: Copy>(values: &[T], stays: &[bool]) -> Vec<T> {
+            values.iter().zip(stays).filter(|(_, stays)| **stays).map(|(value, _)| *value).collect()
+        }
+        self.positions = kept(&self.positions, stays);
+        self.spacing = kept(&self.spacing, stays);
+        self.on_boundary = kept(&self.on_boundary, stays);
+    }
+
     /// \[m\]
     pub fn smallest_spacing(&self) -> f64 {
         self.spacing.iter().copied().fold(f64::INFINITY, f64::min)

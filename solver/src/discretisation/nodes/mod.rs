@@ -3,11 +3,13 @@
 mod cloud;
 mod given;
 mod graded;
+mod held_edges;
 mod regular;
 
 pub use cloud::{NodeCloud, refuse_fine_spacing};
 pub use given::refuse_far_nodes;
 pub use graded::{RequestedSizes, SizeField};
+pub(crate) use held_edges::HeldParts;
 
 use crate::geometry::{GeometryError, Shape, positive};
 use crate::problem::{Cloud, Dimension};

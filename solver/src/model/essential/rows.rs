@@ -46,7 +46,7 @@ pub(super) fn rows_of_component(
 ) -> Vec<ConstraintRow> {
     let mut owner = vec![None; positions.len()];
     for (index, condition) in conditions.iter().enumerate() {
-        if !prescribes(condition, component) || !active(index) {
+        if !condition.prescribes(component) || !active(index) {
             continue;
         }
         for &node in &selected[index] {
@@ -59,14 +59,6 @@ pub(super) fn rows_of_component(
         Some(row_of(prescribed, node as u32, condition, component, &positions[node]))
     };
     owner.into_iter().enumerate().filter_map(row).collect()
-}
-
-/// Whether a condition says anything about a component.
-pub(super) fn prescribes(condition: &EssentialCondition, component: usize) -> bool {
-    match condition.prescribed {
-        Prescribed::Displacement(values) => values[component].is_some(),
-        Prescribed::Rotation { .. } | Prescribed::Field(_) => true,
-    }
 }
 
 /// The row of a component that a condition prescribes of a node at `X`.

@@ -1,7 +1,7 @@
 //! Conditions that prescribe the same components of the same nodes.
 #![allow(non_snake_case)]
 
-use super::rows::{ConditionState, ConstraintRow, prescribes, row_of, selected_nodes};
+use super::rows::{ConditionState, ConstraintRow, row_of, selected_nodes};
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::neighbours::Neighbours;
 use crate::discretisation::nodes::NodeCloud;
@@ -38,7 +38,7 @@ pub(crate) fn check_shared_nodes(
         for first in 0..second {
             let both = [&conditions[first], &conditions[second]];
             let components: Vec<usize> = (0..problem.dimension.components())
-                .filter(|&k| both.iter().all(|condition| prescribes(condition, k)))
+                .filter(|&k| both.iter().all(|condition| condition.prescribes(k)))
                 .collect();
             let [a, b] = [&selected[first], &selected[second]];
             let nodes: Vec<u32> =

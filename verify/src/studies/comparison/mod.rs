@@ -3,6 +3,7 @@
 pub mod benchmarks;
 mod compared;
 pub mod convergence;
+pub mod held_patches;
 mod limits;
 mod tables;
 

@@ -1,0 +1,346 @@
+//! Nodes along the edges of held parts of the boundary (method book, eq. 5.4).
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::discretisation::neighbours::Neighbours;
+use crate::discretisation::nodes::cloud::NodeCloud;
+use crate::geometry::{Extent, Panel, PointHash, Shape, project};
+use crate::problem::EssentialCondition;
+use std::collections::VecDeque;
+
+/// Distance of the nodes from the edge, on the held side \[spacing\].
+const INSIDE: f64 = 0.16;
+/// Other nodes closer to one of them make room \[spacing\].
+const ROOM: f64 = 0.65;
+/// Nodes of different edges are at least this far apart \[spacing\].
+const APART: f64 = 0.5;
+/// Panels whose normals have a smaller product lie on different faces of the body, whose
+/// edges have nodes anyway.
+const SAME_FACE: f64 = 0.7;
+
+/// The boundary of a body in panels, among which held parts end.
+pub(crate) struct HeldParts<'a> {
+    body: &'a Shape,
+    conditions: &'a [EssentialCondition],
+    panels: &'a [Panel],
+    /// Largest edge of a panel \[m\].
+    size: f64,
+    /// The centres of the panels.
+    centres: Neighbours,
+}
+
+/// A node on an edge, and its spacing \[m\].
+struct EdgeNode {
+    position: Vector3,
+    spacing: f64,
+}
+
+impl<'a> HeldParts<'a> {
+    /// Of panels no larger than `size` \[m\].
+    pub fn new(
+        body: &'a Shape,
+        conditions: &'a [EssentialCondition],
+        panels: &'a [Panel],
+        size: f64,
+    ) -> Self {
+        let positions: Vec<Vector3> = panels.iter().map(|panel| panel.centre).collect();
+        let centres = Neighbours::new(&positions, 2.0 * size);
+        HeldParts { body, conditions, panels, size, centres }
+    }
+
+    /// Puts nodes about a spacing apart along every curve where a held part ends within a
+    /// face, in place of the nodes close to them. What is held then ends at the curve
+    /// instead of anywhere between two nodes.
+    pub fn place_nodes(&self, cloud: &mut NodeCloud) {
+        let nodes = Neighbours::new(&cloud.positions, 2.0 * cloud.smallest_spacing());
+        let spacing_at = |X: &Vector3| cloud.spacing[nearest(&nodes, X, self.size)];
+        let mut hash = PointHash::new(self.size, 1e3 * self.size);
+        let mut added: Vec<EdgeNode> = Vec::new();
+        for condition in self.conditions.iter().filter(|c| c.extent == Extent::Surface) {
+            for curve in self.curves(condition) {
+                for X in evenly(&curve, &spacing_at) {
+                    let spacing = spacing_at(&X);
+                    let position = self.inside(condition, &X, spacing);
+                    if !hash.any_within(&position, APART * spacing) {
+                        hash.insert(position);
+                        added.push(EdgeNode { position, spacing });
+                    }
+                }
+            }
+        }
+        self.make_room(cloud, &nodes, &added);
+    }
+
+    /// Removes the nodes close to the `added` ones and appends these.
+    fn make_room(&self, cloud: &mut NodeCloud, nodes: &Neighbours, added: &[EdgeNode]) {
+        let mut stays = vec![true; cloud.positions.len()];
+        for EdgeNode { position, spacing } in added {
+            nodes.for_each_within(position, ROOM * spacing, |node, _| stays[node] = false);
+        }
+        for (node, stays) in stays.iter_mut().enumerate().filter(|(_, stays)| !**stays) {
+            *stays = cloud.on_boundary[node] && self.is_sharp(&cloud.positions[node]);
+        }
+        cloud.retain(&stays);
+        for EdgeNode { position, spacing } in added {
+            cloud.positions.push(*position);
+            cloud.spacing.push(*spacing);
+            cloud.on_boundary.push(true);
+        }
+    }
+
+    /// Whether faces of different normals meet at a place.
+    fn is_sharp(&self, X: &Vector3) -> bool {
+        let mut normals: Vec<Vector3> = Vec::new();
+        self.centres.for_each_within(X, self.size, |panel, _| {
+            normals.push(self.panels[panel].normal);
+        });
+        normals.iter().any(|normal| normal.dot(&normals[0]) < SAME_FACE)
+    }
+
+    /// Whether no condition holds a place as much as `condition` does.
+    fn is_free(&self, condition: &EssentialCondition, X: &Vector3) -> bool {
+        let as_much = |other: &EssentialCondition| {
+            (0..3).all(|k| other.prescribes(k) || !condition.prescribes(k))
+        };
+        !self.conditions.iter().any(|other| as_much(other) && other.part.contains(X))
+    }
+
+    /// The curves along which the part that a condition holds ends within a face.
+    fn curves(&self, condition: &EssentialCondition) -> Vec<Vec<Vector3>> {
+        let held: Vec<bool> =
+            self.panels.iter().map(|panel| condition.part.contains(&panel.centre)).collect();
+        let mut hash = PointHash::new(0.1 * self.size, self.size);
+        let mut points = Vec::new();
+        for (panel, _) in self.panels.iter().zip(&held).filter(|(_, held)| **held) {
+            self.centres.for_each_within(&panel.centre, 1.5 * self.size, |other, _| {
+                let far = &self.panels[other];
+                if held[other]
+                    || far.normal.dot(&panel.normal) < SAME_FACE
+                    || !self.is_free(condition, &far.centre)
+                {
+                    return;
+                }
+                let X = self.end_between(condition, panel.centre, far.centre);
+                if !hash.any_within(&X, 0.2 * self.size) {
+                    hash.insert(X);
+                    points.push(X);
+                }
+            });
+        }
+        chains(points, 1.5 * self.size)
+    }
+
+    /// Where the held part ends between two places, on the held side.
+    fn end_between(
+        &self,
+        condition: &EssentialCondition,
+        mut held: Vector3,
+        mut free: Vector3,
+    ) -> Vector3 {
+        for _ in 0..40 {
+            let middle = project(self.body, &(0.5 * (held + free)));
+            if condition.part.contains(&middle) { held = middle } else { free = middle }
+        }
+        held
+    }
+
+    /// The place of a node at the point `X` of an edge.
+    fn inside(&self, condition: &EssentialCondition, X: &Vector3, spacing: f64) -> Vector3 {
+        let X = project(self.body, X);
+        let mut inwards = Vector3::zeros();
+        self.centres.for_each_within(&X, spacing.max(self.size), |panel, offset| {
+            if condition.part.contains(&self.panels[panel].centre) {
+                inwards += self.panels[panel].area * offset;
+            }
+        });
+        let normal = self.body.gradient(&X);
+        let inwards = inwards - inwards.dot(&normal) * normal;
+        let moved = inwards.try_normalize(0.0).map(|way| X + INSIDE * spacing * way);
+        // A part may be narrower than that.
+        moved
+            .map(|moved| project(self.body, &moved))
+            .filter(|moved| condition.part.contains(moved))
+            .unwrap_or(X)
+    }
+}
+
+/// The node nearest to a place, searched from a radius \[m\] on.
+fn nearest(nodes: &Neighbours, X: &Vector3, radius: f64) -> usize {
+    let mut radius = radius;
+    loop {
+        let mut best = (f64::INFINITY, 0);
+        nodes.for_each_within(X, radius, |node, offset| {
+            let distance = offset.norm_squared();
+            if distance < best.0 {
+                best = (distance, node);
+            }
+        });
+        if best.0 < f64::INFINITY || !radius.is_finite() {
+            return best.1;
+        }
+        radius *= 2.0;
+    }
+}
+
+/// Points ordered along curves: from an end to the nearest that is left and not farther
+/// than `reach` \[m\]. A closed curve ends with its first point.
+fn chains(points: Vec<Vector3>, reach: f64) -> Vec<Vec<Vector3>> {
+    if points.is_empty() {
+        return Vec::new();
+    }
+    let cells = Neighbours::new(&points, reach);
+    let mut left = vec![true; points.len()];
+    let mut chains = Vec::new();
+    for first in 0..points.len() {
+        if !std::mem::replace(&mut left[first], false) {
+            continue;
+        }
+        let mut chain = VecDeque::from([points[first]]);
+        for forwards in [true, false] {
+            let mut end = points[first];
+            while let Some(next) = next_left(&cells, &end, reach, &left) {
+                left[next] = false;
+                end = points[next];
+                if forwards { chain.push_back(end) } else { chain.push_front(end) }
+            }
+        }
+        let mut chain = Vec::from(chain);
+        if chain.len() > 3 && (chain[0] - chain[chain.len() - 1]).norm() < reach {
+            chain.push(chain[0]);
+        }
+        chains.push(chain);
+    }
+    chains
+}
+
+fn next_left(cells: &Neighbours, end: &Vector3, reach: f64, left: &[bool]) -> Option<usize> {
+    let mut best: Option<(f64, usize)> = None;
+    cells.for_each_within(end, reach, |point, offset| {
+        let distance = offset.norm_squared();
+        if left[point] && best.is_none_or(|(nearest, _)| distance < nearest) {
+            best = Some((distance, point));
+        }
+    });
+    best.map(|(_, point)| point)
+}
+
+/// Points that divide a curve evenly in units of the local spacing, its ends included.
+fn evenly(curve: &[Vector3], spacing_at: &impl Fn(&Vector3) -> f64) -> Vec<Vector3> {
+    let mut sums = vec![0.0];
+    let mut sum = 0.0;
+    for pair in curve.windows(2) {
+        sum += (pair[1] - pair[0]).norm() / spacing_at(&pair[0]);
+        sums.push(sum);
+    }
+    if sum == 0.0 {
+        return vec![curve[0]];
+    }
+    let closed = curve[0] == curve[curve.len() - 1];
+    let count = sum.round().max(1.0) as usize;
+    let last = if closed { count - 1 } else { count };
+    (0..=last)
+        .map(|n| {
+            let goal = sum * n as f64 / count as f64;
+            let b = sums.partition_point(|s| *s <= goal).min(sums.len() - 1);
+            let a = b - 1;
+            let t = (goal - sums[a]) / (sums[b] - sums[a]);
+            curve[a] + t * (curve[b] - curve[a])
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::discretisation::nodes::node_cloud;
+    use crate::geometry::Selector;
+    use crate::problem::{Amplitude, Cloud, Dimension, Prescribed};
+
+    const SPACING: f64 = 0.06;
+    const RADIUS: f64 = 0.15;
+    const CENTRE: Vector3 = Vector3::new(0.5, 0.25, 0.25);
+
+    fn brick() -> Shape {
+        Shape::Box { min: Vector3::zeros(), max: Vector3::new(1.0, 0.5, 0.25) }
+    }
+
+    fn ball(centre: Vector3, radius: f64) -> Selector {
+        Selector::Inside { shape: Shape::Sphere { centre, radius }, tolerance: 0.0 }
+    }
+
+    fn held(part: Selector) -> EssentialCondition {
+        EssentialCondition::on_surface("held", part, Vector3::zeros(), Amplitude::Constant)
+    }
+
+    /// The jittered nodes of the brick before and after those of its held parts.
+    fn clouds(conditions: &[EssentialCondition]) -> (NodeCloud, NodeCloud) {
+        let cloud = Cloud::Jittered { spacing: SPACING, jitter: 0.2, seed: 3 };
+        let before = node_cloud(&brick(), &cloud, &Dimension::Three).unwrap();
+        let size = 0.5 * SPACING;
+        let panels = brick().boundary_panels(size, &Dimension::Three).unwrap();
+        let mut after = before.clone();
+        HeldParts::new(&brick(), conditions, &panels, size).place_nodes(&mut after);
+        (before, after)
+    }
+
+    #[test]
+    fn a_held_disc_gets_a_ring_of_nodes_inside_its_edge_and_room_around_it() {
+        let condition = held(ball(CENTRE, RADIUS));
+        let (_, cloud) = clouds(std::slice::from_ref(&condition));
+        let inside = RADIUS - INSIDE * SPACING;
+        let on_ring = |X: &Vector3| {
+            let off = X - CENTRE;
+            off.z == 0.0 && (off.norm() - inside).abs() < 0.03 * SPACING
+        };
+        let (ring, others): (Vec<Vector3>, Vec<Vector3>) =
+            cloud.positions.iter().copied().partition(on_ring);
+        let expected = std::f64::consts::TAU * RADIUS / SPACING;
+        assert!((ring.len() as f64 - expected).abs() <= 1.0, "{} nodes", ring.len());
+        for X in &ring {
+            assert!(condition.part.contains(X));
+            let closest = |nodes: &[Vector3]| {
+                let apart = nodes.iter().map(|Y| (X - Y).norm()).filter(|apart| *apart > 0.0);
+                apart.fold(f64::INFINITY, f64::min) / SPACING
+            };
+            assert!((0.85..1.1).contains(&closest(&ring)), "{} apart", closest(&ring));
+            assert!((ROOM..1.3).contains(&closest(&others)), "{} away", closest(&others));
+        }
+        assert!(cloud.on_boundary[cloud.positions.len() - ring.len()..].iter().all(|on| *on));
+    }
+
+    #[test]
+    fn whole_faces_change_no_node() {
+        let face = Selector::Plane { point: CENTRE, normal: Vector3::z(), tolerance: 1e-9 };
+        let (before, after) = clouds(&[held(face)]);
+        assert_eq!(before, after);
+    }
+
+    #[test]
+    fn a_part_that_goes_on_under_another_condition_has_no_edge_there() {
+        let left = Selector::Inside {
+            shape: Shape::Box { min: Vector3::repeat(-1.0), max: Vector3::new(0.5, 2.0, 2.0) },
+            tolerance: 0.0,
+        };
+        let right = Selector::Not(Box::new(left.clone()));
+        let (before, after) = clouds(&[held(left.clone()), held(right.clone())]);
+        assert_eq!(before, after);
+        // Rollers do not hold as much.
+        let mut rollers = held(right);
+        rollers.prescribed = Prescribed::Displacement([None, None, Some(0.0)]);
+        let (before, after) = clouds(&[held(left), rollers]);
+        assert_ne!(before, after);
+    }
+
+    #[test]
+    fn corners_and_edges_of_the_body_keep_their_nodes() {
+        let (before, after) = clouds(&[held(ball(Vector3::new(0.0, 0.0, 0.25), RADIUS))]);
+        let faces = |X: &Vector3| {
+            let ends = X.iter().zip(&[1.0, 0.5, 0.25]).filter(|(x, end)| **x == 0.0 || x == end);
+            ends.count()
+        };
+        for X in before.positions.iter().filter(|X| faces(X) > 1) {
+            assert!(after.positions.contains(X), "{X}");
+        }
+        assert_ne!(before, after);
+    }
+}
