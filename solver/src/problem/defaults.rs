@@ -15,6 +15,8 @@ pub const WEIGHT_FUNCTION: WeightFunction = WeightFunction::QuarticSpline;
 pub const ENFORCEMENT: Enforcement = Enforcement::Collocation;
 /// Of consistent gradients, over the defect of plain ones \[–\].
 pub const GRADIENT_TOLERANCE: f64 = 1e-3;
+/// The recommended gradients.
+pub const GRADIENTS: Gradients = Gradients::SecondOrder { tolerance: GRADIENT_TOLERANCE };
 /// The recommended precision of stored gradients.
 pub const GRADIENT_STORAGE: GradientStorage = GradientStorage::Double;
 /// The recommended treatment of nearly incompressible materials.
@@ -60,7 +62,7 @@ impl Recipe {
             grid: BackgroundGrid::with_cell(spacing / CELLS_PER_SPACING),
             mass: mass(BASIS),
             enforcement: ENFORCEMENT,
-            gradients: Gradients::Consistent { tolerance: GRADIENT_TOLERANCE },
+            gradients: GRADIENTS,
             gradient_storage: GRADIENT_STORAGE,
             volumetric_projection: VOLUMETRIC_PROJECTION,
         }

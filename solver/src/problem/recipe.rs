@@ -201,6 +201,15 @@ impl Gradients {
         }
     }
 
+    /// The same gradients with another tolerance \[–\].
+    pub fn with_tolerance(self, tolerance: f64) -> Gradients {
+        match self {
+            Gradients::Plain => Gradients::Plain,
+            Gradients::Consistent { .. } => Gradients::Consistent { tolerance },
+            Gradients::SecondOrder { .. } => Gradients::SecondOrder { tolerance },
+        }
+    }
+
     /// Whether linear stresses are integrated too.
     pub fn is_second_order(self) -> bool {
         matches!(self, Gradients::SecondOrder { .. })

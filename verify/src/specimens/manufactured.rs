@@ -32,8 +32,8 @@ pub enum RecipeKind {
     Default,
     /// The default with 2 cells per spacing, eight points per node.
     Finer,
-    /// The default with gradients of second order.
-    SecondOrder,
+    /// The default with gradients consistent for constant stresses only.
+    Consistent,
     /// That of Horton 2007: plain gradients, cells kept whole where their centre is inside,
     /// nodal parameters prescribed, J at every point, masses split evenly; with at least
     /// this many points.
@@ -142,9 +142,9 @@ pub fn manufactured_problem(
     match kind {
         RecipeKind::Default => {}
         RecipeKind::Finer => problem.recipe.grid.cell = 0.5 / (nodes_per_edge - 1) as f64,
-        RecipeKind::SecondOrder => {
+        RecipeKind::Consistent => {
             let tolerance = defaults::GRADIENT_TOLERANCE;
-            problem.recipe.gradients = Gradients::SecondOrder { tolerance };
+            problem.recipe.gradients = Gradients::Consistent { tolerance };
         }
         RecipeKind::Plain { points } => make_plain(&mut problem, points)?,
     }

@@ -5,8 +5,8 @@ use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Extent, Selector, Shape};
 use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use mtled::problem::{
-    Amplitude, Cloud, Dimension, EssentialCondition, Gradients, Loads, MassRule, Motion,
-    Prescribed, Problem, Recipe, Region, Relaxation,
+    Amplitude, Cloud, Dimension, EssentialCondition, Loads, MassRule, Motion, Prescribed, Problem,
+    Recipe, Region, Relaxation, defaults,
 };
 
 /// Plane strain in a slab of 1 m.
@@ -41,7 +41,7 @@ pub fn recipe(spacing: f64, jitter: f64, seed: u64) -> Recipe {
     Recipe {
         cloud,
         mass: MassRule::EvenSplit,
-        gradients: Gradients::Consistent { tolerance: 1e-12 },
+        gradients: defaults::GRADIENTS.with_tolerance(1e-12),
         ..Recipe::with_spacing(spacing)
     }
 }

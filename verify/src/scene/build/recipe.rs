@@ -81,10 +81,11 @@ impl Builder<'_> {
         let key = "discretisation.gradient_tolerance";
         let tolerance = format.gradient_tolerance.unwrap_or(defaults::GRADIENT_TOLERANCE);
         self.positive(key, tolerance);
-        match format.gradients.unwrap_or(GradientsFormat::Consistent) {
-            GradientsFormat::Consistent => Gradients::Consistent { tolerance },
-            GradientsFormat::SecondOrder => Gradients::SecondOrder { tolerance },
-            GradientsFormat::Plain => {
+        match format.gradients {
+            None => defaults::GRADIENTS.with_tolerance(tolerance),
+            Some(GradientsFormat::Consistent) => Gradients::Consistent { tolerance },
+            Some(GradientsFormat::SecondOrder) => Gradients::SecondOrder { tolerance },
+            Some(GradientsFormat::Plain) => {
                 if format.gradient_tolerance.is_some() {
                     self.mistake(key, "belongs to gradients = \"consistent\" or \"second_order\"");
                 }

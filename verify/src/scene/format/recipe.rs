@@ -43,7 +43,7 @@ pub struct DiscretisationFormat {
     /// sums are negative at some corners.
     pub mass: Option<MassFormat>,
     pub enforcement: Option<EnforcementFormat>,
-    /// "consistent" by default.
+    /// "second_order" by default.
     pub gradients: Option<GradientsFormat>,
     /// Of consistent gradients, over the defect of plain ones [–]; 1e-3 if
     /// left out.

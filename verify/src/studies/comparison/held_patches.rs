@@ -10,7 +10,7 @@ use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
 use mtled::motion::internal_force::{Workspace, strain_energy};
 use mtled::motion::observe::Unobserved;
-use mtled::problem::{Amplitude, Cloud, Dimension, EssentialCondition, Gradients, Problem, Recipe};
+use mtled::problem::{Amplitude, Cloud, Dimension, EssentialCondition, Problem, Recipe};
 use mtled_checks::study::{Cell, Study, Table, number, text};
 use rayon::prelude::*;
 
@@ -79,7 +79,6 @@ fn patches() -> Vec<Patch> {
 fn problem(patch: &Patch, spacing: f64, poisson_ratio: f64, seed: u64) -> Result<Problem> {
     let recipe = Recipe {
         cloud: Cloud::Jittered { spacing, jitter: 0.2, seed },
-        gradients: Gradients::SecondOrder { tolerance: 1e-3 },
         ..Recipe::with_spacing(spacing)
     };
     let mut problem =

@@ -16,8 +16,9 @@ type Groups = &'static [(Group, Option<f64>)];
 const EXCEPTIONS: &[(&str, Groups, &str)] = &[
     (
         "brain_slice",
-        &[(Group::Force, None), (Group::StrainEnergy, None)],
-        "voxel edges on the outline change how the brain slides along the skull",
+        &[(Group::Force, None), (Group::StrainEnergy, None), (Group::CentreOfMass, Some(0.025))],
+        "voxel edges on the outline change how the brain slides along the skull: the finite-element centres \
+         by 0.03 to 0.05 mm, 1 to 2 % of their displacement, which is not in their error bar",
     ),
     (
         "falling_beam",
@@ -25,34 +26,15 @@ const EXCEPTIONS: &[(&str, Groups, &str)] = &[
         "the reaction of an undamped body oscillates with the scheme",
     ),
     (
-        "indented_block",
-        &[
-            (Group::Displacement, Some(0.022)),
-            (Group::Force, Some(0.11)),
-            (Group::StrainEnergy, Some(0.108)),
-        ],
-        "the force is too low: only nodes inside the disc are constrained, which may act like a disc \
-         whose radius is half a spacing smaller. 11 % too low here, 7 % with half the spacing; \
-         constraining nodes up to half a spacing outside makes it 11 % too high. Other graded clouds \
-         change probes by up to 2.4 %",
-    ),
-    (
         "sphere_gravity",
         &[
-            (Group::Displacement, Some(0.205)),
-            (Group::CentreOfMass, Some(0.235)),
-            (Group::StrainEnergy, Some(0.215)),
+            (Group::Displacement, Some(0.06)),
+            (Group::CentreOfMass, Some(0.065)),
+            (Group::StrainEnergy, Some(0.06)),
         ],
-        "the ball sags too much: the edge of the cap falls between nodes, and the constrained foot may \
-         act as up to a spacing too small. The centre of mass is 19, 14 and 8 % too low with 1, 0.75 \
-         and 0.5 times the spacing; it also moves sideways on a lattice, which the reference does not. \
-         On 21 families of clouds up to 20, 23 and 22 % in probes, centre and energy",
-    ),
-    (
-        "turek_hron_csm2",
-        &[(Group::Displacement, Some(0.021))],
-        "the tip of the flag sags 2 % too little on lattices that are jittered by 2 %, 1.95 % on straight \
-         ones: the flag is four spacings thick",
+        "the cap has a radius of 3.5 spacings, and on a lattice the ball also leans sideways, which the \
+         reference does not: the top sinks 2.5 % too far and moves aside by 3 % of that. With 0.7 and 0.5 \
+         times the spacing it sinks 0.4 % too far and 0.1 % too little",
     ),
     (
         "turek_hron_csm3",

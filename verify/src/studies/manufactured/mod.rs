@@ -9,7 +9,7 @@ use crate::studies::manufactured::orders::{
 };
 use crate::studies::manufactured::plain_scheme::{check_pairs, pairs, plain_table};
 use crate::studies::manufactured::scenario::{
-    CLOUDS, Errors, FINER, Level, SCENARIOS, SECOND_ORDER, SECOND_ORDER_TOO, Scenario, errors,
+    CLOUDS, CONSISTENT, Errors, FINER, Level, SCENARIOS, Scenario, errors,
 };
 use crate::studies::workbench::{Suite, Workbench};
 use anyhow::{Context, Result};
@@ -48,8 +48,8 @@ const NOTES: [&str; 3] = [
 /// Solves every scenario on clouds of several sizes and checks errors and orders.
 pub fn manufactured(bench: &Workbench, study: &mut Study) -> Result<()> {
     let sizes = bench.pick(vec![5, 7, 9], vec![5, 7, 9, 13]);
-    let both = [SCENARIOS.as_slice(), &[SECOND_ORDER]].concat();
-    let scenarios = bench.pick(both.clone(), [&both, &SECOND_ORDER_TOO[..], &FINER].concat());
+    let both = [SCENARIOS.as_slice(), &[CONSISTENT]].concat();
+    let scenarios = bench.pick(both.clone(), [&both[..], &FINER].concat());
     let jobs: Vec<(Scenario, usize, u64)> = scenarios
         .iter()
         .flat_map(|&scenario| {
