@@ -14,7 +14,7 @@ pub mod vtu;
 mod work;
 
 pub use error_bar::{
-    CoarserCloud, ErrorBar, ErrorBars, Estimated, Indicator, NoErrorBar, error_bars, ratios,
+    CoarserCloud, ErrorBar, ErrorBars, Estimated, Indicator, NoErrorBar, error_bars,
 };
 pub use interrupt::{interrupt, interrupted};
 pub use memory::{MemoryShortage, estimated_memory, refuse_beyond_memory};

@@ -19,23 +19,27 @@ use crate::machine::cpu_seconds;
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{Family, Quantity, quantities};
 use crate::scene::Case;
+use mtled::problem::{Motion, Problem};
 
 /// The order p \[–\]. An order observed from the clouds of one run is mostly noise.
 const ORDER: f64 = 1.6;
 /// No bar is shorter than this fraction of the largest value of its family: the tolerance of
 /// the coarser solutions \[–\].
-const FLOOR: f64 = 5e-5;
+const FLOOR: f64 = 2e-5;
 /// Coarser clouds without which there is no bar.
 const FEWEST: usize = 2;
 
-/// The factor c of a family \[–\], set on the bundled cases (study `error_bars`).
-fn factor(family: Family) -> f64 {
-    match family {
-        Family::Displacement | Family::Centre => 1.25,
-        Family::Force => 1.7,
-        Family::Moment => 1.4,
-        Family::StrainEnergy | Family::KineticEnergy => 1.6,
-    }
+/// Longer bars of motions and of contact, whose coarser clouds are two and further away \[–\].
+const AS_THE_RUN: f64 = 1.5;
+
+/// The factor c of a family \[–\], set on bundled cases and made-up bodies (study `error_bars`).
+fn factor(family: Family, problem: &Problem) -> f64 {
+    let factor = match family {
+        Family::Displacement | Family::Centre | Family::Force => 1.35,
+        Family::Moment | Family::StrainEnergy | Family::KineticEnergy => 1.3,
+    };
+    let longer = matches!(problem.motion, Motion::Dynamic { .. }) || !problem.obstacles.is_empty();
+    if longer { AS_THE_RUN * factor } else { factor }
 }
 
 /// Error over difference between clouds, 1/(rᵖ − 1) \[–\].
@@ -57,7 +61,7 @@ pub fn error_bars(
     }
     let start = cpu_seconds();
     let runs = coarser_runs(case)?;
-    let indicator = indicates.then(|| indicator(&solved.prepared, &runs[0])).flatten();
+    let indicator = indicates.then(|| indicator(case, &solved.prepared, &runs[0])).flatten();
     Ok(ErrorBars {
         bars: bars(case, solved, record, &runs),
         clouds: runs.iter().map(|run| run.cloud.clone()).collect(),
@@ -82,9 +86,9 @@ fn coarser_runs(case: &Case) -> Result<Vec<CoarserRun>, NoErrorBar> {
     }
 }
 
-fn indicator(prepared: &Prepared, run: &CoarserRun) -> Option<Indicator> {
+fn indicator(case: &Case, prepared: &Prepared, run: &CoarserRun) -> Option<Indicator> {
     let coarser_displacement = run.displacement_at(&prepared.discretisation.cloud.positions)?;
-    let factor = factor(Family::Displacement) * weight(run.cloud.ratio);
+    let factor = factor(Family::Displacement, &case.problem) * weight(run.cloud.ratio);
     Some(Indicator { coarser_displacement, factor })
 }
 
@@ -94,7 +98,12 @@ fn bars(case: &Case, solved: &Solved, record: &Recording, runs: &[CoarserRun]) -
     let bar = |quantity: Quantity| {
         let largest = largest(case, record, quantity.family);
         let spread = spread(case, record, runs, &quantity)?.hypot(FLOOR * largest);
-        let size = judged(quantity.family, factor(quantity.family) * spread, largest, &doubt);
+        let size = judged(
+            quantity.family,
+            factor(quantity.family, &case.problem) * spread,
+            largest,
+            &doubt,
+        );
         Some(ErrorBar { quantity, size })
     };
     answered.filter_map(bar).collect()

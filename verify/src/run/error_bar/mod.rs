@@ -11,7 +11,7 @@ mod patch_edge;
 mod report;
 
 pub use bars::{ErrorBar, ErrorBars, Estimated, Indicator};
-pub use coarser::{CoarserCloud, ratios};
+pub use coarser::CoarserCloud;
 pub use estimate::error_bars;
 pub use no_error_bar::NoErrorBar;
 pub use report::{error_bars_json, error_bars_text, plus_minus};

@@ -39,3 +39,28 @@ pub fn edge_between_nodes(problem: &Problem, cloud: &NodeCloud) -> Option<String
     };
     surfaces.into_iter().find(|c| ends_between(&c.part)).map(|c| c.name.clone())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::prepare;
+    use crate::scene::read_case;
+
+    #[test]
+    fn held_caps_and_discs_end_between_nodes_and_whole_faces_and_arcs_do_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let cases = crate::bundled::unpack(folder.path()).unwrap();
+        for (name, edge) in [
+            ("sphere_gravity", Some("cap")),
+            ("indented_block", Some("disc")),
+            ("cube_compression", None),
+            ("twisted_cylinder", None),
+            ("turek_hron_csm1", None),
+            ("cook_membrane", None),
+        ] {
+            let problem = read_case(&cases.join(format!("{name}.toml"))).unwrap().problem;
+            let cloud = prepare(&problem).unwrap().discretisation.cloud;
+            assert_eq!(edge_between_nodes(&problem, &cloud).as_deref(), edge, "{name}");
+        }
+    }
+}
