@@ -42,7 +42,9 @@ pub struct CoarserRun {
     pub cloud: CoarserCloud,
     /// Its last sample.
     pub recording: Recording,
-    solved: Solved,
+    /// Its displacement at the positions that were asked for \[position\]\[x, y, z\] \[m\]; none
+    /// where its nodes do not reach one of them.
+    pub displacement: Option<Vec<f64>>,
 }
 
 /// Spacings of the coarser clouds of a problem over that of the run, the finest first \[–\].
@@ -67,9 +69,13 @@ fn by_newton(problem: &Problem) -> Option<Motion> {
     }
 }
 
-/// Solves a case with every length of its recipe multiplied by `ratio`. It needs a third of
-/// the memory of the run's set-up or less, which is free again by now.
-pub fn solve_coarser(case: &Case, ratio: f64) -> Result<CoarserRun, NoErrorBar> {
+/// Solves a case with every length of its recipe multiplied by `ratio`; nothing of its
+/// discretisation is kept.
+pub fn solve_coarser(
+    case: &Case,
+    ratio: f64,
+    positions: Option<&[Vector3]>,
+) -> Result<CoarserRun, NoErrorBar> {
     let refused = |error: Error| NoErrorBar::Coarser(error.to_string());
     let mut coarser = case.clone();
     coarser.problem.recipe.scale_lengths(ratio);
@@ -87,7 +93,8 @@ pub fn solve_coarser(case: &Case, ratio: f64) -> Result<CoarserRun, NoErrorBar> 
     let nodes = prepared.model.positions.len();
     let solved = Solved::new(prepared, end);
     let cloud = CoarserCloud { ratio, nodes, work: Work::of(&solved) };
-    Ok(CoarserRun { cloud, recording: recorder.finish(), solved })
+    let displacement = positions.and_then(|positions| displacement_at(&solved, positions));
+    Ok(CoarserRun { cloud, recording: recorder.finish(), displacement })
 }
 
 /// A discretisation without zero-energy modes and its spacing over that of the run.
@@ -110,14 +117,10 @@ fn fitted(problem: &mut Problem, ratio: f64) -> Result<(f64, Prepared), Error> {
     }
 }
 
-impl CoarserRun {
-    /// Its displacement at other positions \[position\]\[x, y, z\] \[m\]; None where its nodes
-    /// do not reach one of them.
-    pub fn displacement_at(&self, positions: &[Vector3]) -> Option<Vec<f64>> {
-        let Prepared { discretisation, model, .. } = &self.solved.prepared;
-        let rows = discretisation.rows_at(positions).ok()?;
-        let u = &self.solved.state.displacement;
-        let value = |i| <[f64; 3]>::from(rows.interpolate(i, u, model.components));
-        Some((0..rows.len()).flat_map(value).collect())
-    }
+fn displacement_at(solved: &Solved, positions: &[Vector3]) -> Option<Vec<f64>> {
+    let Prepared { discretisation, model, .. } = &solved.prepared;
+    let rows = discretisation.rows_at(positions).ok()?;
+    let u = &solved.state.displacement;
+    let value = |i| <[f64; 3]>::from(rows.interpolate(i, u, model.components));
+    Some((0..rows.len()).flat_map(value).collect())
 }

@@ -8,7 +8,6 @@
 //! with one order p for all and a factor c of each family of quantities.
 
 use super::super::numbers::numbers;
-use super::super::prepare::Prepared;
 use super::super::record::Recording;
 use super::super::solve::Solved;
 use super::bars::{ErrorBar, ErrorBars, Indicator};
@@ -19,6 +18,7 @@ use crate::machine::cpu_seconds;
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{Family, Quantity, quantities};
 use crate::scene::Case;
+use mtled::algebra::tensor::Vector3;
 use mtled::problem::{Motion, Problem};
 
 /// The order p \[–\]. An order observed from the clouds of one run is mostly noise.
@@ -60,8 +60,12 @@ pub fn error_bars(
         return Err(doubt);
     }
     let start = cpu_seconds();
-    let runs = coarser_runs(case)?;
-    let indicator = indicates.then(|| indicator(case, &solved.prepared, &runs[0])).flatten();
+    let nodes = &solved.prepared.discretisation.cloud.positions;
+    let mut runs = coarser_runs(case, indicates.then_some(nodes))?;
+    let indicator = runs[0].displacement.take().map(|coarser_displacement| Indicator {
+        coarser_displacement,
+        factor: factor(Family::Displacement, &case.problem) * weight(runs[0].cloud.ratio),
+    });
     Ok(ErrorBars {
         bars: bars(case, solved, record, &runs),
         clouds: runs.iter().map(|run| run.cloud.clone()).collect(),
@@ -70,11 +74,13 @@ pub fn error_bars(
     })
 }
 
-/// The coarser clouds that can be solved, the finest first.
-fn coarser_runs(case: &Case) -> Result<Vec<CoarserRun>, NoErrorBar> {
-    let (mut runs, mut failure) = (Vec::new(), None);
+/// The coarser clouds that can be solved, the finest first, with its displacement at the nodes of
+/// the run.
+fn coarser_runs(case: &Case, nodes: Option<&Vec<Vector3>>) -> Result<Vec<CoarserRun>, NoErrorBar> {
+    let (mut runs, mut failure): (Vec<CoarserRun>, _) = (Vec::new(), None);
     for &ratio in ratios(&case.problem) {
-        match solve_coarser(case, ratio) {
+        let positions = nodes.filter(|_| runs.is_empty()).map(Vec::as_slice);
+        match solve_coarser(case, ratio, positions) {
             Ok(run) => runs.push(run),
             Err(NoErrorBar::CoarserStopped) => return Err(NoErrorBar::CoarserStopped),
             Err(reason) => failure = Some(reason),
@@ -84,12 +90,6 @@ fn coarser_runs(case: &Case) -> Result<Vec<CoarserRun>, NoErrorBar> {
         (true, Some(reason)) => Err(reason),
         _ => Ok(runs),
     }
-}
-
-fn indicator(case: &Case, prepared: &Prepared, run: &CoarserRun) -> Option<Indicator> {
-    let coarser_displacement = run.displacement_at(&prepared.discretisation.cloud.positions)?;
-    let factor = factor(Family::Displacement, &case.problem) * weight(run.cloud.ratio);
-    Some(Indicator { coarser_displacement, factor })
 }
 
 fn bars(case: &Case, solved: &Solved, record: &Recording, runs: &[CoarserRun]) -> Vec<ErrorBar> {
