@@ -34,7 +34,7 @@ pub struct Footprint {
 const PROGRAM: f64 = 18e6;
 const PER_NODE: f64 = 1700.0;
 const PER_ENTRY: f64 = 82.0;
-const PER_PANEL: f64 = 350.0;
+const PER_PANEL: f64 = 380.0;
 const PER_PANEL_ENTRY: f64 = 14.0;
 /// Rows of φ and Grad φ: what stays, and the second copy of so many points for a while.
 const PER_ROW_ENTRY: f64 = 36.0;

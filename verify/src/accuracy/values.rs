@@ -1,10 +1,9 @@
 //! Values of a run in the layout of a reference solution.
 
-use crate::reference::{Family, Quantity, is_dynamic, quantities};
-use crate::run::{Recording, Sample};
+use crate::reference::{Quantity, is_dynamic, quantities};
+use crate::run::{Recording, Sample, numbers};
 use crate::scene::Case;
-use anyhow::{Context, Result, anyhow};
-use mtled::algebra::tensor::Vector3;
+use anyhow::{Context, Result};
 
 /// Samples of a dynamic run; values between them are interpolated linearly.
 pub const SAMPLES: usize = 1000;
@@ -22,14 +21,17 @@ fn series(
     quantity: &Quantity,
     times: &[f64],
 ) -> Result<Vec<f64>> {
+    let recorded = |sample: &Sample| {
+        numbers(case, recording, quantity, sample)
+            .with_context(|| format!("nothing was recorded of {}", quantity.name))
+    };
     if !quantity.changes {
-        return numbers(case, recording, quantity, recording.samples.last().context("no sample")?);
+        return recorded(recording.samples.last().context("no sample")?);
     }
     let mut all = Vec::new();
     for time in times {
         let (before, after, fraction) = around(case, recording, *time)?;
-        let before = numbers(case, recording, quantity, before)?;
-        let after = numbers(case, recording, quantity, after)?;
+        let (before, after) = (recorded(before)?, recorded(after)?);
         all.extend(before.iter().zip(&after).map(|(a, b)| a + fraction * (b - a)));
     }
     Ok(all)
@@ -52,26 +54,4 @@ fn around<'a>(
     let length = after.time - before.time;
     let fraction = if length > 0.0 { ((time - before.time) / length).clamp(0.0, 1.0) } else { 0.0 };
     Ok((before, after, fraction))
-}
-
-/// The numbers of a quantity in one sample.
-fn numbers(
-    case: &Case,
-    recording: &Recording,
-    quantity: &Quantity,
-    sample: &Sample,
-) -> Result<Vec<f64>> {
-    let name = quantity.name.split_once('/').map_or("", |(_, name)| name);
-    let probe = || case.probes.iter().position(|probe| probe.name == name);
-    let condition = || case.problem.conditions.iter().position(|c| c.name == name);
-    let flat = |vectors: &[Vector3]| vectors.iter().flat_map(|v| [v.x, v.y, v.z]).collect();
-    let found = match quantity.family {
-        Family::Displacement => probe().map(|index| flat(&sample.displacements[index])),
-        Family::Centre => probe().map(|index| flat(&recording.references[index])),
-        Family::Force => condition().map(|index| flat(&[sample.reactions[index].force])),
-        Family::Moment => condition().map(|index| flat(&[sample.reactions[index].moment])),
-        Family::StrainEnergy => Some(vec![sample.energies.strain]),
-        Family::KineticEnergy => Some(vec![sample.energies.kinetic]),
-    };
-    found.ok_or_else(|| anyhow!("nothing was recorded of {}", quantity.name))
 }

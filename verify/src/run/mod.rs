@@ -1,7 +1,9 @@
 //! One case from its problem to its result.
 
+mod error_bar;
 mod interrupt;
 mod memory;
+mod numbers;
 mod output;
 mod prepare;
 mod probes;
@@ -11,8 +13,12 @@ mod solve;
 pub mod vtu;
 mod work;
 
+pub use error_bar::{
+    CoarserCloud, ErrorBar, ErrorBars, Estimated, Indicator, NoErrorBar, error_bars,
+};
 pub use interrupt::{interrupt, interrupted};
 pub use memory::{MemoryShortage, estimated_memory, refuse_beyond_memory};
+pub use numbers::numbers;
 pub use output::{write_failed, write_outputs};
 pub use prepare::{Prepared, prepare, prepare_to_run};
 pub use probes::{MassCentre, centres_of_mass};

@@ -1,6 +1,7 @@
 //! Files of a run: VTU frames with a PVD, histories as CSV, `result.json`.
 #![allow(non_snake_case)]
 
+use super::error_bar::{Estimated, Indicator};
 use super::prepare::Prepared;
 use super::record::{Frame, Recording};
 use super::result::{failed_json, result_json};
@@ -23,10 +24,12 @@ pub fn write_outputs(
     case: &Case,
     solved: &Solved,
     record: &Recording,
+    bars: Option<&Estimated>,
     dir: &Path,
 ) -> Result<String> {
-    write_recorded(case, &solved.prepared, record, dir)?;
-    write_result(&result_json(case, solved, record), dir)
+    let indicator = bars.and_then(|bars| bars.as_ref().ok()?.indicator.as_ref());
+    write_recorded(case, &solved.prepared, record, indicator, dir)?;
+    write_result(&result_json(case, solved, record, bars), dir)
 }
 
 /// Writes what a run had recorded when it ended with an error.
@@ -37,7 +40,7 @@ pub fn write_failed(
     error: &Error,
     dir: &Path,
 ) -> Result<String> {
-    write_recorded(case, prepared, record, dir)?;
+    write_recorded(case, prepared, record, None, dir)?;
     write_result(&failed_json(case, prepared, record, error), dir)
 }
 
@@ -49,9 +52,15 @@ fn write_result(result: &Value, dir: &Path) -> Result<String> {
 
 /// Writes the recording, which a failed run has too. The files of an earlier run are taken
 /// away first and the PVD is written last, so that it never names frames of two runs.
-fn write_recorded(case: &Case, prepared: &Prepared, record: &Recording, dir: &Path) -> Result<()> {
+fn write_recorded(
+    case: &Case,
+    prepared: &Prepared,
+    record: &Recording,
+    indicator: Option<&Indicator>,
+    dir: &Path,
+) -> Result<()> {
     remove_earlier_run(dir)?;
-    let collection = write_frames(case, prepared, record, dir)?;
+    let collection = write_frames(case, prepared, record, indicator, dir)?;
     write_atomically(&dir.join("history.csv"), history_csv(case, record)?.as_bytes())?;
     let name = file_name(&format!("{}.pvd", case.name));
     write_pvd(&dir.join(name), order(&case.problem.motion), &collection)
@@ -112,6 +121,7 @@ fn write_frames(
     case: &Case,
     prepared: &Prepared,
     record: &Recording,
+    indicator: Option<&Indicator>,
     dir: &Path,
 ) -> Result<Vec<(f64, String)>> {
     let positions = &prepared.discretisation.cloud.positions;
@@ -124,6 +134,14 @@ fn write_frames(
         if let Some(mode) = record.unstable_mode.as_ref().filter(|_| is_last) {
             let mode = field_at_nodes(prepared, mode)?;
             fields.point_data.push(PointArray::new("unstable_mode", 3, mode));
+        }
+        if let Some(indicator) = indicator.filter(|_| is_last) {
+            let bar = PointArray::new(
+                "displacement_error_bar",
+                1,
+                indicator.sizes(&fields.point_data[0].values),
+            );
+            fields.point_data.push(bar);
         }
         write_vtu(&dir.join(&name), &fields)?;
         let at = match order(&case.problem.motion) {

@@ -1,5 +1,6 @@
 //! The result of a run as JSON and as a screen of text.
 
+use super::error_bar::{Estimated, error_bars_json, error_bars_text, plus_minus};
 use super::memory::estimated_memory;
 use super::prepare::Prepared;
 use super::record::Recording;
@@ -20,8 +21,13 @@ use serde_json::{Value, json};
 const SCHEMA_VERSION: u32 = 1;
 
 /// `result.json`. Only `timings` may differ between two runs of the same binary on
-/// the same case.
-pub fn result_json(case: &Case, solved: &Solved, record: &Recording) -> Value {
+/// the same case. `bars` are the error bars, unless they were left out.
+pub fn result_json(
+    case: &Case,
+    solved: &Solved,
+    record: &Recording,
+    bars: Option<&Estimated>,
+) -> Value {
     let mut warnings = solved.prepared.doubts(&case.problem);
     warnings.extend(solved.doubts());
     let mut result = recorded_json(case, &solved.prepared, record);
@@ -30,6 +36,12 @@ pub fn result_json(case: &Case, solved: &Solved, record: &Recording) -> Value {
     result["work_counters"] = json!(Work::of(solved));
     result["timings"]["solve_wall_s"] = json!(solved.solve_seconds);
     result["timings"]["solve_cpu_s"] = json!(solved.cpu_seconds);
+    if let Some(bars) = bars {
+        result["error_bars"] = error_bars_json(bars);
+    }
+    if let Some(Ok(bars)) = bars {
+        result["timings"]["error_bars_cpu_s"] = json!(bars.cpu_seconds);
+    }
     result
 }
 
@@ -218,8 +230,13 @@ fn energies_json(record: &Recording) -> Value {
     })
 }
 
-/// The main results, a line each.
-pub fn summary_text(case: &Case, solved: &Solved, record: &Recording) -> String {
+/// The main results, a line each, with their error bars.
+pub fn summary_text(
+    case: &Case,
+    solved: &Solved,
+    record: &Recording,
+    bars: Option<&Estimated>,
+) -> String {
     let (d, s) = (&solved.prepared.discretisation, &solved.summary);
     let model = &solved.prepared.model;
     let mut lines = vec![
@@ -271,20 +288,23 @@ pub fn summary_text(case: &Case, solved: &Solved, record: &Recording) -> String 
                 "point"
             };
             lines.push(format!(
-                "  {place} \"{}\" at ({}) m moved by ({}) m",
+                "  {place} \"{}\" at ({}) m moved by ({}) m{}",
                 printable(&probe.name),
                 triple(&references[0]),
-                triple(&displacements[0])
+                triple(&displacements[0]),
+                plus_minus(bars, &format!("displacement/{}", probe.name))
             ));
         }
         for (condition, reaction) in case.problem.conditions.iter().zip(&last.reactions) {
             lines.push(format!(
-                "  force of \"{}\": ({}) N",
+                "  force of \"{}\": ({}) N{}",
                 printable(&condition.name),
-                triple(&reaction.force)
+                triple(&reaction.force),
+                plus_minus(bars, &format!("force/{}", condition.name))
             ));
         }
     }
+    lines.extend(bars.into_iter().flat_map(|bars| error_bars_text(case, bars)));
     let work = Work::of(solved);
     lines.push(format!(
         "  {} evaluations of the internal force ({} for the critical step), {:.2e} points and {:.2e} \

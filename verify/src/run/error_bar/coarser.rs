@@ -1,0 +1,126 @@
+//! The same case on a coarser cloud.
+
+use super::super::interrupt::interrupted;
+use super::super::prepare::{Prepared, prepare};
+use super::super::record::{Recorder, Recording};
+use super::super::solve::{Solved, integrate_prepared};
+use super::super::work::Work;
+use super::no_error_bar::NoErrorBar;
+use crate::scene::Case;
+use mtled::algebra::tensor::Vector3;
+use mtled::error::Error;
+use mtled::model::zero_energy::{refuse_zero_energy_modes, tested_points};
+use mtled::problem::{Motion, Newton, Problem};
+
+/// Spacings over that of the run, where Newton's method takes the place of relaxation: a few
+/// times cheaper: three clouds are affordable in space, and two in a plane, where work falls
+/// less with the spacing \[–\].
+const BY_NEWTON: [f64; 3] = [1.7, 2.0, 2.4];
+const BY_NEWTON_IN_A_PLANE: [f64; 2] = [1.7, 2.4];
+/// Spacings over that of the run, where the coarser clouds are solved as the run was \[–\].
+const AS_THE_RUN: [f64; 2] = [2.0, 2.8];
+/// Residual of Newton's method on coarser clouds \[–\].
+const TOLERANCE: f64 = 1e-4;
+/// A lattice that leaves a part of the body with few points is made this much coarser once,
+/// which costs less than the test for zero-energy modes \[–\].
+const OTHER_FIT: f64 = 1.06;
+
+/// A coarser cloud that was solved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CoarserCloud {
+    /// Spacing over that of the run \[–\].
+    pub ratio: f64,
+    /// Number of its nodes.
+    pub nodes: usize,
+    /// What its solution took.
+    pub work: Work,
+}
+
+/// A coarser cloud with its answers.
+#[derive(Debug)]
+pub struct CoarserRun {
+    pub cloud: CoarserCloud,
+    /// Its last sample.
+    pub recording: Recording,
+    /// Its displacement at the positions that were asked for \[position\]\[x, y, z\] \[m\]; none
+    /// where its nodes do not reach one of them.
+    pub displacement: Option<Vec<f64>>,
+}
+
+/// Spacings of the coarser clouds of a problem over that of the run, the finest first \[–\].
+pub fn ratios(problem: &Problem) -> &'static [f64] {
+    match by_newton(problem) {
+        Some(_) if problem.dimension.components() == 2 => &BY_NEWTON_IN_A_PLANE,
+        Some(_) => &BY_NEWTON,
+        None => &AS_THE_RUN,
+    }
+}
+
+/// Newton's method in place of a relaxation without contact.
+fn by_newton(problem: &Problem) -> Option<Motion> {
+    match &problem.motion {
+        Motion::Static(relaxation) if problem.obstacles.is_empty() => {
+            Some(Motion::Equilibrium(Newton {
+                load_end: relaxation.load_end,
+                tolerance: TOLERANCE,
+            }))
+        }
+        _ => None,
+    }
+}
+
+/// Solves a case with every length of its recipe multiplied by `ratio`; nothing of its
+/// discretisation is kept.
+pub fn solve_coarser(
+    case: &Case,
+    ratio: f64,
+    positions: Option<&[Vector3]>,
+) -> Result<CoarserRun, NoErrorBar> {
+    let refused = |error: Error| NoErrorBar::Coarser(error.to_string());
+    let mut coarser = case.clone();
+    coarser.problem.recipe.scale_lengths(ratio);
+    coarser.problem.motion = by_newton(&case.problem).unwrap_or(coarser.problem.motion);
+    coarser.outputs.history = 1;
+    let (ratio, prepared) = fitted(&mut coarser.problem, ratio).map_err(refused)?;
+    let mut recorder = Recorder::new(&coarser, &prepared, 0).map_err(refused)?;
+    let end = integrate_prepared(&coarser.problem, &prepared, &mut recorder).map_err(refused)?;
+    if end.summary.stopped || interrupted() {
+        return Err(NoErrorBar::CoarserStopped);
+    }
+    if let Some(doubt) = end.summary.doubts(&prepared.model).first() {
+        return Err(NoErrorBar::Coarser(doubt.clone()));
+    }
+    let nodes = prepared.model.positions.len();
+    let solved = Solved::new(prepared, end);
+    let cloud = CoarserCloud { ratio, nodes, work: Work::of(&solved) };
+    let displacement = positions.and_then(|positions| displacement_at(&solved, positions));
+    Ok(CoarserRun { cloud, recording: recorder.finish(), displacement })
+}
+
+/// A discretisation without zero-energy modes and its spacing over that of the run.
+fn fitted(problem: &mut Problem, ratio: f64) -> Result<(f64, Prepared), Error> {
+    let first = prepare(problem)?;
+    if tested_points(&first.discretisation) == 0.0 {
+        return Ok((ratio, first));
+    }
+    let mut other = problem.clone();
+    other.recipe.scale_lengths(OTHER_FIT);
+    match prepare(&other) {
+        Ok(second) if tested_points(&second.discretisation) == 0.0 => {
+            *problem = other;
+            Ok((OTHER_FIT * ratio, second))
+        }
+        _ => {
+            refuse_zero_energy_modes(problem, &first.discretisation, &first.model)?;
+            Ok((ratio, first))
+        }
+    }
+}
+
+fn displacement_at(solved: &Solved, positions: &[Vector3]) -> Option<Vec<f64>> {
+    let Prepared { discretisation, model, .. } = &solved.prepared;
+    let rows = discretisation.rows_at(positions).ok()?;
+    let u = &solved.state.displacement;
+    let value = |i| <[f64; 3]>::from(rows.interpolate(i, u, model.components));
+    Some((0..rows.len()).flat_map(value).collect())
+}

@@ -1,0 +1,48 @@
+//! Where differences between clouds tell nothing.
+
+use super::super::record::Recording;
+use super::super::solve::Solved;
+use super::no_error_bar::NoErrorBar;
+use super::patch_edge::edge_between_nodes;
+use crate::reference::Family;
+use crate::scene::Case;
+use mtled::problem::Cloud;
+
+/// Error bar over the largest value of the family beyond which none is given \[–\].
+const TOO_FAR: f64 = 0.5;
+
+/// Why a run can have no error bar at all.
+pub fn doubt_of_run(case: &Case, solved: &Solved) -> Option<NoErrorBar> {
+    if solved.summary.stopped {
+        return Some(NoErrorBar::Stopped);
+    }
+    if matches!(case.problem.recipe.cloud, Cloud::Given { .. }) {
+        return Some(NoErrorBar::GivenNodes);
+    }
+    let doubts = solved.summary.doubts(&solved.prepared.model);
+    (!doubts.is_empty()).then_some(NoErrorBar::InDoubt)
+}
+
+/// Why forces, moments and energies have none: they hang on what is held and what touches,
+/// displacements away from there do not.
+pub fn doubt_of_forces(case: &Case, solved: &Solved, record: &Recording) -> Option<NoErrorBar> {
+    if record.samples.iter().any(|sample| sample.touching > 0) {
+        return Some(NoErrorBar::Contact);
+    }
+    let cloud = &solved.prepared.discretisation.cloud;
+    edge_between_nodes(&case.problem, cloud).map(NoErrorBar::PatchEdge)
+}
+
+/// The error bar of a quantity whose family has values up to `largest`.
+pub fn judged(
+    family: Family,
+    size: f64,
+    largest: f64,
+    doubt: &Option<NoErrorBar>,
+) -> Result<f64, NoErrorBar> {
+    match doubt {
+        Some(doubt) if family != Family::Displacement => Err(doubt.clone()),
+        _ if size <= TOO_FAR * largest => Ok(size),
+        _ => Err(NoErrorBar::TooFarApart((100.0 * size / largest).min(1e6) as u64)),
+    }
+}
