@@ -3,7 +3,6 @@
 use super::super::record::Recording;
 use super::super::solve::Solved;
 use super::no_error_bar::NoErrorBar;
-use super::patch_edge::edge_between_nodes;
 use crate::reference::Family;
 use crate::scene::Case;
 use mtled::problem::Cloud;
@@ -23,14 +22,11 @@ pub fn doubt_of_run(case: &Case, solved: &Solved) -> Option<NoErrorBar> {
     (!doubts.is_empty()).then_some(NoErrorBar::InDoubt)
 }
 
-/// Why forces, moments and energies have none: they hang on what is held and what touches,
-/// displacements away from there do not.
-pub fn doubt_of_forces(case: &Case, solved: &Solved, record: &Recording) -> Option<NoErrorBar> {
-    if record.samples.iter().any(|sample| sample.touching > 0) {
-        return Some(NoErrorBar::Contact);
-    }
-    let cloud = &solved.prepared.discretisation.cloud;
-    edge_between_nodes(&case.problem, cloud).map(NoErrorBar::PatchEdge)
+/// Why forces, moments and energies have none: they hang on what touches, displacements away
+/// from there do not.
+pub fn doubt_of_forces(record: &Recording) -> Option<NoErrorBar> {
+    let touches = record.samples.iter().any(|sample| sample.touching > 0);
+    touches.then_some(NoErrorBar::Contact)
 }
 
 /// The error bar of a quantity whose family has values up to `largest`.

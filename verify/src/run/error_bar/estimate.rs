@@ -5,9 +5,11 @@
 //! nodes single differences are accidents: signs change, and a coarser cloud can come out the
 //! same by chance. The bar is a factor times the root mean square over the clouds,
 //!   e = c √(Σ_r (|f_r − f|/(rᵖ − 1))²/n),
-//! with one order p for all and a factor c of each family of quantities.
+//! with an order p and a factor c that depend on whether anything on the boundary is free: at
+//! edges between what is held and what is free stresses are singular.
 
 use super::super::numbers::numbers;
+use super::super::prepare::Prepared;
 use super::super::record::Recording;
 use super::super::solve::Solved;
 use super::bars::{ErrorBar, ErrorBars, Indicator};
@@ -21,8 +23,9 @@ use crate::scene::Case;
 use mtled::algebra::tensor::Vector3;
 use mtled::problem::{Motion, Problem};
 
-/// The order p \[–\]. An order observed from the clouds of one run is mostly noise.
-const ORDER: f64 = 1.6;
+/// The order p of bodies with a free side and of those held all around \[–\]. An order observed
+/// from the clouds of one run is mostly noise.
+const ORDERS: [f64; 2] = [1.6, 2.0];
 /// No bar is shorter than this fraction of the largest value of its family: the tolerance of
 /// the coarser solutions \[–\].
 const FLOOR: f64 = 2e-5;
@@ -32,19 +35,51 @@ const FEWEST: usize = 2;
 /// Longer bars of motions and of contact, whose coarser clouds are two and further away \[–\].
 const AS_THE_RUN: f64 = 1.5;
 
-/// The factor c of a family \[–\], set on bundled cases and made-up bodies (study `error_bars`).
-fn factor(family: Family, problem: &Problem) -> f64 {
-    let factor = match family {
-        Family::Displacement | Family::Centre | Family::Force => 1.35,
-        Family::Moment | Family::StrainEnergy | Family::KineticEnergy => 1.3,
-    };
-    let longer = matches!(problem.motion, Motion::Dynamic { .. }) || !problem.obstacles.is_empty();
-    if longer { AS_THE_RUN * factor } else { factor }
+/// Order and factors of a run \[–\], set on bundled cases, manufactured fields and made-up bodies
+/// (study `error_bars`).
+#[derive(Clone, Copy)]
+struct Calibration {
+    order: f64,
+    displacement: f64,
+    /// Of forces, moments and energies.
+    force: f64,
 }
 
-/// Error over difference between clouds, 1/(rᵖ − 1) \[–\].
-fn weight(ratio: f64) -> f64 {
-    1.0 / (ratio.powf(ORDER) - 1.0)
+impl Calibration {
+    fn of(problem: &Problem, solved: &Solved) -> Calibration {
+        let [order, smooth_order] = ORDERS;
+        if held_all_around(solved) {
+            return Calibration { order: smooth_order, displacement: 1.0, force: 1.4 };
+        }
+        let alike =
+            matches!(problem.motion, Motion::Dynamic { .. }) || !problem.obstacles.is_empty();
+        let longer = if alike { AS_THE_RUN } else { 1.0 };
+        Calibration { order, displacement: 1.4 * longer, force: 2.0 * longer }
+    }
+
+    /// The factor c of a family.
+    fn factor(self, family: Family) -> f64 {
+        match family {
+            Family::Displacement | Family::Centre => self.displacement,
+            Family::Force | Family::Moment | Family::StrainEnergy | Family::KineticEnergy => {
+                self.force
+            }
+        }
+    }
+
+    /// Error over difference between clouds, 1/(rᵖ − 1).
+    fn weight(self, ratio: f64) -> f64 {
+        1.0 / (ratio.powf(self.order) - 1.0)
+    }
+}
+
+/// Whether every node of the boundary is held in all directions.
+fn held_all_around(solved: &Solved) -> bool {
+    let Prepared { discretisation, model, .. } = &solved.prepared;
+    let boundary = discretisation.cloud.on_boundary.iter().enumerate().filter(|(_, on)| **on);
+    let mut components =
+        boundary.flat_map(|(node, _)| (0..model.components).map(move |k| (node, k)));
+    components.all(|(node, k)| model.constraints.always_prescribes(node as u32, k))
 }
 
 /// Estimates the error of the discretisation of every answer of a finished run by solving the
@@ -60,14 +95,15 @@ pub fn error_bars(
         return Err(doubt);
     }
     let start = cpu_seconds();
+    let calibration = Calibration::of(&case.problem, solved);
     let nodes = &solved.prepared.discretisation.cloud.positions;
     let mut runs = coarser_runs(case, indicates.then_some(nodes))?;
     let indicator = runs[0].displacement.take().map(|coarser_displacement| Indicator {
         coarser_displacement,
-        factor: factor(Family::Displacement, &case.problem) * weight(runs[0].cloud.ratio),
+        factor: calibration.displacement * calibration.weight(runs[0].cloud.ratio),
     });
     Ok(ErrorBars {
-        bars: bars(case, solved, record, &runs),
+        bars: bars(case, record, &runs, calibration),
         clouds: runs.iter().map(|run| run.cloud.clone()).collect(),
         indicator,
         cpu_seconds: cpu_seconds() - start,
@@ -92,18 +128,20 @@ fn coarser_runs(case: &Case, nodes: Option<&Vec<Vector3>>) -> Result<Vec<Coarser
     }
 }
 
-fn bars(case: &Case, solved: &Solved, record: &Recording, runs: &[CoarserRun]) -> Vec<ErrorBar> {
-    let doubt = doubt_of_forces(case, solved, record);
+fn bars(
+    case: &Case,
+    record: &Recording,
+    runs: &[CoarserRun],
+    calibration: Calibration,
+) -> Vec<ErrorBar> {
+    let doubt = doubt_of_forces(record);
     let answered = quantities(case).into_iter().filter(|q| q.family != Family::Centre);
     let bar = |quantity: Quantity| {
         let largest = largest(case, record, quantity.family);
-        let spread = spread(case, record, runs, &quantity)?.hypot(FLOOR * largest);
-        let size = judged(
-            quantity.family,
-            factor(quantity.family, &case.problem) * spread,
-            largest,
-            &doubt,
-        );
+        let weight = |ratio| calibration.weight(ratio);
+        let spread = spread(case, record, runs, &quantity, &weight)?.hypot(FLOOR * largest);
+        let size = calibration.factor(quantity.family) * spread;
+        let size = judged(quantity.family, size, largest, &doubt);
         Some(ErrorBar { quantity, size })
     };
     answered.filter_map(bar).collect()
@@ -115,6 +153,7 @@ fn spread(
     record: &Recording,
     runs: &[CoarserRun],
     quantity: &Quantity,
+    weight: &dyn Fn(f64) -> f64,
 ) -> Option<f64> {
     let last = |record: &Recording| numbers(case, record, quantity, record.samples.last()?);
     let own = last(record)?;

@@ -7,7 +7,6 @@ mod coarser;
 mod doubts;
 mod estimate;
 mod no_error_bar;
-mod patch_edge;
 mod report;
 
 pub use bars::{ErrorBar, ErrorBars, Estimated, Indicator};

@@ -18,12 +18,6 @@ pub enum NoErrorBar {
     /// Too few coarser clouds could be solved; the last reason.
     #[error("coarser clouds cannot be solved: {0}")]
     Coarser(String),
-    /// A patch whose edge lies between nodes is larger or smaller than it is meant to be.
-    #[error(
-        "the edge of the prescribed surface \"{0}\" lies between nodes, and how much of it is held changes \
-         from cloud to cloud"
-    )]
-    PatchEdge(String),
     /// What touches changes from cloud to cloud.
     #[error("the body touches an obstacle, at other nodes on every cloud")]
     Contact,
