@@ -59,10 +59,11 @@ impl Discretisation {
         let recipe = &problem.recipe;
         let mut cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
         let panels = panels_of(problem, &body, &mut cloud)?;
+        let prescribed = prescribed_nodes(problem, &cloud);
         let approximation = approximation_of(&cloud, recipe, &dimension);
         let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
         let mut quadrature = if recipe.gradients.is_second_order() {
-            let held = held_nodes(problem, &cloud);
+            let held = held_nodes(&prescribed, &cloud);
             let stays = |X: &Vector3| is_within(&held, X, approximation.mean_radius(X));
             let moves = Moves { stays: &stays };
             quadrature_of(problem, &body, &recipe.grid, &approximation, Some(&moves))?
@@ -75,7 +76,7 @@ impl Discretisation {
         let Evaluated { rows: supports, enlarged, worst_condition } =
             evaluate_all(&approximation, &quadrature.positions)?;
         check_coverage(&cloud, &supports)?;
-        let surface = surface_of(problem, panels, &cloud, &approximation)?;
+        let surface = surface_of(problem, panels, &cloud, &approximation, &prescribed)?;
         let mut discretisation = Discretisation {
             dimension,
             cloud,
@@ -174,9 +175,8 @@ fn approximation_of(cloud: &NodeCloud, recipe: &Recipe, dimension: &Dimension) -
 /// The held nodes of the boundary. Quadrature points in their supports are not moved:
 /// stresses are singular at the edges of what is held, and what holds for smooth ones makes
 /// bonded blocks 2 % stiffer.
-fn held_nodes(problem: &Problem, cloud: &NodeCloud) -> Option<Neighbours> {
-    let held = prescribed_nodes(problem, cloud);
-    let own = |&node: &usize| cloud.on_boundary[node] && held[node];
+fn held_nodes(prescribed: &[bool], cloud: &NodeCloud) -> Option<Neighbours> {
+    let own = |&node: &usize| cloud.on_boundary[node] && prescribed[node];
     let nodes = (0..cloud.positions.len()).filter(own);
     let positions: Vec<Vector3> = nodes.map(|node| cloud.positions[node]).collect();
     (!positions.is_empty()).then(|| Neighbours::new(&positions, 2.0 * cloud.smallest_spacing()))
@@ -238,12 +238,12 @@ fn surface_of(
     panels: Option<Vec<Panel>>,
     cloud: &NodeCloud,
     approximation: &Approximation,
+    prescribed: &[bool],
 ) -> Result<SurfaceRule, Error> {
     let Some(panels) = panels.filter(|_| needs_surface(problem)) else {
         return Ok(SurfaceRule::default());
     };
-    let prescribed = prescribed_nodes(problem, cloud);
-    SurfaceRule::new(panels, cloud, approximation, &prescribed, problem.dimension.components())
+    SurfaceRule::new(panels, cloud, approximation, prescribed, problem.dimension.components())
         .map_err(|(position, poor)| outside(position, &poor))
 }
 

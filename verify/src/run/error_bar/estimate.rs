@@ -136,8 +136,15 @@ fn bars(
 ) -> Vec<ErrorBar> {
     let doubt = doubt_of_forces(record);
     let answered = quantities(case).into_iter().filter(|q| q.family != Family::Centre);
+    let mut largest_of: Vec<(Family, f64)> = Vec::new();
     let bar = |quantity: Quantity| {
-        let largest = largest(case, record, quantity.family);
+        let family = quantity.family;
+        let known = largest_of.iter().find(|(other, _)| *other == family).map(|(_, size)| *size);
+        let largest = known.unwrap_or_else(|| {
+            let size = largest(case, record, family);
+            largest_of.push((family, size));
+            size
+        });
         let weight = |ratio| calibration.weight(ratio);
         let spread = spread(case, record, runs, &quantity, &weight)?.hypot(FLOOR * largest);
         let size = calibration.factor(quantity.family) * spread;
