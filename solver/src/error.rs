@@ -173,10 +173,6 @@ pub enum Error {
     )]
     NothingHolds { axis: char, force: f64 },
     #[error(
-        "newton's method does not treat contact: use dynamic relaxation for a body with obstacles"
-    )]
-    ContactInNewton,
-    #[error(
         "newton's method converges to no equilibrium beyond {reached:.4} of the load: after {iterations} iterations the residual \
              is {residual:.2e} of the largest force{}: use dynamic relaxation, or reduce the load",
         if *.indefinite { " and the tangent is indefinite, as where a body buckles" } else { "" }

@@ -277,11 +277,3 @@ fn a_relaxation_that_ends_before_its_load_reports_finite_numbers() {
     let (error, _, residual) = unconverged(100, 0.5, 40);
     assert!(error.is_finite() && error > 0.0 && residual.is_finite() && residual > 0.0);
 }
-
-#[test]
-fn newton_refuses_obstacles() {
-    let mut problem = pressed(0.1, 0.02);
-    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-10 });
-    problem.obstacles.push(floor(0.0, Vector3::y(), Friction::Frictionless));
-    assert!(matches!(failure(&problem).0, Error::ContactInNewton));
-}

@@ -4,4 +4,7 @@ pub(crate) mod lanes;
 pub(crate) mod packed;
 pub mod random;
 pub mod real;
+pub(crate) mod sparse;
+pub(crate) mod sparse_cholesky;
+pub(crate) mod spline_lattice;
 pub mod tensor;

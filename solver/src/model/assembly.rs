@@ -2,7 +2,7 @@
 
 use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::discretisation::consistency::connected_bodies;
-use crate::discretisation::{Discretisation, Warning};
+use crate::discretisation::{Discretisation, Rows, Warning};
 use crate::error::Error;
 use crate::geometry::Selector;
 use crate::model::blocks::{Block, Sums, blocks};
@@ -49,6 +49,8 @@ pub struct Model {
     pub extent: f64,
     /// Reference positions of the quadrature points \[point\] \[m\].
     pub point_positions: Vec<Vector3>,
+    /// Values of the shape functions at the nodes
+    pub nodal_rows: Option<Rows>,
     /// What to doubt about the problem itself.
     pub warnings: Vec<Warning>,
 }
@@ -97,6 +99,12 @@ impl Model {
             point_positions: quadrature.positions.clone(),
             extent: (upper - lower).norm(),
             lumped_mass,
+            nodal_rows: match problem.motion {
+                Motion::Equilibrium(_) => {
+                    Some(discretisation.rows_at(&discretisation.cloud.positions)?)
+                }
+                _ => None,
+            },
             constraints,
             per_point_bound,
             warnings,

@@ -15,3 +15,4 @@ pub mod zero_energy;
 pub use assembly::Model;
 pub(crate) use blocks::{Block, Chunk};
 pub use load::LoadPattern;
+pub(crate) use stiffness::ModuliAtRest;

@@ -3,6 +3,30 @@
 use crate::algebra::lanes::LANES;
 use crate::model::blocks::{Block, StoredNumber, with_gradients};
 
+/// The moduli of a block at rest \[Pa\].
+#[derive(Debug, Clone, Copy)]
+pub struct ModuliAtRest {
+    /// μ
+    pub shear: f64,
+    /// λ − s U''(1), which acts at every point.
+    pub pointwise: f64,
+    /// s U''(1), which acts on J projected on patches.
+    pub projected: f64,
+}
+
+impl ModuliAtRest {
+    /// Of a block of quadrature points.
+    pub fn of(block: &Block) -> ModuliAtRest {
+        let constants = block.law.constants();
+        // U'' at rest as a difference; U is smooth there.
+        let bulk = (block.law.bulk_slope(1.0 + 1e-6) - block.law.bulk_slope(1.0 - 1e-6)) / 2e-6;
+        let projected =
+            block.projection.as_ref().map_or(0.0, |projection| projection.fraction * bulk);
+        let pointwise = constants.lame_modulus() - projected;
+        ModuliAtRest { shear: constants.shear_modulus, pointwise, projected }
+    }
+}
+
 /// Diagonal of K at rest, the mean over the components of a node \[node\]
 /// \[N/m\] (method book, eq. 13.3). A point adds w |Grad φ|² (μ + (λ − s U''(1) +
 /// μ)/d), a patch s U''(1) Σ_b |Σ_q w B_b Grad φ|²/d.
@@ -21,12 +45,7 @@ pub fn stiffness_diagonal(blocks: &[Block], components: usize, nodes: usize) -> 
 }
 
 fn block_diagonal<G: StoredNumber, const D: usize>(block: &Block, grad_phi: &[G]) -> Vec<f64> {
-    let constants = block.law.constants();
-    let shear = constants.shear_modulus;
-    // U'' at rest as a difference; U is smooth there.
-    let bulk = (block.law.bulk_slope(1.0 + 1e-6) - block.law.bulk_slope(1.0 - 1e-6)) / 2e-6;
-    let projected = block.projection.as_ref().map_or(0.0, |projection| projection.fraction * bulk);
-    let pointwise = constants.lame_modulus() - projected;
+    let ModuliAtRest { shear, pointwise, projected } = ModuliAtRest::of(block);
     let modulus = shear + (pointwise + shear) / D as f64;
     let mut diagonal = vec![0.0; block.nodes.len()];
     for (point, weight) in block.quadrature_weights.iter().enumerate() {

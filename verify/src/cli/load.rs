@@ -71,7 +71,7 @@ fn diagnose(case: &Case, error: &Error) -> Diagnostic {
         Error::ProbeOutside { .. } => "probe",
         Error::PointWithoutRegion { .. } => "region",
         Error::Geometry(_) => "discretisation",
-        Error::ContactInNewton | Error::NoEquilibrium { .. } => "time.solver",
+        Error::NoEquilibrium { .. } => "time.solver",
         Error::Diverged { .. }
         | Error::Inverted { .. }
         | Error::NotConverged { .. }

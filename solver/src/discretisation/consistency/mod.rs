@@ -22,7 +22,6 @@
 mod affine;
 mod conjugate_gradients;
 mod connected_bodies;
-mod lattice;
 mod multilevel;
 mod operator;
 

@@ -8,8 +8,8 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::random::xorshift;
+use crate::algebra::spline_lattice::{Lattice, Reach};
 use crate::algebra::tensor::Vector3;
-use crate::discretisation::consistency::lattice::{Lattice, Reach};
 use crate::discretisation::consistency::operator::{Layout, Operator};
 use nalgebra::Vector4;
 use rayon::prelude::*;

@@ -4,4 +4,5 @@ mod check;
 mod plan;
 
 pub(crate) use check::check_obstacles;
-pub use plan::{ContactPlan, ContactState, gap};
+pub use plan::{ContactForce, ContactPlan, ContactState, gap};
+pub(crate) use plan::{normal, onto_surface};

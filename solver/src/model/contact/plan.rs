@@ -34,6 +34,19 @@ pub struct ContactState {
     anchors: Vec<(u32, u32, Vector3)>,
     /// Nodes in contact after the last step.
     pub touching: Vec<u32>,
+    /// What obstacles exert, where the method of solution says so.
+    pub forces: Vec<ContactForce>,
+}
+
+/// What an obstacle exerts on a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactForce {
+    /// Index of the obstacle.
+    pub obstacle: u32,
+    /// The node.
+    pub node: u32,
+    /// \[N\]
+    pub force: Vector3,
 }
 
 impl ContactPlan {
@@ -103,7 +116,7 @@ pub fn gap(obstacle: &Obstacle, x: &Vector3) -> f64 {
 }
 
 /// The unit normal that points out of the obstacle towards the body.
-fn normal(obstacle: &Obstacle, x: &Vector3, components: usize) -> Vector3 {
+pub(crate) fn normal(obstacle: &Obstacle, x: &Vector3, components: usize) -> Vector3 {
     let mut normal = obstacle.shape.gradient(x);
     if obstacle.side == ObstacleSide::Inside {
         normal = -normal;
@@ -123,7 +136,12 @@ const MOST_SECANTS: usize = 6;
 /// that is not a distance, as between the samples of a label map, would leave it beside
 /// the surface by a length in proportion to its last move, and each change of the step or
 /// of the damping would strike all nodes in contact.
-fn onto_surface(obstacle: &Obstacle, x: &Vector3, opening: f64, components: usize) -> Vector3 {
+pub(crate) fn onto_surface(
+    obstacle: &Obstacle,
+    x: &Vector3,
+    opening: f64,
+    components: usize,
+) -> Vector3 {
     let n = normal(obstacle, x, components);
     let (mut last, mut moved) = ((0.0, opening), -opening);
     for _ in 0..MOST_SECANTS {

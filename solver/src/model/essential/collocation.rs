@@ -1,15 +1,9 @@
 //! Collocation of prescribed values for functions that do not interpolate.
 
+use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::{Discretisation, Rows};
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
 use faer::sparse::{SparseColMat, Triplet};
-use faer::{Conj, MatMut, Par, Side};
-use std::sync::Arc;
 
 /// u = u* + M⁻¹Φᵀ(ΦM⁻¹Φᵀ)⁻¹(ū − Φu*): the displacement field takes the
 /// prescribed values ū at the collocation nodes (method book, eq. 15.2: EBCIEM of
@@ -18,18 +12,8 @@ use std::sync::Arc;
 pub(super) struct Collocation {
     /// Row i of Φ: the shape functions at collocation node i.
     rows: Rows,
-    symbolic: Arc<SymbolicCholesky<usize>>,
-    factor: Vec<f64>,
-}
-
-/// Memory for the triangular solves, with its size in bytes.
-#[derive(Default)]
-pub(super) struct Scratch(Option<MemBuffer>, usize);
-
-impl std::fmt::Debug for Scratch {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("Scratch").field(&self.1).finish()
-    }
+    /// Of ΦM⁻¹Φᵀ.
+    cholesky: SparseCholesky,
 }
 
 impl Collocation {
@@ -43,27 +27,8 @@ impl Collocation {
             nodes.iter().map(|&node| discretisation.cloud.positions[node as usize]).collect();
         let rows = discretisation.rows_at(&positions).ok()?;
         let matrix = gram_matrix(&rows, mass)?;
-        let symbolic = factorize_symbolic_cholesky(
-            matrix.symbolic(),
-            Side::Lower,
-            SymmetricOrdering::Amd,
-            CholeskySymbolicParams::default(),
-        )
-        .ok()?;
-        let mut factor = vec![0.0; symbolic.len_val()];
-        let required = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        symbolic
-            .factorize_numeric_llt(
-                &mut factor,
-                matrix.as_ref(),
-                Side::Lower,
-                Default::default(),
-                Par::Seq,
-                MemStack::new(&mut MemBuffer::new(required)),
-                Default::default(),
-            )
-            .ok()?;
-        Some(Collocation { rows, symbolic: Arc::new(symbolic), factor })
+        let cholesky = SparseCholesky::new(&matrix)?;
+        Some(Collocation { rows, cholesky })
     }
 
     /// Replaces prescribed values ū by the multipliers (ΦM⁻¹Φᵀ)⁻¹(ū − Φu), where
@@ -74,19 +39,12 @@ impl Collocation {
                 *value -= self.rows.phi[entry] * value_of(self.rows.nodes[entry]);
             }
         }
-        let required = self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        if scratch.0.is_none() || scratch.1 < required.size_bytes() {
-            *scratch = Scratch(Some(MemBuffer::new(required)), required.size_bytes());
-        }
-        if let Some(memory) = &mut scratch.0 {
-            let n = values.len();
-            LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
-                Conj::No,
-                MatMut::from_column_major_slice_mut(values, n, 1),
-                Par::Seq,
-                MemStack::new(memory),
-            );
-        }
+        self.cholesky.solve(values, scratch);
+    }
+
+    /// Nodes and shape functions at collocation node `i`.
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (u32, f64)> {
+        self.rows.row(i).map(|entry| (self.rows.nodes[entry], self.rows.phi[entry]))
     }
 
     /// The displacement field \[m\] at collocation node `i`.

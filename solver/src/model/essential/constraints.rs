@@ -1,9 +1,10 @@
 //! The constraints of a body over time, their enforcement and their reactions.
 #![allow(non_snake_case)]
 
-use super::collocation::{Collocation, Scratch};
+use super::collocation::Collocation;
 use super::mean_gradient::fit_mean_gradient;
 use super::rows::{ConditionState, ConstraintRow, rows_of_component, selected_nodes};
+use crate::algebra::sparse_cholesky::Scratch;
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::discretisation::Discretisation;
 use crate::error::Error;
@@ -151,6 +152,23 @@ impl Constraints {
     /// The sets that are never released.
     fn last(&self) -> &[ConstraintSet] {
         &self.stages[self.stages.len() - 1].sets
+    }
+
+    /// Calls `visit(component, (node, factor) …)` for every prescribed value at time `t`
+    /// \[s\]: the sum of these nodal parameters is what is prescribed.
+    pub fn for_each_row(
+        &self,
+        t: f64,
+        mut visit: impl FnMut(usize, &mut dyn Iterator<Item = (u32, f64)>),
+    ) {
+        for set in self.active(t) {
+            for (i, row) in set.rows.iter().enumerate() {
+                match &set.collocation {
+                    Some(collocation) => visit(set.component, &mut collocation.row(i)),
+                    None => visit(set.component, &mut std::iter::once((row.node, 1.0))),
+                }
+            }
+        }
     }
 
     /// The nodes of which all `components` are prescribed at time `t` \[s\], with the

@@ -5,7 +5,7 @@ use crate::algebra::tensor::{Vector3, bounding_box};
 
 /// Functions along one axis of a lattice.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Axis {
+pub(crate) enum Axis {
     /// No extent: one constant.
     Flat,
     /// 1 and s − ½ over the whole extent, s from 0 to 1.
@@ -19,7 +19,7 @@ pub(super) enum Axis {
 /// that cannot be halved further gets affine functions, so that the lattice
 /// represents the long waves of slender bodies.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lattice {
+pub(crate) struct Lattice {
     origin: Vector3,
     extent: Vector3,
     axes: [Axis; 3],
@@ -57,10 +57,20 @@ impl Axis {
             Axis::Flat => (0, [1.0, 0.0, 0.0]),
             Axis::Affine => (0, [1.0, s - 0.5, 0.0]),
             Axis::Splines(cells) => {
-                let x = s * cells as f64;
-                let index = (x.max(0.0) as usize).min(cells - 1);
-                let t = (x - index as f64).clamp(0.0, 1.0);
+                let (index, t) = cell(s, cells);
                 (index, [0.5 * (1.0 - t) * (1.0 - t), 0.5 + t * (1.0 - t), 0.5 * t * t])
+            }
+        }
+    }
+
+    /// Derivatives of the same functions by s.
+    fn slopes(self, s: f64) -> [f64; 3] {
+        match self {
+            Axis::Flat => [0.0; 3],
+            Axis::Affine => [0.0, 1.0, 0.0],
+            Axis::Splines(cells) => {
+                let t = cell(s, cells).1;
+                [t - 1.0, 1.0 - 2.0 * t, t].map(|slope| slope * cells as f64)
             }
         }
     }
@@ -83,6 +93,13 @@ impl Axis {
             _ => vec![(index, 1.0)],
         }
     }
+}
+
+/// The cell of s in \[0, 1\], and the place in it.
+fn cell(s: f64, cells: usize) -> (usize, f64) {
+    let x = s * cells as f64;
+    let index = (x.max(0.0) as usize).min(cells - 1);
+    (index, (x - index as f64).clamp(0.0, 1.0))
 }
 
 impl Lattice {
@@ -110,10 +127,45 @@ impl Lattice {
 
     /// The functions that may not be 0 at X.
     pub fn at(&self, X: &Vector3) -> Reach {
-        let [(i, x), (j, y), (k, z)] = [0, 1, 2]
-            .map(|axis| self.axes[axis].at((X[axis] - self.origin[axis]) / self.extent[axis]));
+        let [(i, x), (j, y), (k, z)] =
+            [0, 1, 2].map(|axis| self.axes[axis].at(self.place(axis, X)));
         let counts = self.counts.map(|n| n.min(3));
         Reach { first: [i, j, k], counts, size: self.counts, values: [x, y, z] }
+    }
+
+    /// Gradients \[1/m\] of the functions that may not be 0 at X, in the order of
+    /// [`Reach::for_each`].
+    pub fn gradients(&self, X: &Vector3) -> impl Iterator<Item = Vector3> {
+        let place = [0, 1, 2].map(|axis| self.place(axis, X));
+        let values = [0, 1, 2].map(|axis| self.axes[axis].at(place[axis]).1);
+        let slopes = [0, 1, 2].map(|axis| {
+            let over = if self.extent[axis] > 0.0 { 1.0 / self.extent[axis] } else { 0.0 };
+            self.axes[axis].slopes(place[axis]).map(|slope| slope * over)
+        });
+        let [nx, ny, nz] = self.counts.map(|n| n.min(3));
+        (0..nx * ny * nz).map(move |function| {
+            let at = [function % nx, function / nx % ny, function / (nx * ny)];
+            let factor = |axis: usize, along: usize| match axis == along {
+                true => slopes[axis][at[axis]],
+                false => values[axis][at[axis]],
+            };
+            let along = |k: usize| factor(0, k) * factor(1, k) * factor(2, k);
+            Vector3::new(along(0), along(1), along(2))
+        })
+    }
+
+    /// The part of a cell that holds X, `parts` along each axis of a cell.
+    pub fn subcell(&self, X: &Vector3, parts: f64) -> [u32; 3] {
+        [0, 1, 2].map(|axis| match self.axes[axis] {
+            Axis::Flat => 0,
+            Axis::Affine => (self.place(axis, X) * parts) as u32,
+            Axis::Splines(cells) => (self.place(axis, X) * cells as f64 * parts) as u32,
+        })
+    }
+
+    /// s of X along an axis.
+    fn place(&self, axis: usize, X: &Vector3) -> f64 {
+        (X[axis] - self.origin[axis]) / self.extent[axis]
     }
 
     /// Along which axes a function is s − ½, as bits: functions of one kind
@@ -156,7 +208,7 @@ impl Lattice {
 }
 
 /// Up to three functions along each axis, and their values.
-pub(super) struct Reach {
+pub(crate) struct Reach {
     pub first: [usize; 3],
     pub counts: [usize; 3],
     /// Functions along the axes of the box that `first` counts in.

@@ -1,0 +1,227 @@
+//! The stiffness at rest of smooth displacements.
+#![allow(non_snake_case)]
+
+use crate::algebra::lanes::LANES;
+use crate::algebra::sparse::Sparse;
+use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
+use crate::algebra::spline_lattice::Lattice;
+use crate::algebra::tensor::Vector3;
+use crate::model::{Block, Chunk, Model, ModuliAtRest};
+use crate::motion::newton::coarse_matrix::CoarseMatrix;
+use std::collections::BTreeMap;
+
+/// Spacing of the lattice over that of the nodes \[–\], at most.
+const SPACING: f64 = 4.5;
+/// Points of a lattice cell along each axis, to which quadrature points are lumped.
+const LUMPS: f64 = 3.0;
+/// Part of the stiffness of nodes that is added everywhere \[–\]: round-off.
+const FLOOR: f64 = 1e-9;
+/// Least stiffness of a function over the median, each over its values at the nodes \[–\].
+const TAIL: f64 = 0.5;
+
+/// P A₀⁻¹ Pᵀ with quadratic splines on a coarse lattice, P their values at the nodes and
+/// A₀ their stiffness at rest (method book, eq. 20.10). Held displacements are stiff
+/// springs of A₀, so that the functions end there.
+pub(super) struct CoarseSpace {
+    /// P and Pᵀ.
+    values: [Sparse; 2],
+    /// Without held displacements.
+    free: CoarseMatrix,
+    cholesky: Option<SparseCholesky>,
+    /// Functions.
+    count: usize,
+    scratch: Scratch,
+}
+
+/// A displacement of a node that is held, and the stiffness of that \[N/m\].
+pub(super) struct Held {
+    pub node: u32,
+    /// Unit vector.
+    pub along: Vector3,
+    pub stiffness: f64,
+}
+
+impl CoarseSpace {
+    pub fn new(model: &Model) -> CoarseSpace {
+        let d = model.components;
+        let volume: f64 = model.blocks.iter().flat_map(|b| &b.quadrature_weights).sum();
+        let spacing = (volume / model.positions.len() as f64).powf(1.0 / d as f64);
+        let lattice = Lattice::new(&model.positions, SPACING * spacing, d);
+        let mut numbers = Numbers { of: vec![None; lattice.len()], count: 0 };
+        let mut rows = Vec::with_capacity(model.positions.len());
+        for X in &model.positions {
+            let mut row = Vec::with_capacity(27);
+            lattice.at(X).for_each(|function, value| {
+                if value != 0.0 {
+                    row.push((numbers.number(function), value));
+                }
+            });
+            rows.push(row);
+        }
+        let values = Sparse::from_rows(rows);
+        let count = numbers.count as usize;
+        let transposed = values.transposed(count);
+        let functions = Functions { lattice, numbers };
+        let mut free = CoarseMatrix::new(count, d);
+        (0..model.positions.len()).for_each(|node| free.reserve(row_of(&values, node).0));
+        functions.add_stiffness(model, &mut free);
+        for (node, stiffness) in model.stiffness.iter().enumerate() {
+            let (columns, values) = row_of(&values, node);
+            for (&i, &value) in columns.iter().zip(values) {
+                free.add_to_diagonal(i, FLOOR * stiffness * f64::from(value));
+            }
+        }
+        stiffen_tails(model, &values, &mut free);
+        CoarseSpace {
+            values: [values, transposed],
+            free,
+            cholesky: None,
+            count,
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// Factors A₀ with some displacements held and `shift` times the stiffness of every
+    /// node added.
+    pub fn factor(&mut self, model: &Model, held: &[Held], shift: f64) {
+        let mut matrix = self.free.clone();
+        for Held { node, along, stiffness } in held {
+            let (columns, values) = row_of(&self.values[0], *node as usize);
+            matrix.add_spring(columns, values, along, *stiffness);
+        }
+        if shift > 0.0 {
+            for (node, stiffness) in model.stiffness.iter().enumerate() {
+                let (columns, values) = row_of(&self.values[0], node);
+                for (&i, &value) in columns.iter().zip(values) {
+                    matrix.add_to_diagonal(i, shift * stiffness * f64::from(value));
+                }
+            }
+        }
+        let matrix = matrix.assembled();
+        let again = self.cholesky.as_mut().is_some_and(|cholesky| cholesky.factor_again(&matrix));
+        if !again {
+            self.cholesky = SparseCholesky::new(&matrix);
+        }
+    }
+
+    /// z += P A₀⁻¹ Pᵀ r.
+    pub fn add<const D: usize>(&mut self, r: &[[f64; D]], z: &mut [[f64; D]]) {
+        let Some(cholesky) = &self.cholesky else { return };
+        let mut moments = vec![[0.0; D]; self.count];
+        self.values[1].product(r, &mut moments, |entry, sum| *entry = sum);
+        cholesky.solve(moments.as_flattened_mut(), &mut self.scratch);
+        self.values[0].product(&moments, z, |entry, sum| *entry += sum);
+    }
+}
+
+/// Functions of which only a tail reaches the body may bend almost without a point that
+/// sees it: their stiffness over Σ_a k_a N(X_a)² is raised to a part of the median.
+fn stiffen_tails(model: &Model, values: &Sparse, matrix: &mut CoarseMatrix) {
+    let mut sums = vec![0.0; matrix.len()];
+    for (node, stiffness) in model.stiffness.iter().enumerate() {
+        let (columns, values) = row_of(values, node);
+        for (&i, &value) in columns.iter().zip(values) {
+            sums[i as usize] += stiffness * f64::from(value).powi(2);
+        }
+    }
+    let ratios: Vec<f64> =
+        (sums.iter().enumerate()).map(|(i, sum)| matrix.mean_diagonal(i as u32) / sum).collect();
+    let mut sorted = ratios.clone();
+    sorted.sort_by(f64::total_cmp);
+    let least = TAIL * sorted[sorted.len() / 2];
+    for ((i, sum), ratio) in sums.iter().enumerate().zip(&ratios) {
+        if *ratio < least {
+            matrix.add_to_diagonal(i as u32, (least - ratio) * sum);
+        }
+    }
+}
+
+fn row_of(matrix: &Sparse, row: usize) -> (&[u32], &[f32]) {
+    let entries = matrix.starts[row]..matrix.starts[row + 1];
+    (&matrix.columns[entries.clone()], &matrix.values[entries])
+}
+
+/// Numbers of the functions that reach a node.
+struct Numbers {
+    of: Vec<Option<u32>>,
+    count: u32,
+}
+
+impl Numbers {
+    fn number(&mut self, function: usize) -> u32 {
+        *self.of[function].get_or_insert_with(|| {
+            self.count += 1;
+            self.count - 1
+        })
+    }
+}
+
+struct Functions {
+    lattice: Lattice,
+    numbers: Numbers,
+}
+
+impl Functions {
+    /// The functions at X that reach a node, and their gradients \[1/m\].
+    fn at(&self, X: &Vector3, found: &mut Vec<(u32, Vector3)>) {
+        found.clear();
+        let mut gradients = self.lattice.gradients(X);
+        self.lattice.at(X).for_each(|function, _| {
+            let gradient = gradients.next().unwrap_or_default();
+            found.extend(self.numbers.of[function].map(|number| (number, gradient)));
+        });
+    }
+
+    fn add_stiffness(&self, model: &Model, matrix: &mut CoarseMatrix) {
+        let mut found = Vec::new();
+        for block in &model.blocks {
+            let moduli = ModuliAtRest::of(block);
+            for (weight, X) in self.lumps(model, block) {
+                self.at(&X, &mut found);
+                matrix.add_elastic(&found, weight * moduli.shear, weight * moduli.pointwise);
+            }
+            if moduli.projected > 0.0 {
+                for chunk in block.chunks() {
+                    let moments = self.patch_moments(model, block, &chunk);
+                    matrix.add_squares(&moments, moduli.projected);
+                }
+            }
+        }
+    }
+
+    /// Weights \[m³\] and centres \[m\] of the points of a block, a few for each cell.
+    fn lumps(&self, model: &Model, block: &Block) -> Vec<(f64, Vector3)> {
+        let mut lumps: BTreeMap<[u32; 3], (f64, Vector3)> = BTreeMap::new();
+        for (weight, X) in
+            block.quadrature_weights.iter().zip(&model.point_positions[block.points.clone()])
+        {
+            let (sum, moment) = lumps.entry(self.lattice.subcell(X, LUMPS)).or_default();
+            *sum += weight;
+            *moment += *weight * X;
+        }
+        lumps.into_values().map(|(weight, moment)| (weight, moment / weight)).collect()
+    }
+
+    /// Σ_q w_q B_b Grad N over the points of a patch for each function N and basis B_b.
+    fn patch_moments(
+        &self,
+        model: &Model,
+        block: &Block,
+        chunk: &Chunk,
+    ) -> Vec<(u32, [Vector3; 4])> {
+        let mut moments: BTreeMap<u32, [Vector3; 4]> = BTreeMap::new();
+        let Some(projection) = &block.projection else { return Vec::new() };
+        let mut found = Vec::new();
+        for (place, point) in chunk.points.clone().enumerate() {
+            let group = &projection.blocks[chunk.groups.start + place / LANES];
+            let factors =
+                group.basis.map(|basis| block.quadrature_weights[point] * basis.0[place % LANES]);
+            self.at(&model.point_positions[block.points.start + point], &mut found);
+            for (number, gradient) in &found {
+                let sums = moments.entry(*number).or_default();
+                sums.iter_mut().zip(factors).for_each(|(sum, factor)| *sum += factor * gradient);
+            }
+        }
+        moments.into_iter().collect()
+    }
+}

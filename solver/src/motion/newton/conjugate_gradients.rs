@@ -1,0 +1,176 @@
+//! Corrections of Newton's method by conjugate gradients.
+#![allow(non_snake_case)]
+
+use super::coarse_space::Held;
+use super::free_space::FreeSpace;
+use super::preconditioner::Preconditioner;
+use crate::algebra::packed::{axpy, dot, largest};
+use crate::algebra::tensor::Matrix3;
+use crate::model::Model;
+use crate::motion::tangent::Tangent;
+
+/// Held displacements that may change before the preconditioner is made anew, over their
+/// number \[–\].
+const CHANGED: f64 = 0.1;
+/// The same for the shift, as a factor \[–\].
+const SHIFTED: f64 = 3.0;
+
+/// Approximate solution of (K + shift D) Δu = r.
+pub(super) struct Correction {
+    pub change: Vec<f64>,
+    /// Whether a direction of negative curvature was met.
+    pub indefinite: bool,
+    /// Products with K.
+    pub products: usize,
+}
+
+/// The system of a correction.
+pub(super) struct System<'a> {
+    pub tangent: Tangent<'a>,
+    /// Free unbalanced forces r \[N\].
+    pub residual: Vec<f64>,
+    /// Displacement \[m\] to start from, which closes what is to be closed.
+    pub change: Vec<f64>,
+    /// Norm of the residual over that at the start at which the solution ends \[–\].
+    pub forcing: f64,
+    /// Stiffness of nodes that slide on obstacles \[N/m\].
+    pub sliding: Vec<(u32, Matrix3)>,
+    /// Part of the diagonal D that is added to K, against large steps \[–\].
+    pub shift: f64,
+}
+
+/// Solves corrections, and keeps the preconditioner from one to the next.
+pub(super) struct Solver {
+    preconditioner: Option<Preconditioner>,
+    /// For what it was made: held directions, stage of the conditions, and the shift.
+    held: Vec<(u32, [u64; 3])>,
+    shift: f64,
+}
+
+impl Solver {
+    pub fn new(model: &Model) -> Solver {
+        Solver { preconditioner: Preconditioner::new(model), held: Vec::new(), shift: f64::NAN }
+    }
+
+    /// Makes the preconditioner anew where it would no longer serve.
+    fn prepare(&mut self, model: &Model, free: &FreeSpace, shift: f64) {
+        let Some(preconditioner) = &mut self.preconditioner else { return };
+        let directions = free.held();
+        // Normals of a closed contact turn a little; its node says enough.
+        let mut held: Vec<(u32, [u64; 3])> = directions
+            .iter()
+            .map(|(node, along)| (*node, [0, 1, 2].map(|k| (along[k].abs() * 2.0) as u64)))
+            .collect();
+        held.sort_unstable();
+        let known = held.iter().filter(|entry| self.held.binary_search(entry).is_ok()).count();
+        let changed = held.len() + self.held.len() - 2 * known;
+        let ratio = (shift / self.shift).max(self.shift / shift);
+        let same = changed as f64 <= CHANGED * held.len() as f64;
+        if same && (shift == self.shift || ratio < SHIFTED) {
+            return;
+        }
+        let held_by = |(node, along): (u32, _)| Held {
+            node,
+            along,
+            stiffness: model.stiffness[node as usize],
+        };
+        preconditioner.hold(model, &directions.into_iter().map(held_by).collect::<Vec<_>>(), shift);
+        (self.held, self.shift) = (held, shift);
+    }
+
+    /// Conjugate gradients within the free displacements.
+    pub fn solve(&mut self, model: &Model, free: &mut FreeSpace, system: System) -> Correction {
+        let System { mut tangent, mut residual, mut change, forcing, sliding, shift } = system;
+        self.prepare(model, free, shift);
+        let d = model.components;
+        let mut products = 0;
+        let mut product_with = |v: &[f64]| {
+            products += 1;
+            let mut product = tangent.stiffness_times(v);
+            if shift > 0.0 {
+                for (i, (p, v)) in product.iter_mut().zip(v).enumerate() {
+                    *p += shift * model.stiffness[i / d] * v;
+                }
+            }
+            add_sliding(model, &sliding, v, &mut product);
+            product
+        };
+        if largest(&change) > 0.0 {
+            axpy(&mut residual, -1.0, &product_with(&change));
+        }
+        let mut descent = self.preconditioned(model, free, &mut residual);
+        let mut direction = descent.clone();
+        let mut square = dot(&residual, &descent);
+        let target = forcing * forcing * norm_squared(model, &residual);
+        let most = 2 * tangent_size(model, free);
+        let mut indefinite = false;
+        for count in 0..most {
+            let left = norm_squared(model, &residual);
+            if square.is_nan() || left <= target {
+                break;
+            }
+            let product = product_with(&direction);
+            let curvature = dot(&direction, &product);
+            if curvature <= 0.0 {
+                if count == 0 {
+                    axpy(&mut change, square / curvature.abs(), &direction);
+                }
+                indefinite = true;
+                break;
+            }
+            axpy(&mut change, square / curvature, &direction);
+            axpy(&mut residual, -square / curvature, &product);
+            descent = self.preconditioned(model, free, &mut residual);
+            let before = std::mem::replace(&mut square, dot(&residual, &descent));
+            for (p, z) in direction.iter_mut().zip(&descent) {
+                *p = z + square / before * *p;
+            }
+        }
+        Correction { change, indefinite, products }
+    }
+
+    /// z = Π B r; r becomes M Π M⁻¹ r, without the forces of what is held, whose round-off
+    /// would exceed the rest.
+    fn preconditioned(
+        &mut self,
+        model: &Model,
+        free: &mut FreeSpace,
+        residual: &mut [f64],
+    ) -> Vec<f64> {
+        let d = model.components;
+        let mut descent: Vec<f64> =
+            residual.iter().enumerate().map(|(i, r)| r / model.inertia[i / d]).collect();
+        free.project(&mut descent);
+        for (i, (r, z)) in residual.iter_mut().zip(&descent).enumerate() {
+            *r = model.inertia[i / d] * z;
+        }
+        if let Some(preconditioner) = &mut self.preconditioner {
+            descent = preconditioner.apply(d, residual);
+            free.project(&mut descent);
+        }
+        descent
+    }
+}
+
+/// The forces against sliding of displacements v.
+fn add_sliding(model: &Model, sliding: &[(u32, Matrix3)], v: &[f64], product: &mut [f64]) {
+    let (Some(rows), d) = (&model.nodal_rows, model.components) else { return };
+    for (node, stiffness) in sliding {
+        let force = stiffness * rows.interpolate(*node as usize, v, d);
+        for entry in rows.row(*node as usize) {
+            let first = d * rows.nodes[entry] as usize;
+            (0..d).for_each(|k| product[first + k] += rows.phi[entry] * force[k]);
+        }
+    }
+}
+
+/// rᵀ M⁻¹ r.
+fn norm_squared(model: &Model, residual: &[f64]) -> f64 {
+    let d = model.components;
+    residual.iter().enumerate().map(|(i, r)| r * r / model.inertia[i / d]).sum()
+}
+
+/// Number of free displacements.
+fn tangent_size(model: &Model, free: &FreeSpace) -> usize {
+    model.size().saturating_sub(free.held().len()).max(1)
+}

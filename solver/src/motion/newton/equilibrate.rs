@@ -1,0 +1,165 @@
+//! Newton's method towards a static solution, the load in as few parts as it takes.
+
+use super::increment::{Equilibrium, Solver};
+use crate::algebra::packed::dot;
+use crate::error::Error;
+use crate::model::Model;
+use crate::model::essential::ConstraintForces;
+use crate::motion::internal_force::strain_energy;
+use crate::motion::observe::{Continue, Observer, notify};
+use crate::motion::state::State;
+use crate::motion::step::{Buffers, external_force};
+use crate::motion::summary::Summary;
+use crate::problem::Newton;
+
+/// Fraction of the load below which an increment is not halved again.
+const SMALLEST_INCREMENT: f64 = 1e-3;
+/// Residual of the increments before the last one \[–\].
+const PASSING_TOLERANCE: f64 = 1e-4;
+/// Solves f_ext = f_int under the conditions of the end of loading, by
+/// corrections K Δu = f_ext − f_int from conjugate gradients that stay in the
+/// free displacements. Contacts open and close between corrections. Where this
+/// fails, the load is applied in parts. The works of the state are sums over the
+/// parts by the trapezoidal rule; their total is the strain energy.
+pub(crate) fn equilibrate(
+    model: &Model,
+    settings: &Newton,
+    state: &mut State,
+    observer: &mut dyn Observer,
+) -> Result<Summary, Error> {
+    let mut buffers = Buffers::new(model, false);
+    let mut solver = Solver::new(model, settings, state, &mut buffers);
+    let mut stopped = notify(model, state, &mut buffers, 1.0, 0.0, observer) == Continue::Stop;
+    let (mut reached, mut increment) = (0.0, 1.0f64);
+    while reached < 1.0 && !stopped {
+        // No tiny last increment.
+        let fraction = if reached + 1.5 * increment > 1.0 { 1.0 } else { reached + increment };
+        let last = fraction == 1.0;
+        let tolerance = if last { settings.tolerance } else { PASSING_TOLERANCE };
+        match solver.solve(&state.displacement, fraction, tolerance, &mut buffers) {
+            Ok(equilibrium) => {
+                let jacobian = equilibrium.imbalance.smallest_jacobian.jacobian;
+                solver.accept(equilibrium, fraction, state, &mut buffers);
+                reached = fraction;
+                increment *= 2.0;
+                let stop = notify(model, state, &mut buffers, jacobian, reached, observer);
+                stopped = stop == Continue::Stop;
+            }
+            Err(failed) => {
+                increment = 0.5 * (fraction - reached);
+                if increment < SMALLEST_INCREMENT {
+                    return Err(Error::NoEquilibrium {
+                        reached,
+                        iterations: solver.counts.iterations,
+                        residual: failed.residual,
+                        indefinite: failed.indefinite,
+                    });
+                }
+            }
+        }
+    }
+    Ok(solver.summary(state, stopped))
+}
+
+/// The load path from the first state to the loaded one: the initial imbalance
+/// fades in proportion to the fraction of the load still to come.
+pub(super) struct Path {
+    start: f64,
+    end: f64,
+    /// Change that meets the conditions at the start \[m\].
+    pub gap: Vec<f64>,
+    /// f_ext − f_int at the start \[N\].
+    pub force: Vec<f64>,
+}
+
+impl Path {
+    /// From the state at time `start` to the load of time `end` \[s\].
+    pub fn new(start: f64, end: f64, size: usize) -> Path {
+        Path { start, end, gap: vec![0.0; size], force: vec![0.0; size] }
+    }
+
+    pub fn time(&self, fraction: f64) -> f64 {
+        if fraction == 1.0 { self.end } else { self.start + fraction * (self.end - self.start) }
+    }
+
+    /// The change of `u` \[m\] that meets the conditions.
+    pub fn jump(
+        &self,
+        model: &Model,
+        fraction: f64,
+        u: &[f64],
+        forces: &mut ConstraintForces,
+    ) -> Vec<f64> {
+        let left = 1.0 - fraction;
+        let mut moved: Vec<f64> = u.iter().zip(&self.gap).map(|(u, gap)| u + left * gap).collect();
+        let t = self.time(fraction);
+        let mut jump = vec![0.0; u.len()];
+        let positions = &model.positions;
+        model.constraints.enforce(t, positions, &model.inertia, &mut moved, forces, |i, delta| {
+            jump[i] += delta;
+        });
+        jump
+    }
+
+    pub fn external_force(&self, model: &Model, fraction: f64, f_ext: &mut [f64]) {
+        external_force(model, self.time(fraction), f_ext);
+        f_ext.iter_mut().zip(&self.force).for_each(|(f, force)| *f -= (1.0 - fraction) * force);
+    }
+}
+
+impl Solver<'_> {
+    /// Makes an equilibrium the state of the body, at rest.
+    pub(super) fn accept(
+        &mut self,
+        equilibrium: Equilibrium,
+        fraction: f64,
+        state: &mut State,
+        buffers: &mut Buffers,
+    ) {
+        let model = self.model;
+        let Equilibrium { u, imbalance } = equilibrium;
+        self.counts.increments += 1;
+        self.counts.residual = imbalance.relative(model);
+        self.smallest_jacobian = self.smallest_jacobian.or(imbalance.smallest_jacobian);
+        let stored = strain_energy(model, &u, &mut buffers.workspace)
+            - strain_energy(model, &state.displacement, &mut buffers.workspace);
+        external_force(model, state.time, &mut buffers.f_ext);
+        let before = std::mem::take(&mut state.displacement);
+        let steps: Vec<f64> = u.iter().zip(&before).map(|(u, before)| u - before).collect();
+        let mut external = 0.5 * dot(&buffers.f_ext, &steps);
+        state.time = self.path.time(fraction);
+        external_force(model, state.time, &mut buffers.f_ext);
+        external += 0.5 * dot(&buffers.f_ext, &steps);
+        state.work.external += external;
+        state.work.constraint += stored - external;
+        state.displacement = u;
+        state.velocity.fill(0.0);
+        state.time_step = 0.0;
+        state.step = self.counts.iterations;
+        // f_int − f_ext is the force of the conditions and of contact.
+        let (contact, mut acceleration) = self.without_contact(&imbalance);
+        state.contact.touching = contact.iter().map(|force| force.node).collect();
+        state.contact.touching.dedup();
+        state.contact.forces = contact;
+        let forces = &mut state.constraint_forces;
+        model.constraints.project(state.time, &model.inertia, &mut acceleration, forces);
+        state.force_factor = 1.0;
+    }
+
+    pub(super) fn summary(&self, state: &State, stopped: bool) -> Summary {
+        Summary {
+            steps: self.counts.iterations,
+            time: state.time,
+            time_steps: (0.0, 0.0),
+            critical_time_step: 0.0,
+            force_evaluations: self.counts.evaluations,
+            lanczos_evaluations: 0,
+            smallest_jacobian: self.smallest_jacobian,
+            relaxation: None,
+            newton: Some(self.counts),
+            stopped,
+            instability: None,
+            stability_products: 0,
+        }
+    }
+}

@@ -1,0 +1,343 @@
+//! Newton's method at a fraction of the load.
+
+use super::active_contacts::ActiveContacts;
+use super::conjugate_gradients::{Correction, Solver as LinearSolver, System};
+use super::equilibrate::Path;
+use super::free_space::FreeSpace;
+use crate::algebra::packed::{dot, largest};
+use crate::model::Model;
+use crate::model::contact::ContactForce;
+use crate::model::rigid_motions::rigid_motions_left_to_contact;
+use crate::motion::balance::Imbalance;
+use crate::motion::internal_force::SmallestJacobian;
+use crate::motion::state::State;
+use crate::motion::step::Buffers;
+use crate::motion::summary::NewtonCounts;
+use crate::motion::tangent::Tangent;
+use crate::problem::Newton;
+
+/// Corrections in one increment of the load; more where contacts have to be found.
+const MOST_ITERATIONS: usize = 20;
+const MOST_ITERATIONS_IN_CONTACT: usize = 100;
+/// Halvings of a correction that overshoots.
+const MOST_HALVINGS: usize = 6;
+/// Bounds of the relative residual at which conjugate gradients end.
+const FORCING: (f64, f64) = (1e-4, 0.1);
+/// The same for the first correction, which is not followed by a line search.
+const FIRST_FORCING: f64 = 0.01;
+/// A correction may not compress a point to less than this fraction of its volume.
+const SMALLEST_VOLUME: f64 = 0.1;
+/// Round-off of a nodal force over ε K u.
+const ROUND_OFF: f64 = 100.0;
+/// Gap of a closed contact over the mean nodal spacing \[–\].
+const CLOSED: f64 = 1e-6;
+/// Largest move of a node in a correction with contact, over the mean nodal spacing \[–\].
+const LARGEST_MOVE: f64 = 2.0;
+/// Move of a body that only contacts can hold in its first correction, over the mean
+/// nodal spacing \[–\].
+const FIRST_MOVE: f64 = 0.5;
+/// Factor of the shift after a correction that went too far \[–\].
+const TOO_FAR: f64 = 10.0;
+/// Bounds of the shift \[–\]; 0 where the body is held without contact.
+const SHIFTS: (f64, f64) = (1e-9, 1.0);
+
+pub(super) struct Solver<'a> {
+    pub model: &'a Model,
+    pub path: Path,
+    pub counts: NewtonCounts,
+    pub smallest_jacobian: SmallestJacobian,
+    linear: LinearSolver,
+    free: FreeSpace<'a>,
+    contacts: ActiveContacts,
+    /// Whether only contacts can hold the body.
+    floating: bool,
+    /// Part of the diagonal that is added to K \[–\].
+    shift: f64,
+}
+
+/// Displacements in equilibrium at a fraction of the load.
+pub(super) struct Equilibrium {
+    pub u: Vec<f64>,
+    pub imbalance: Imbalance,
+}
+
+/// Why an increment failed.
+pub(super) struct FailedIncrement {
+    pub residual: f64,
+    pub indefinite: bool,
+}
+
+/// How a correction is taken.
+enum Outcome {
+    Taken(Equilibrium),
+    /// Refused; a larger shift may do better.
+    TooFar,
+    Failed,
+}
+
+impl<'a> Solver<'a> {
+    pub fn new(
+        model: &'a Model,
+        settings: &Newton,
+        state: &State,
+        buffers: &mut Buffers,
+    ) -> Solver<'a> {
+        let end = settings.load_end;
+        let held = || rigid_motions_left_to_contact(model, end) == 0;
+        let mut solver = Solver {
+            model,
+            path: Path::new(state.time, end, model.size()),
+            counts: NewtonCounts::default(),
+            smallest_jacobian: SmallestJacobian::NONE,
+            linear: LinearSolver::new(model),
+            free: FreeSpace::new(model, state.time),
+            contacts: ActiveContacts::default(),
+            floating: !model.contact.obstacles.is_empty() && !held(),
+            shift: 0.0,
+        };
+        // Before anything fades: the conditions and forces at the start.
+        let forces = &mut solver.free.forces;
+        solver.path.gap = solver.path.jump(model, 0.0, &state.displacement, forces);
+        solver.path.force = solver.imbalance(&state.displacement, 0.0, buffers).force;
+        solver
+    }
+
+    fn imbalance(&mut self, u: &[f64], fraction: f64, buffers: &mut Buffers) -> Imbalance {
+        self.counts.evaluations += 1;
+        self.path.external_force(self.model, fraction, &mut buffers.f_ext);
+        let t = self.path.time(fraction);
+        let mut imbalance = Imbalance::new(self.model, u, t, buffers, &mut self.free.forces);
+        self.free.project_contacts(&mut imbalance.acceleration);
+        imbalance
+    }
+
+    /// Newton's method at a fraction of the load from displacements `start` \[m\].
+    pub fn solve(
+        &mut self,
+        start: &[f64],
+        fraction: f64,
+        tolerance: f64,
+        buffers: &mut Buffers,
+    ) -> Result<Equilibrium, FailedIncrement> {
+        let contacts = self.contacts.clone();
+        let solved = self.iterate(start, fraction, tolerance, buffers);
+        if solved.is_err() {
+            self.contacts = contacts;
+        }
+        solved
+    }
+
+    fn iterate(
+        &mut self,
+        start: &[f64],
+        fraction: f64,
+        tolerance: f64,
+        buffers: &mut Buffers,
+    ) -> Result<Equilibrium, FailedIncrement> {
+        let model = self.model;
+        self.free.t = self.path.time(fraction);
+        self.contacts.begin();
+        let mut jump = self.path.jump(model, fraction, start, &mut self.free.forces);
+        let imbalance = self.imbalance(start, fraction, buffers);
+        self.shift = if self.floating { self.first_shift(&imbalance) } else { 0.0 };
+        let mut now = Equilibrium { u: start.to_vec(), imbalance };
+        let (mut forcing, mut indefinite, mut first) = (FIRST_FORCING, false, true);
+        let most = match model.contact.obstacles.is_empty() {
+            true => MOST_ITERATIONS,
+            false => MOST_ITERATIONS_IN_CONTACT,
+        };
+        for _ in 0..=most {
+            let changes = self.settle(start, &mut now);
+            let residual = now.imbalance.relative(model);
+            let failed = FailedIncrement { residual, indefinite };
+            if residual.is_nan() {
+                return Err(failed);
+            }
+            let open = self.free.contacts.iter().fold(0.0f64, |a, row| a.max(row.way.abs()));
+            let settled = changes == 0 && open <= CLOSED * model.contact.skin;
+            if !first && settled && !indefinite && self.is_balanced(&now, tolerance) {
+                return Ok(now);
+            }
+            self.free.close_contacts(&mut jump);
+            let change = std::mem::take(&mut jump);
+            let correction = self.correction(&now, change, forcing, indefinite, buffers);
+            indefinite = correction.indefinite;
+            let searched = !first && settled;
+            let norm = now.imbalance.norm(model);
+            match self.take(&now, &correction.change, fraction, searched, buffers) {
+                Outcome::Taken(next) => now = next,
+                Outcome::TooFar if self.floating && self.shift < SHIFTS.1 => {
+                    self.shift = (TOO_FAR * self.shift).min(SHIFTS.1);
+                    jump = self.path.jump(model, fraction, &now.u, &mut self.free.forces);
+                    continue;
+                }
+                _ => return Err(failed),
+            }
+            if self.floating {
+                let changed = changes as f64 / (self.free.contacts.len() as f64).max(10.0);
+                self.shift = (shift_factor(changed) * self.shift).clamp(SHIFTS.0, SHIFTS.1);
+            }
+            jump = vec![0.0; start.len()];
+            // Eisenstat and Walker 1996, choice 2.
+            let fallen = now.imbalance.norm(model) / norm;
+            forcing = match first {
+                true => FORCING.1,
+                false => (0.9 * fallen * fallen).clamp(FORCING.0, FORCING.1),
+            };
+            first = false;
+        }
+        Err(FailedIncrement { residual: now.imbalance.relative(model), indefinite })
+    }
+
+    fn is_balanced(&self, now: &Equilibrium, tolerance: f64) -> bool {
+        let model = self.model;
+        let round_off = ROUND_OFF * f64::EPSILON * largest(&model.stiffness) * largest(&now.u);
+        now.imbalance.relative(model) <= tolerance || now.imbalance.largest(model) <= round_off
+    }
+
+    /// Opens and closes contacts; returns how many.
+    fn settle(&mut self, before: &[f64], now: &mut Equilibrium) -> usize {
+        let model = self.model;
+        if model.contact.obstacles.is_empty() {
+            return 0;
+        }
+        self.free.close(self.contacts.rows(model, &now.u));
+        let forces = self.contact_forces(&now.imbalance);
+        let normal = self.contacts.normal_forces(model, &now.u, &forces);
+        let changes = self.contacts.update(model, before, &now.u, &normal);
+        if changes > 0 {
+            self.free.close(self.contacts.rows(model, &now.u));
+        }
+        now.imbalance.acceleration = self.accelerations(&now.imbalance);
+        self.free.project(&mut now.imbalance.acceleration);
+        changes
+    }
+
+    /// What the closed contacts exert.
+    fn contact_forces(&mut self, imbalance: &Imbalance) -> Vec<ContactForce> {
+        let multipliers = self.free.project_contacts(&mut self.accelerations(imbalance));
+        self.contacts.forces(&self.free.contacts, &multipliers)
+    }
+
+    /// What the closed contacts exert, and the free accelerations without it that the
+    /// conditions are to prevent \[m/s²\].
+    pub fn without_contact(&mut self, imbalance: &Imbalance) -> (Vec<ContactForce>, Vec<f64>) {
+        let model = self.model;
+        let multipliers = self.free.project_contacts(&mut self.accelerations(imbalance));
+        let mut force = imbalance.force.clone();
+        self.free.take_contact_forces(&mut force, &multipliers);
+        let contact = self.contacts.forces(&self.free.contacts, &multipliers);
+        let d = model.components;
+        (contact, force.iter().enumerate().map(|(i, f)| f / model.inertia[i / d]).collect())
+    }
+
+    /// M⁻¹(f_ext − f_int), not projected.
+    fn accelerations(&self, imbalance: &Imbalance) -> Vec<f64> {
+        let model = self.model;
+        let force = imbalance.force.iter().enumerate();
+        force.map(|(i, f)| f / model.inertia[i / model.components]).collect()
+    }
+
+    /// The shift with which the resultant moves the body by a part of the spacing.
+    fn first_shift(&self, imbalance: &Imbalance) -> f64 {
+        let model = self.model;
+        let resultant = (0..model.components)
+            .map(|k| {
+                let along: f64 = imbalance.force.iter().skip(k).step_by(model.components).sum();
+                along * along
+            })
+            .sum::<f64>()
+            .sqrt();
+        let stiffness: f64 = model.stiffness.iter().sum();
+        let shift = resultant / (stiffness * FIRST_MOVE * model.contact.skin);
+        shift.clamp(SHIFTS.0, SHIFTS.1)
+    }
+
+    fn correction(
+        &mut self,
+        now: &Equilibrium,
+        change: Vec<f64>,
+        forcing: f64,
+        only_resisting: bool,
+        buffers: &mut Buffers,
+    ) -> Correction {
+        let model = self.model;
+        let forces = self.contact_forces(&now.imbalance);
+        let sliding = self.contacts.sliding_stiffness(model, &now.u, &forces, only_resisting);
+        let tangent = Tangent::new(model, &now.u, self.free.t, &mut buffers.workspace);
+        let residual = now.imbalance.free(model);
+        let system = System { tangent, residual, change, forcing, sliding, shift: self.shift };
+        let correction = self.linear.solve(model, &mut self.free, system);
+        self.counts.iterations += 1;
+        self.counts.products += correction.products;
+        self.counts.evaluations += correction.products;
+        correction
+    }
+
+    /// Takes a correction: all of it where it jumps, or as much as brings the forces
+    /// closer to balance.
+    fn take(
+        &mut self,
+        now: &Equilibrium,
+        change: &[f64],
+        fraction: f64,
+        searched: bool,
+        buffers: &mut Buffers,
+    ) -> Outcome {
+        if searched {
+            return match self.search(now, change, fraction, buffers) {
+                Some(next) => Outcome::Taken(next),
+                None => Outcome::TooFar,
+            };
+        }
+        let model = self.model;
+        let farthest = LARGEST_MOVE * model.contact.skin / largest(change);
+        let length = if model.contact.obstacles.is_empty() { 1.0 } else { farthest.min(1.0) };
+        if self.floating && farthest < 1.0 && self.shift < SHIFTS.1 {
+            return Outcome::TooFar;
+        }
+        let volume = SMALLEST_VOLUME * now.imbalance.smallest_jacobian.jacobian.min(1.0);
+        let u = moved(&now.u, change, length);
+        let imbalance = self.imbalance(&u, fraction, buffers);
+        match imbalance.smallest_jacobian.jacobian > volume {
+            true => Outcome::Taken(Equilibrium { u, imbalance }),
+            false if self.floating => Outcome::TooFar,
+            false => Outcome::Failed,
+        }
+    }
+
+    /// The longest of the halved corrections that keeps points from collapsing
+    /// and brings the forces, or their work along it, closer to balance.
+    fn search(
+        &mut self,
+        now: &Equilibrium,
+        change: &[f64],
+        fraction: f64,
+        buffers: &mut Buffers,
+    ) -> Option<Equilibrium> {
+        let (model, before) = (self.model, &now.imbalance);
+        let slope = dot(change, &before.free(model)).abs();
+        let volume = SMALLEST_VOLUME * before.smallest_jacobian.jacobian.min(1.0);
+        (0..=MOST_HALVINGS).find_map(|halvings| {
+            let u = moved(&now.u, change, 0.5f64.powi(halvings as i32));
+            let imbalance = self.imbalance(&u, fraction, buffers);
+            let valid = imbalance.smallest_jacobian.jacobian > volume;
+            let closer = imbalance.norm(model) <= 0.99 * before.norm(model)
+                || dot(change, &imbalance.free(model)).abs() <= 0.8 * slope;
+            (valid && closer).then_some(Equilibrium { u, imbalance })
+        })
+    }
+}
+
+/// Factor of the shift after a correction, by the part of the contacts that changed \[–\].
+fn shift_factor(changed: f64) -> f64 {
+    match changed {
+        changed if changed > 0.2 => 4.0,
+        changed if changed < 0.05 => 0.1,
+        _ => 0.5,
+    }
+}
+
+fn moved(u: &[f64], change: &[f64], length: f64) -> Vec<f64> {
+    u.iter().zip(change).map(|(u, change)| u + length * change).collect()
+}

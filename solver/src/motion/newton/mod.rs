@@ -1,0 +1,13 @@
+//! Newton's method towards a static solution, with contact.
+
+mod active_contacts;
+mod coarse_matrix;
+mod coarse_space;
+mod conjugate_gradients;
+mod equilibrate;
+mod free_space;
+mod increment;
+mod nodal_values;
+mod preconditioner;
+
+pub(crate) use equilibrate::equilibrate;

@@ -1,0 +1,58 @@
+//! An approximate inverse of the tangent operator whose quality does not depend on the
+//! number of nodes.
+#![allow(non_snake_case)]
+
+use super::coarse_space::{CoarseSpace, Held};
+use super::nodal_values::{NodalValues, Side};
+use crate::model::Model;
+
+/// B = T (D⁻¹ + P A₀⁻¹ Pᵀ) Tᵀ: from forces on nodal parameters to those on nodal values,
+/// there the inverse of the diagonal and of the stiffness of smooth displacements, and
+/// back (method book, eq. 20.8).
+pub(super) struct Preconditioner {
+    values: NodalValues,
+    coarse: CoarseSpace,
+    /// D⁻¹ \[m/N\].
+    flexibility: Vec<f64>,
+}
+
+impl Preconditioner {
+    /// `None` without the shape functions at the nodes.
+    pub fn new(model: &Model) -> Option<Preconditioner> {
+        let values = NodalValues::new(model.nodal_rows.as_ref()?);
+        let stiffness = values.mean(&model.stiffness);
+        Some(Preconditioner {
+            values,
+            coarse: CoarseSpace::new(model),
+            flexibility: stiffness.iter().map(|k| 1.0 / k).collect(),
+        })
+    }
+
+    /// Takes account of what is held, and of `shift` times the diagonal added to K.
+    pub fn hold(&mut self, model: &Model, held: &[Held], shift: f64) {
+        self.coarse.factor(model, held, shift);
+    }
+
+    /// B r \[m\].
+    pub fn apply(&mut self, components: usize, r: &[f64]) -> Vec<f64> {
+        let mut result = vec![0.0; r.len()];
+        match components {
+            2 => self.apply_in::<2>(r, &mut result),
+            _ => self.apply_in::<3>(r, &mut result),
+        }
+        result
+    }
+
+    fn apply_in<const D: usize>(&mut self, r: &[f64], result: &mut [f64]) {
+        let (r, result) = (r.as_chunks::<D>().0, result.as_chunks_mut::<D>().0);
+        let mut scratch = vec![[0.0; D]; r.len()];
+        let mut forces = vec![[0.0; D]; r.len()];
+        self.values.apply(Side::Transposed, r, &mut forces, &mut scratch);
+        let mut moved = forces.clone();
+        for (entry, flexibility) in moved.iter_mut().zip(&self.flexibility) {
+            entry.iter_mut().for_each(|x| *x *= flexibility);
+        }
+        self.coarse.add(&forces, &mut moved);
+        self.values.apply(Side::Plain, &moved, result, &mut scratch);
+    }
+}
