@@ -32,6 +32,14 @@ def test_a_law_that_no_reference_solves_is_refused():
         material_from_table("brain", table)
 
 
+def test_what_no_reference_solves_is_refused(tmp_path):
+    text = (CASES / "bonded_block.toml").read_text()
+    case = tmp_path / "case.toml"
+    case.write_text(text + '[[pressure]]\nname = "p"\nwhere = "all"\npressure = 1.0\n')
+    with pytest.raises(ValueError, match="pressure is not solved by the references"):
+        read_case(case)
+
+
 def test_canonical_text():
     document = tomllib.loads('b = [1, 2.5]\na = "é"\nc = { x = true }')
     text = canonical_text(document, Path())

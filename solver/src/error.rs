@@ -122,6 +122,8 @@ pub enum Error {
     EmptyRegion { name: String },
     #[error("traction \"{name}\" selects no part of the boundary")]
     EmptyTraction { name: String },
+    #[error("pressure \"{name}\" selects no part of the boundary")]
+    EmptyPressure { name: String },
     #[error(
         "the conditions on component {component} constrain {rows} nodes whose constraints depend on each other: \
              use enforcement = \"direct\""

@@ -74,6 +74,8 @@ pub struct Loads {
     pub body_forces: Vec<BodyForce>,
     /// Forces per reference area; they add up.
     pub tractions: Vec<Traction>,
+    /// Pressures on the deformed surface; they add up.
+    pub pressures: Vec<Pressure>,
     /// Velocity at t = 0 \[m/s\], the first part that contains a node.
     pub initial_velocities: Vec<(Selector, Vector3)>,
 }
@@ -96,6 +98,20 @@ pub struct Traction {
     pub part: Selector,
     /// At amplitude 1 \[Pa\].
     pub traction: Vector3,
+    /// The factor over time.
+    pub amplitude: Amplitude,
+}
+
+/// A pressure \[Pa\] along the inward normal of the deformed surface: it turns with the
+/// surface, and its force goes with the deformed area.
+#[derive(Debug, Clone)]
+pub struct Pressure {
+    /// Name in reports and messages.
+    pub name: String,
+    /// Which part of the boundary.
+    pub part: Selector,
+    /// At amplitude 1 \[Pa\]; positive where it presses on the body.
+    pub pressure: f64,
     /// The factor over time.
     pub amplitude: Amplitude,
 }

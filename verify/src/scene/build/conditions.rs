@@ -7,7 +7,7 @@ use crate::scene::format::{
 };
 use mtled::algebra::tensor::Vector3;
 use mtled::problem::{
-    Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Traction,
+    Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Pressure, Traction,
 };
 
 impl Builder<'_> {
@@ -108,6 +108,13 @@ impl Builder<'_> {
             let part = self.selector(&format!("{key}.where"), &row.part);
             let (name, traction) = (row.name.clone(), Vector3::from(row.traction));
             loads.tractions.extend(part.map(|part| Traction { name, part, traction, amplitude }));
+        }
+        for (n, row) in format.pressure.iter().enumerate() {
+            let key = format!("pressure[{n}]");
+            let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
+            let part = self.selector(&format!("{key}.where"), &row.part);
+            let (name, pressure) = (row.name.clone(), row.pressure);
+            loads.pressures.extend(part.map(|part| Pressure { name, part, pressure, amplitude }));
         }
         for (n, row) in format.initial_velocity.iter().enumerate() {
             let key = format!("initial_velocity[{n}]");

@@ -3,8 +3,8 @@
 use crate::scene::edit::values::{replace, rounded, scale};
 use toml_edit::{DocumentMut, Item, Value};
 
-/// Multiplies prescribed displacements and angles, tractions, body forces and initial
-/// velocities.
+/// Multiplies prescribed displacements and angles, tractions, pressures, body forces and
+/// initial velocities.
 pub fn scale_loads(document: &mut DocumentMut, factor: f64) {
     let numbers = [
         ("prescribe", "displacement", &["x", "y", "z"][..]),
@@ -17,6 +17,9 @@ pub fn scale_loads(document: &mut DocumentMut, factor: f64) {
             };
             keys.iter().for_each(|key| scale(inner, key, factor));
         }
+    }
+    for row in rows(document, "pressure") {
+        scale(row, "pressure", factor);
     }
     let triples = [
         ("traction", "traction"),

@@ -2,7 +2,8 @@
 
 use crate::scene::format::choice::choice;
 use crate::scene::format::conditions::{
-    BodyForceFormat, InitialVelocityFormat, ObstacleFormat, PrescribeFormat, TractionFormat,
+    BodyForceFormat, InitialVelocityFormat, ObstacleFormat, PrescribeFormat, PressureFormat,
+    TractionFormat,
 };
 use crate::scene::format::geometry::{SelectorFormat, ShapeFormat};
 use crate::scene::format::material::MaterialFormat;
@@ -47,6 +48,9 @@ pub struct CaseFormat {
     /// Dead tractions on parts of the boundary.
     #[serde(default)]
     pub traction: Vec<TractionFormat>,
+    /// Pressures that follow the deformed surface.
+    #[serde(default)]
+    pub pressure: Vec<PressureFormat>,
     /// Velocities at t = 0; the first part that contains a node counts.
     #[serde(default)]
     pub initial_velocity: Vec<InitialVelocityFormat>,

@@ -99,6 +99,19 @@ pub struct TractionFormat {
     pub amplitude: AmplitudeFormat,
 }
 
+/// A pressure on the deformed surface: along its inward normal, whatever way it turns.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PressureFormat {
+    pub name: String,
+    #[serde(rename = "where")]
+    pub part: SelectorFormat,
+    /// Force per deformed area [Pa], positive where it presses on the body.
+    pub pressure: f64,
+    #[serde(default)]
+    pub amplitude: AmplitudeFormat,
+}
+
 /// A velocity at t = 0.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
