@@ -38,6 +38,10 @@ def test_what_no_reference_solves_is_refused(tmp_path):
     case.write_text(text + '[[pressure]]\nname = "p"\nwhere = "all"\npressure = 1.0\n')
     with pytest.raises(ValueError, match="pressure is not solved by the references"):
         read_case(case)
+    part = "{ sphere = { centre = [0.0, 0.0, 0.0], radius = 1.0 } }"
+    case.write_text(text + f"[[body_force]]\nwhere = {part}\nacceleration = [0.0, 0.0, 1.0]\n")
+    with pytest.raises(ValueError, match="body_force on a part of the body is not solved"):
+        read_case(case)
 
 
 def test_canonical_text():

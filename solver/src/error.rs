@@ -122,6 +122,11 @@ pub enum Error {
     EmptyRegion { name: String },
     #[error("traction \"{name}\" selects no part of the boundary")]
     EmptyTraction { name: String },
+    #[error(
+        "body force {index} acts on no quadrature point: its part lies outside the body or between the points; \
+             change it, or use smaller cells there"
+    )]
+    EmptyBodyForce { index: usize },
     #[error("pressure \"{name}\" selects no part of the boundary")]
     EmptyPressure { name: String },
     #[error(

@@ -183,6 +183,8 @@ def read_case(path: str | Path) -> Case:
     for key in NOT_SOLVED:
         if document.get(key):
             raise ValueError(f"{key} is not solved by the references")
+    if any(row.get("where", "all") != "all" for row in document.get("body_force", [])):
+        raise ValueError("body_force on a part of the body is not solved by the references")
     plane = document.get("plane", {})
     plane_strain = document.get("dimension", "3d") == "plane_strain"
     about = document.get("output", {}).get("moment_about", [0.0, 0.0, 0.0])

@@ -153,8 +153,9 @@ fn problem_selectors(problem: &Problem) -> impl Iterator<Item = &Selector> {
     let conditions = problem.conditions.iter().map(|condition| &condition.part);
     let tractions = problem.loads.tractions.iter().map(|traction| &traction.part);
     let pressures = problem.loads.pressures.iter().map(|pressure| &pressure.part);
+    let body_forces = problem.loads.body_forces.iter().map(|body_force| &body_force.part);
     let refined = refined.iter().chain(&problem.recipe.grid.refinements).map(|r| &r.part);
-    regions.chain(conditions).chain(tractions).chain(pressures).chain(refined)
+    regions.chain(conditions).chain(tractions).chain(pressures).chain(body_forces).chain(refined)
 }
 
 /// Memory while the nodes of a graded cloud are chosen \[bytes\].

@@ -28,18 +28,26 @@ pub fn load_patterns(
     let d = problem.dimension.components();
     let size = d * discretisation.cloud.positions.len();
     let mut patterns = Vec::new();
-    for body_force in &problem.loads.body_forces {
+    for (index, body_force) in problem.loads.body_forces.iter().enumerate() {
+        let mut acts = false;
         let mut force = vec![0.0; size];
         let supports = &discretisation.supports;
         let weights = &discretisation.quadrature.weights;
         for (point, (density, weight)) in density.iter().zip(weights).enumerate() {
-            let acceleration =
-                body_force.acceleration.at(&discretisation.quadrature.positions[point]);
+            let position = &discretisation.quadrature.positions[point];
+            if !body_force.part.contains(position) {
+                continue;
+            }
+            acts = true;
+            let acceleration = body_force.acceleration.at(position);
             let mass = density * weight;
             for entry in supports.row(point) {
                 let nodal_mass = mass * supports.phi[entry];
                 add(&mut force, d, supports.nodes[entry], &(acceleration * nodal_mass));
             }
+        }
+        if !acts {
+            return Err(Error::EmptyBodyForce { index });
         }
         patterns.push(LoadPattern { force, amplitude: body_force.amplitude.clone() });
     }

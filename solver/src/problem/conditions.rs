@@ -80,9 +80,11 @@ pub struct Loads {
     pub initial_velocities: Vec<(Selector, Vector3)>,
 }
 
-/// A force per mass \[N/kg\] on the whole body.
+/// A force per mass \[N/kg\] on the body or a part of it, such as what lies above a fluid.
 #[derive(Debug, Clone)]
 pub struct BodyForce {
+    /// The quadrature points that it acts on.
+    pub part: Selector,
     /// At amplitude 1 \[N/kg\].
     pub acceleration: Field,
     /// The factor over time.

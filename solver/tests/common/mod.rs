@@ -156,7 +156,11 @@ pub fn condition(name: &str, part: Selector, values: [Option<f64>; 3]) -> Essent
 
 pub fn gravity(problem: &mut Problem, acceleration: Vector3) {
     let amplitude = Amplitude::Constant;
-    problem.loads.body_forces.push(BodyForce { acceleration: acceleration.into(), amplitude });
+    problem.loads.body_forces.push(BodyForce {
+        part: Selector::All,
+        acceleration: acceleration.into(),
+        amplitude,
+    });
 }
 
 pub fn obstacle(shape: Shape, side: ObstacleSide, friction: Friction) -> Obstacle {

@@ -56,6 +56,7 @@ fn diagnose(case: &Case, error: &Error) -> Diagnostic {
         Error::EmptyInitialVelocity { index } => &format!("initial_velocity[{index}]"),
         Error::EmptyRegion { .. } => "probe",
         Error::EmptyTraction { name } => &format!("traction.{name}.where"),
+        Error::EmptyBodyForce { index } => &format!("body_force[{index}].where"),
         Error::EmptyPressure { name } => &format!("pressure.{name}.where"),
         Error::DependentConstraints { .. } => "discretisation.enforcement",
         Error::NoQuadraturePoints

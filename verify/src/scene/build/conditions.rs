@@ -6,6 +6,7 @@ use crate::scene::format::{
     RotationFormat,
 };
 use mtled::algebra::tensor::Vector3;
+use mtled::geometry::Selector;
 use mtled::problem::{
     Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Pressure, Traction,
 };
@@ -99,7 +100,11 @@ impl Builder<'_> {
             self.no_z(&format!("{key}.acceleration"), &row.acceleration);
             let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
             let acceleration = Vector3::from(row.acceleration).into();
-            loads.body_forces.push(BodyForce { acceleration, amplitude });
+            let part = match &row.part {
+                None => Some(Selector::All),
+                Some(part) => self.selector(&format!("{key}.where"), part),
+            };
+            loads.body_forces.extend(part.map(|part| BodyForce { part, acceleration, amplitude }));
         }
         for (n, row) in format.traction.iter().enumerate() {
             let key = format!("traction[{n}]");

@@ -42,7 +42,7 @@ pub struct CaseFormat {
     /// Prescribed displacements.
     #[serde(default)]
     pub prescribe: Vec<PrescribeFormat>,
-    /// Forces per mass on the whole body.
+    /// Forces per mass on the body or parts of it.
     #[serde(default)]
     pub body_force: Vec<BodyForceFormat>,
     /// Dead tractions on parts of the boundary.

@@ -76,10 +76,13 @@ pub enum AmplitudeFormat {
     Table(Vec<(f64, f64)>),
 }
 
-/// A force per mass on the whole body.
+/// A force per mass on the body.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForceFormat {
+    /// The part that it acts on, such as what lies above a fluid; everything if left out.
+    #[serde(rename = "where")]
+    pub part: Option<SelectorFormat>,
     /// [m/s²]
     pub acceleration: Triple,
     #[serde(default)]
