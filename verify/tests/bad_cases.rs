@@ -31,6 +31,8 @@ const BAD_CASES: &[Expected] = &[
     ("no_constants", 7, "material.tissue", "has no elastic constants"),
     ("rubber_constant_elsewhere", 12, "material.tissue.A", "belongs to law = \"mooney_rivlin\""),
     ("volumetric_elsewhere", 12, "material.tissue.volumetric", "belongs to law = \"neo_hookean_isochoric\" or \"ogden\""),
+    ("bad_formula", 21, "prescribe[0].formula.z", "`r` is not known here; a formula depends on x, y and z"),
+    ("data_without_header", 21, "prescribe[0].data.file", "expected a header that names x, y, z, ux, uy and uz"),
     ("ogden_without_terms", 7, "material.tissue.terms", "is missing; ogden needs terms"),
     ("ogden_exponent", 10, "material.tissue.terms[1].alpha", "is 0; it must be finite and not 0"),
     ("ogden_constants", 11, "material.tissue.young_modulus", "does not belong to ogden, which takes terms and either"),

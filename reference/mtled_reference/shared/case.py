@@ -235,6 +235,9 @@ def _amplitude(row: dict) -> Amplitude:
 
 
 def _prescription(row: dict) -> Prescription:
+    for key in ("formula", "data"):
+        if key in row:
+            raise ValueError(f"prescribe.{row['name']}: {key} is not solved by the references")
     displacement = row.get("displacement", {})
     rotation = row.get("rotation")
     return Prescription(

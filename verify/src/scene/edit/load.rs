@@ -18,6 +18,17 @@ pub fn scale_loads(document: &mut DocumentMut, factor: f64) {
             keys.iter().for_each(|key| scale(inner, key, factor));
         }
     }
+    for name in ["formula", "data"] {
+        for row in rows(document, "prescribe") {
+            let Some(inner) = row.get_mut(name).and_then(Item::as_table_like_mut) else {
+                continue;
+            };
+            if !inner.contains_key("factor") {
+                inner.insert("factor", toml_edit::value(1.0));
+            }
+            scale(inner, "factor", factor);
+        }
+    }
     for row in rows(document, "pressure") {
         scale(row, "pressure", factor);
     }
