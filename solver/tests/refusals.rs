@@ -285,3 +285,30 @@ fn newton_refuses_obstacles() {
     problem.obstacles.push(floor(0.0, Vector3::y(), Friction::Frictionless));
     assert!(matches!(failure(&problem).0, Error::ContactInNewton));
 }
+
+#[test]
+fn a_node_beyond_the_data_or_where_a_field_is_no_number_is_refused_with_its_place() {
+    let mut problem = cube(3);
+    let data = |Y: f64| {
+        let corner = |k: usize| Vector3::new((k % 2) as f64 * EDGE, Y, (k / 2) as f64 * EDGE);
+        (0..4).map(|k| (corner(k), Vector3::x() * 0.01)).collect::<Vec<_>>()
+    };
+    let scattered = |Y: f64, reach: f64| {
+        let data = mtled::geometry::Scattered::new(&data(Y), reach).unwrap();
+        Prescribed::Field(Field::Scattered(std::sync::Arc::new(data)))
+    };
+    problem.conditions = vec![condition("face", face(1, EDGE), [Some(0.0); 3])];
+    problem.conditions[0].prescribed = scattered(EDGE, EDGE);
+    let discretisation = Discretisation::new(&problem).unwrap();
+    assert!(Model::new(&problem, &discretisation).is_ok());
+    problem.conditions[0].prescribed = scattered(0.5 * EDGE, 0.4 * EDGE);
+    let message = Model::new(&problem, &discretisation).unwrap_err().to_string();
+    assert!(
+        message.contains("from its nearest data point, more than the reach of 4.0000e-2 m"),
+        "{message}"
+    );
+    problem.conditions[0].prescribed =
+        Prescribed::Field(Field::of(|X| Vector3::x() * (X.x - 1.0).ln()));
+    let message = Model::new(&problem, &discretisation).unwrap_err().to_string();
+    assert!(message.contains("is not a finite number"), "{message}");
+}

@@ -80,3 +80,60 @@ fn from_csv(bytes: &[u8]) -> Result<Vec<(Vector3, Vector3)>, Mistake> {
     });
     rows.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EXPECTED: (Vector3, Vector3) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.1, 0.2, 0.3));
+
+    fn read(name: &str, bytes: &[u8]) -> Result<Vec<(Vector3, Vector3)>, FileError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        read_displacements(&path, "displacement")
+    }
+
+    #[test]
+    fn columns_of_a_csv_file_are_told_by_its_header() {
+        let text = "# measured\nuz,name,x,y,z,ux,uy\n0.3,a,1,2,3,0.1,0.2\n";
+        assert_eq!(read("shift.csv", text.as_bytes()).unwrap(), [EXPECTED]);
+        let text = "x,y,z,ux,uy,uz\n1,2,3,0.1,0.2,0.3\n1,2,3,0.1,,0.3\n";
+        let message = read("shift.csv", text.as_bytes()).unwrap_err().to_string();
+        assert!(message.contains("line 3 is `1,2,3,0.1,,0.3`"), "{message}");
+    }
+
+    #[test]
+    fn an_array_has_six_columns() {
+        let array = |columns: usize| {
+            let header =
+                format!("{{'descr': '<f8', 'fortran_order': False, 'shape': (1, {columns}), }}\n");
+            let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+            bytes.extend((header.len() as u16).to_le_bytes());
+            bytes.extend(header.as_bytes());
+            let row = [1.0f64, 2.0, 3.0, 0.1, 0.2, 0.3];
+            row[..columns].iter().for_each(|value| bytes.extend(value.to_le_bytes()));
+            bytes
+        };
+        assert_eq!(read("shift.npy", &array(6)).unwrap(), [EXPECTED]);
+        let message = read("shift.npy", &array(3)).unwrap_err().to_string();
+        assert!(message.contains("expected (n, 6) of floats"), "{message}");
+    }
+
+    #[test]
+    fn point_data_of_a_vtu_file_are_found_by_name() {
+        let file = |name: &str| {
+            format!(
+                r#"<VTKFile><UnstructuredGrid><Piece NumberOfPoints="1"><PointData>
+                <DataArray type="Float64" Name="velocity" NumberOfComponents="3" format="ascii">9 9 9</DataArray>
+                <DataArray type="Float64" Name="{name}" NumberOfComponents="3" format="ascii">0.1 0.2 0.3</DataArray>
+                </PointData><Points>
+                <DataArray type="Float64" NumberOfComponents="3" format="ascii">1 2 3</DataArray>
+                </Points></Piece></UnstructuredGrid></VTKFile>"#
+            )
+        };
+        assert_eq!(read("shift.vtu", file("displacement").as_bytes()).unwrap(), [EXPECTED]);
+        let message = read("shift.vtu", file("u").as_bytes()).unwrap_err().to_string();
+        assert!(message.contains("the file has velocity, u"), "{message}");
+    }
+}
