@@ -289,12 +289,12 @@ fn newton_refuses_obstacles() {
 #[test]
 fn a_node_beyond_the_data_or_where_a_field_is_no_number_is_refused_with_its_place() {
     let mut problem = cube(3);
-    let data = |Y: f64| {
-        let corner = |k: usize| Vector3::new((k % 2) as f64 * EDGE, Y, (k / 2) as f64 * EDGE);
+    let data = |y: f64| {
+        let corner = |k: usize| Vector3::new((k % 2) as f64 * EDGE, y, (k / 2) as f64 * EDGE);
         (0..4).map(|k| (corner(k), Vector3::x() * 0.01)).collect::<Vec<_>>()
     };
-    let scattered = |Y: f64, reach: f64| {
-        let data = mtled::geometry::Scattered::new(&data(Y), reach).unwrap();
+    let scattered = |y: f64, reach: f64| {
+        let data = mtled::geometry::Scattered::new(&data(y), reach).unwrap();
         Prescribed::Field(Field::Scattered(std::sync::Arc::new(data)))
     };
     problem.conditions = vec![condition("face", face(1, EDGE), [Some(0.0); 3])];
@@ -308,7 +308,7 @@ fn a_node_beyond_the_data_or_where_a_field_is_no_number_is_refused_with_its_plac
         "{message}"
     );
     problem.conditions[0].prescribed =
-        Prescribed::Field(Field::of(|X| Vector3::x() * (X.x - 1.0).ln()));
+        Prescribed::Field(Field::of(|at| Vector3::x() * (at.x - 1.0).ln()));
     let message = Model::new(&problem, &discretisation).unwrap_err().to_string();
     assert!(message.contains("is not a finite number"), "{message}");
 }
