@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from mtled_reference.shared.case import Amplitude, Rotation, read_case
+from mtled_reference.shared.materials import material_from_table
 from mtled_reference.shared.measurements import Measurements, resultant, rounded
 from mtled_reference.shared.problem_hash import canonical_text, problem_hash
 from mtled_reference.shared.reference_file import merge_into, reference, write
@@ -23,6 +24,24 @@ def test_every_case_is_read(path):
     assert case.name == path.stem
     assert case.probes and case.prescriptions
     assert case.is_static or case.time.end > 0.0
+
+
+def test_a_law_that_no_reference_solves_is_refused():
+    table = {"law": "ogden", "density": 1000.0, "terms": [{"mu": 842.0, "alpha": -4.7}]}
+    with pytest.raises(ValueError, match="material brain: ogden is not solved"):
+        material_from_table("brain", table)
+
+
+def test_what_no_reference_solves_is_refused(tmp_path):
+    text = (CASES / "bonded_block.toml").read_text()
+    case = tmp_path / "case.toml"
+    case.write_text(text + '[[pressure]]\nname = "p"\nwhere = "all"\npressure = 1.0\n')
+    with pytest.raises(ValueError, match="pressure is not solved by the references"):
+        read_case(case)
+    part = "{ sphere = { centre = [0.0, 0.0, 0.0], radius = 1.0 } }"
+    case.write_text(text + f"[[body_force]]\nwhere = {part}\nacceleration = [0.0, 0.0, 1.0]\n")
+    with pytest.raises(ValueError, match="body_force on a part of the body is not solved"):
+        read_case(case)
 
 
 def test_canonical_text():

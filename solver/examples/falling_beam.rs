@@ -36,7 +36,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     problem.conditions =
         vec![EssentialCondition::on_surface("clamp", clamp, Vector3::zeros(), at_once.clone())];
     let gravity = Vector3::new(0.0, 0.0, -9.81).into(); // N/kg
-    problem.loads.body_forces = vec![BodyForce { acceleration: gravity, amplitude: at_once }];
+    problem.loads.body_forces =
+        vec![BodyForce { part: Selector::All, acceleration: gravity, amplitude: at_once }];
     problem.motion = Motion::dynamic(0.15, 0.0); // s, 1/s
 
     let mut history = History(Vec::new());

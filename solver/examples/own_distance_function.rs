@@ -5,8 +5,8 @@
 
 use mtled::{
     Amplitude, BodyForce, DistanceFunction, ElasticConstants, Friction, Law, Material, Motion,
-    NeoHookeanLogJ, Obstacle, ObstacleSide, Problem, Recipe, Shape, Simulation, Unobserved,
-    Vector3,
+    NeoHookeanLogJ, Obstacle, ObstacleSide, Problem, Recipe, Selector, Shape, Simulation,
+    Unobserved, Vector3,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -21,8 +21,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let mut problem = Problem::new(Shape::Function(torus), material, Recipe::with_spacing(0.005));
     let gravity = Vector3::new(0.0, 0.0, -9.81).into(); // N/kg
-    problem.loads.body_forces =
-        vec![BodyForce { acceleration: gravity, amplitude: Amplitude::Constant }];
+    problem.loads.body_forces = vec![BodyForce {
+        part: Selector::All,
+        acceleration: gravity,
+        amplitude: Amplitude::Constant,
+    }];
     problem.obstacles = vec![Obstacle {
         name: "floor".into(),
         shape: Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::z() },

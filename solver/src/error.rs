@@ -83,6 +83,12 @@ pub enum Error {
     DivergedCorrection { iterations: usize, residual: f64 },
     #[error("condition \"{name}\" selects no node")]
     EmptySelection { name: String },
+    #[error("condition \"{name}\" selects node {node} at ({}), which is {distance:.4e} m from its nearest data point, \
+             more than the reach of {reach:.4e} m: select fewer nodes, raise the reach, or leave such nodes free", show(.position))]
+    BeyondData { name: String, node: usize, position: Vector3, distance: f64, reach: f64 },
+    #[error("the displacement of condition \"{name}\" at node {node} ({}) is not a finite number: \
+             change its formula or select other nodes", show(.position))]
+    NoDisplacement { name: String, node: usize, position: Vector3 },
     #[error("condition \"{second}\" prescribes another displacement {component} than condition \"{first}\" for {nodes} nodes \
              that both select, at node {node} ({}) {:.4e} m and {:.4e} m at t = {time:.6} s: \
              change one of them, or its selection", show(.position), .displacements[1], .displacements[0])]
@@ -122,6 +128,13 @@ pub enum Error {
     EmptyRegion { name: String },
     #[error("traction \"{name}\" selects no part of the boundary")]
     EmptyTraction { name: String },
+    #[error(
+        "body force {index} acts on no quadrature point: its part lies outside the body or between the points; \
+             change it, or use smaller cells there"
+    )]
+    EmptyBodyForce { index: usize },
+    #[error("pressure \"{name}\" selects no part of the boundary")]
+    EmptyPressure { name: String },
     #[error(
         "the conditions on component {component} constrain {rows} nodes whose constraints depend on each other: \
              use enforcement = \"direct\""

@@ -277,3 +277,30 @@ fn a_relaxation_that_ends_before_its_load_reports_finite_numbers() {
     let (error, _, residual) = unconverged(100, 0.5, 40);
     assert!(error.is_finite() && error > 0.0 && residual.is_finite() && residual > 0.0);
 }
+
+#[test]
+fn a_node_beyond_the_data_or_where_a_field_is_no_number_is_refused_with_its_place() {
+    let mut problem = cube(3);
+    let data = |y: f64| {
+        let corner = |k: usize| Vector3::new((k % 2) as f64 * EDGE, y, (k / 2) as f64 * EDGE);
+        (0..4).map(|k| (corner(k), Vector3::x() * 0.01)).collect::<Vec<_>>()
+    };
+    let scattered = |y: f64, reach: f64| {
+        let data = mtled::geometry::Scattered::new(&data(y), reach).unwrap();
+        Prescribed::Field(Field::Scattered(std::sync::Arc::new(data)))
+    };
+    problem.conditions = vec![condition("face", face(1, EDGE), [Some(0.0); 3])];
+    problem.conditions[0].prescribed = scattered(EDGE, EDGE);
+    let discretisation = Discretisation::new(&problem).unwrap();
+    assert!(Model::new(&problem, &discretisation).is_ok());
+    problem.conditions[0].prescribed = scattered(0.5 * EDGE, 0.4 * EDGE);
+    let message = Model::new(&problem, &discretisation).unwrap_err().to_string();
+    assert!(
+        message.contains("from its nearest data point, more than the reach of 4.0000e-2 m"),
+        "{message}"
+    );
+    problem.conditions[0].prescribed =
+        Prescribed::Field(Field::of(|at| Vector3::x() * (at.x - 1.0).ln()));
+    let message = Model::new(&problem, &discretisation).unwrap_err().to_string();
+    assert!(message.contains("is not a finite number"), "{message}");
+}

@@ -93,6 +93,43 @@ fn uniaxial(stretch: f64) -> (f64, f64) {
 }
 
 #[test]
+fn the_weight_of_a_part_is_that_of_its_mass_and_acts_there_alone() {
+    let mut problem = cube(6);
+    problem.loads.body_forces = vec![BodyForce {
+        part: Selector::Inside {
+            shape: mtled::geometry::Shape::HalfSpace {
+                point: Vector3::new(0.0, 0.0, 0.5 * EDGE),
+                normal: -Vector3::z(),
+            },
+            tolerance: 0.0,
+        },
+        acceleration: (Vector3::z() * -9.81).into(),
+        amplitude: Amplitude::Constant,
+    }];
+    let (_, model) = build(&problem);
+    let weight = |node: usize| vector_at(&model.loads[0].force, node, 3).z;
+    let total: f64 = (0..model.positions.len()).map(weight).sum();
+    let half = 0.5 * 1000.0 * EDGE.powi(3) * -9.81;
+    approx::assert_relative_eq!(total, half, max_relative = 0.12);
+    let reach = 1.8 * EDGE / 6.0;
+    let below = (0..model.positions.len())
+        .filter(|&node| model.positions[node].z < 0.5 * EDGE - reach)
+        .all(|node| weight(node) == 0.0);
+    assert!(below);
+}
+
+#[test]
+fn a_body_force_on_no_point_is_refused_by_its_number() {
+    let mut problem = cube(3);
+    gravity(&mut problem, Vector3::z());
+    gravity(&mut problem, Vector3::z());
+    problem.loads.body_forces[1].part = face(2, 2.0 * EDGE);
+    let discretisation = Discretisation::new(&problem).unwrap();
+    let error = Model::new(&problem, &discretisation).unwrap_err();
+    assert!(matches!(error, Error::EmptyBodyForce { index: 1 }), "{error}");
+}
+
+#[test]
 fn a_stretched_bar_on_rollers_reaches_the_uniaxial_state() {
     let (across, nominal) = uniaxial(1.2);
     for problem in [bar(), collocated(bar())] {
@@ -218,7 +255,7 @@ fn a_body_force_field_is_weighted_with_the_mass_where_it_acts() {
     let mut problem = cube(4);
     let acceleration = Field::of(|X| Vector3::new(X.x, 0.0, 2.0 * X.y));
     let amplitude = Amplitude::Constant;
-    problem.loads.body_forces = vec![BodyForce { acceleration, amplitude }];
+    problem.loads.body_forces = vec![BodyForce { part: Selector::All, acceleration, amplitude }];
     let (_, model) = build(&problem);
     let total: Vector3 =
         (0..model.positions.len()).map(|n| vector_at(&model.loads[0].force, n, 3)).sum();

@@ -10,6 +10,9 @@ from .materials import Material, material_from_table
 
 Triple = tuple[float, float, float]
 
+NOT_SOLVED = ("initial_velocity", "pressure")
+"""Tables of a case file that the references leave to the meshless solver."""
+
 
 @dataclass(frozen=True)
 class Amplitude:
@@ -177,8 +180,11 @@ def read_case(path: str | Path) -> Case:
     path = Path(path)
     with path.open("rb") as file:
         document = tomllib.load(file)
-    if document.get("initial_velocity"):
-        raise ValueError("initial_velocity is not solved by the references")
+    for key in NOT_SOLVED:
+        if document.get(key):
+            raise ValueError(f"{key} is not solved by the references")
+    if any(row.get("where", "all") != "all" for row in document.get("body_force", [])):
+        raise ValueError("body_force on a part of the body is not solved by the references")
     plane = document.get("plane", {})
     plane_strain = document.get("dimension", "3d") == "plane_strain"
     about = document.get("output", {}).get("moment_about", [0.0, 0.0, 0.0])
@@ -229,6 +235,9 @@ def _amplitude(row: dict) -> Amplitude:
 
 
 def _prescription(row: dict) -> Prescription:
+    for key in ("formula", "data"):
+        if key in row:
+            raise ValueError(f"prescribe.{row['name']}: {key} is not solved by the references")
     displacement = row.get("displacement", {})
     rotation = row.get("rotation")
     return Prescription(

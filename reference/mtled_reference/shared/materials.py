@@ -48,6 +48,8 @@ def material_from_table(name: str, table: dict) -> Material:
     law, density = table["law"], float(table["density"])
     if law == "mooney_rivlin":
         return _rubber(name, density, table["A"], table["B"], table["poisson_ratio"])
+    if law == "ogden":
+        raise ValueError(f"material {name}: ogden is not solved by the references")
     shear, bulk = _elastic_constants(table)
     return Material(name, law, density, shear, bulk, table.get("volumetric", "quadratic"))
 

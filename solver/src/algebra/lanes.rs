@@ -2,6 +2,7 @@
 //! many quadrature points.
 
 use crate::algebra::real::{Dual, Real};
+use crate::algebra::spectral::Plain;
 use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
 use std::marker::PhantomData;
 
@@ -98,7 +99,7 @@ impl<T: Clone + Default> Parts<T> {
 }
 
 /// A number at all points of a [`SimdBlock`], or at one of them.
-pub trait Number<S: Simd>: Real {
+pub trait Number<S: Simd>: Real + Plain {
     /// Numbers of this type in a block; `piece` counts them.
     const PER_BLOCK: usize;
     fn read(simd: S, block: &SimdBlock, piece: usize) -> Self;

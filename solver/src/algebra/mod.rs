@@ -6,5 +6,6 @@ pub mod random;
 pub mod real;
 pub(crate) mod sparse;
 pub(crate) mod sparse_cholesky;
+pub mod spectral;
 pub(crate) mod spline_lattice;
 pub mod tensor;

@@ -1,6 +1,7 @@
 //! The number types of the hot loop: one `f64`, eight of them side by side, or
 //! either with its derivative in one direction.
 
+use crate::algebra::spectral::{Plain, Scalar, isotropic, isotropic_with_slope};
 use fearless_simd::{Simd, f64x8, prelude::*};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -22,6 +23,8 @@ pub trait Real:
     fn ln(self) -> Self;
     /// |x|^(−2/3).
     fn power_minus_two_thirds(self) -> Self;
+    /// g(A) = Σ_k g(a_k) n_k ⊗ n_k of a symmetric tensor (method book, eq. 3.17).
+    fn isotropic(a: &[[Self; 3]; 3], g: &impl Scalar) -> [[Self; 3]; 3];
 }
 
 impl Real for f64 {
@@ -40,6 +43,11 @@ impl Real for f64 {
     fn power_minus_two_thirds(self) -> f64 {
         let root = self.cbrt();
         1.0 / (root * root)
+    }
+
+    #[inline(always)]
+    fn isotropic(a: &[[f64; 3]; 3], g: &impl Scalar) -> [[f64; 3]; 3] {
+        isotropic(a, g)
     }
 }
 
@@ -76,6 +84,11 @@ impl<S: Simd> Real for f64x8<S> {
         }
         y * y
     }
+
+    #[inline(always)]
+    fn isotropic(a: &[[Self; 3]; 3], g: &impl Scalar) -> [[Self; 3]; 3] {
+        isotropic(a, g)
+    }
 }
 
 /// A value and its exact derivative in one direction (Griewank, Walther 2008).
@@ -87,7 +100,7 @@ pub struct Dual<R> {
     pub slope: R,
 }
 
-impl<R: Real> Real for Dual<R> {
+impl<R: Real + Plain> Real for Dual<R> {
     #[inline(always)]
     fn times_plus(self, a: Self, b: Self) -> Self {
         Dual {
@@ -105,6 +118,24 @@ impl<R: Real> Real for Dual<R> {
     fn power_minus_two_thirds(self) -> Self {
         let power = self.value.power_minus_two_thirds();
         Dual { value: power, slope: power * self.slope / self.value * (-2.0 / 3.0) }
+    }
+
+    #[inline(always)]
+    fn isotropic(a: &[[Self; 3]; 3], g: &impl Scalar) -> [[Self; 3]; 3] {
+        let (zero, mut result) = (a[0][0].value * 0.0, *a);
+        let (mut values, mut slopes) = ([[zero; 3]; 3], [[zero; 3]; 3]);
+        for i in 0..3 {
+            for j in 0..3 {
+                (values[i][j], slopes[i][j]) = (a[i][j].value, a[i][j].slope);
+            }
+        }
+        (values, slopes) = isotropic_with_slope(&values, &slopes, g);
+        for i in 0..3 {
+            for j in 0..3 {
+                result[i][j] = Dual { value: values[i][j], slope: slopes[i][j] };
+            }
+        }
+        result
     }
 }
 

@@ -15,7 +15,7 @@ use crate::discretisation::surface_rule::SurfaceRule;
 use crate::error::Error;
 use crate::geometry::{Extent, Panel, Shape};
 use crate::problem::{
-    BackgroundGrid, Cloud, Dimension, EssentialCondition, Gradients, Problem, Recipe,
+    BackgroundGrid, Cloud, Dimension, EssentialCondition, Gradients, Loads, Problem, Recipe,
 };
 use rayon::prelude::*;
 
@@ -100,13 +100,9 @@ impl Discretisation {
     fn make_consistent(&mut self, tolerance: f64, second_order: bool) -> Result<(), Error> {
         let (nodes, d) = (self.cloud.positions.len(), self.dimension.components());
         let bodies = connected_bodies(&self.supports, nodes);
-        let mut areas = self.surface.strengths(nodes, |panel| panel.normal);
-        for body in 0..bodies.iter().max().map_or(0, |&last| last + 1) {
-            let owns = |node: u32| bodies[node as usize] == body;
-            let volume = self.surface.close(&mut areas, d, owns);
-            if volume > 0.0 {
-                self.scale_weights(volume, owns);
-            }
+        let (areas, volumes) = self.close(&bodies);
+        for (body, volume) in volumes.into_iter().enumerate().filter(|(_, volume)| *volume > 0.0) {
+            self.scale_weights(volume, |node| bodies[node as usize] as usize == body);
         }
         let total = self.surface.scatter(nodes, &areas);
         let targets = Targets {
@@ -124,6 +120,25 @@ impl Discretisation {
         let correction = make_consistent(&mut self.supports, &layout, &targets, &bodies, tolerance);
         self.correction = Some(correction.checked()?);
         Ok(())
+    }
+
+    /// Vector areas A_i N_i of the points of the boundary, closed \[m²\].
+    pub(crate) fn closed_areas(&self) -> Vec<Vector3> {
+        let bodies = connected_bodies(&self.supports, self.cloud.positions.len());
+        self.close(&bodies).0
+    }
+
+    /// As [`Self::closed_areas`], with the volume \[m³\] that the boundary of each connected
+    /// body encloses.
+    fn close(&self, bodies: &[u32]) -> (Vec<Vector3>, Vec<f64>) {
+        let d = self.dimension.components();
+        let mut areas = self.surface.strengths(bodies.len(), |panel| panel.normal);
+        let count = bodies.iter().max().map_or(0, |&last| last + 1);
+        let mut close = |body: u32| {
+            self.surface.close(&mut areas, d, |node: u32| bodies[node as usize] == body)
+        };
+        let volumes = (0..count).map(&mut close).collect();
+        (areas, volumes)
     }
 
     /// ∮ (x − X_a) ⊗ φ_a N dA/h_a of each node \[m²\] from the vector areas of the points of
@@ -208,7 +223,7 @@ pub(crate) fn quadrature_of(
     quadrature_following(body, &problem.regions, grid, &spacing, &problem.dimension, moves)
 }
 
-/// The boundary in panels, if consistent gradients, tractions or held parts need it. Nodes
+/// The boundary in panels, if consistent gradients, loads or held parts need it. Nodes
 /// of a cloud that is not given are put on the edges of held parts.
 fn panels_of(
     problem: &Problem,
@@ -229,10 +244,11 @@ fn panels_of(
 }
 
 fn needs_surface(problem: &Problem) -> bool {
-    problem.recipe.gradients != Gradients::Plain || !problem.loads.tractions.is_empty()
+    let Loads { tractions, pressures, .. } = &problem.loads;
+    problem.recipe.gradients != Gradients::Plain || !tractions.is_empty() || !pressures.is_empty()
 }
 
-/// The surface rule, if consistent gradients or tractions need it.
+/// The surface rule, if consistent gradients or loads need it.
 fn surface_of(
     problem: &Problem,
     panels: Option<Vec<Panel>>,

@@ -124,6 +124,7 @@ impl Footprint {
             + PER_ENTRY * entries
             + PER_BATCH_ENTRY * self.points.min(BATCH) * self.neighbours
             + self.panels * (PER_PANEL + PER_PANEL_ENTRY * self.neighbours)
+            + problem.loads.pressures.len() as f64 * self.panels * PER_ROW_ENTRY * self.neighbours
             + shapes.kept;
         let choosing = shapes.kept + size_field_bytes(problem);
         let bytes = PROGRAM + set_up.max(choosing).max(shapes.reading);
@@ -151,8 +152,10 @@ fn problem_selectors(problem: &Problem) -> impl Iterator<Item = &Selector> {
     let regions = problem.regions.iter().map(|region| &region.part);
     let conditions = problem.conditions.iter().map(|condition| &condition.part);
     let tractions = problem.loads.tractions.iter().map(|traction| &traction.part);
+    let pressures = problem.loads.pressures.iter().map(|pressure| &pressure.part);
+    let body_forces = problem.loads.body_forces.iter().map(|body_force| &body_force.part);
     let refined = refined.iter().chain(&problem.recipe.grid.refinements).map(|r| &r.part);
-    regions.chain(conditions).chain(tractions).chain(refined)
+    regions.chain(conditions).chain(tractions).chain(pressures).chain(body_forces).chain(refined)
 }
 
 /// Memory while the nodes of a graded cloud are chosen \[bytes\].

@@ -47,7 +47,7 @@ pub enum Warning {
         /// Its name.
         name: String,
     },
-    /// A traction acts on nodes only whose motion is prescribed.
+    /// A traction or a pressure acts on nodes only whose motion is prescribed.
     CarriedTraction {
         /// Its name.
         name: String,
@@ -125,7 +125,7 @@ impl std::fmt::Display for Warning {
             ),
             Warning::CarriedTraction { name } => write!(
                 f,
-                "traction \"{name}\" acts on nodes only whose displacement is prescribed: it changes reactions and nothing else"
+                "load \"{name}\" acts on nodes only whose displacement is prescribed: it changes reactions and nothing else"
             ),
             Warning::UnfinishedLoad { name, duration, end, factor } => write!(
                 f,

@@ -24,7 +24,7 @@ pub use dimension::Dimension;
 pub use distance_function::DistanceFunction;
 pub use error::GeometryError;
 pub(crate) use error::positive;
-pub use field::Field;
+pub use field::{Field, Scattered, TooFewData};
 pub(crate) use point_hash::PointHash;
 pub use polygon::Outline;
 pub use selection::{Extent, Selector};

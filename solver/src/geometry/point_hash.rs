@@ -66,7 +66,8 @@ impl PointHash {
     /// Distances to the `count` nearest points other than `own`, nearest
     /// first, and their indices; fewer if there are fewer.
     pub fn nearest(&self, X: &Vector3, own: usize, count: usize) -> Vec<(f64, usize)> {
-        let available = count.min(self.points.len().saturating_sub(1));
+        let others = self.points.len() - usize::from(own < self.points.len());
+        let available = count.min(others);
         let mut radius = self.smallest;
         loop {
             let mut found = Vec::new();

@@ -27,6 +27,10 @@ pub enum MaterialError {
         "the Mooney-Rivlin rubber with A = {a} Pa, B = {b} Pa, ν = {poisson_ratio} has D = {d} Pa < 0 and loses its stiffness in tension; use ν ≥ {smallest:.4} or a neo-Hookean law"
     )]
     UnstableRubber { a: f64, b: f64, poisson_ratio: f64, d: f64, smallest: f64 },
+    #[error("terms has {count} entries; Ogden's law takes one to three")]
+    OgdenTerms { count: usize },
+    #[error("alpha is {value}; it must be finite and not 0")]
+    OgdenExponent { value: f64 },
 }
 
 impl ElasticConstants {
@@ -60,6 +64,17 @@ impl ElasticConstants {
     pub fn from_shear_bulk(shear_modulus: f64, bulk_modulus: f64) -> Result<Self, MaterialError> {
         positive("shear_modulus", shear_modulus)?;
         positive("bulk_modulus", bulk_modulus)?;
+        Ok(ElasticConstants { shear_modulus, bulk_modulus })
+    }
+
+    /// From μ \[Pa\] and ν: K = 2μ(1 + ν)/3(1 − 2ν).
+    pub fn from_shear_poisson(
+        shear_modulus: f64,
+        poisson_ratio: f64,
+    ) -> Result<Self, MaterialError> {
+        let unit = Self::from_young_poisson(1.0, poisson_ratio)?;
+        positive("shear_modulus", shear_modulus)?;
+        let bulk_modulus = unit.bulk_modulus / unit.shear_modulus * shear_modulus;
         Ok(ElasticConstants { shear_modulus, bulk_modulus })
     }
 

@@ -8,6 +8,7 @@ use crate::material::linear_elastic::LinearElastic;
 use crate::material::mooney_rivlin::MooneyRivlin;
 use crate::material::neo_hookean_isochoric::NeoHookeanIsochoric;
 use crate::material::neo_hookean_log_j::NeoHookeanLogJ;
+use crate::material::ogden::Ogden;
 use crate::material::st_venant_kirchhoff::StVenantKirchhoff;
 
 /// A law with its parameters.
@@ -19,6 +20,8 @@ pub enum Law {
     NeoHookeanLogJ(NeoHookeanLogJ),
     /// Neo-Hookean law with the isochoric split.
     NeoHookeanIsochoric(NeoHookeanIsochoric),
+    /// Ogden's law with the isochoric split.
+    Ogden(Ogden),
     /// Linear in the Green–Lagrange strain.
     StVenantKirchhoff(StVenantKirchhoff),
     /// Hooke's law for small rotations.
@@ -33,6 +36,7 @@ macro_rules! with_law {
             $crate::material::Law::MooneyRivlin($law) => $body,
             $crate::material::Law::NeoHookeanLogJ($law) => $body,
             $crate::material::Law::NeoHookeanIsochoric($law) => $body,
+            $crate::material::Law::Ogden($law) => $body,
             $crate::material::Law::StVenantKirchhoff($law) => $body,
             $crate::material::Law::LinearElastic($law) => $body,
         }

@@ -8,7 +8,9 @@ mod linear_elastic;
 mod mooney_rivlin;
 mod neo_hookean_isochoric;
 mod neo_hookean_log_j;
+mod ogden;
 mod st_venant_kirchhoff;
+mod volumetric_term;
 
 pub use constants::{ElasticConstants, MaterialError};
 pub use constitutive_law::{ConstitutiveLaw, Deformation};
@@ -16,9 +18,11 @@ pub(crate) use law::with_law;
 pub use law::{Law, Material};
 pub use linear_elastic::LinearElastic;
 pub use mooney_rivlin::MooneyRivlin;
-pub use neo_hookean_isochoric::{NeoHookeanIsochoric, VolumetricTerm};
+pub use neo_hookean_isochoric::NeoHookeanIsochoric;
 pub use neo_hookean_log_j::NeoHookeanLogJ;
+pub use ogden::{Ogden, OgdenTerm, OgdenTerms};
 pub use st_venant_kirchhoff::StVenantKirchhoff;
+pub use volumetric_term::VolumetricTerm;
 
 #[cfg(test)]
 mod tests;

@@ -5,15 +5,7 @@ use crate::algebra::real::Real;
 use crate::algebra::tensor::{Matrix3, Tensor, contract, map};
 use crate::material::constants::ElasticConstants;
 use crate::material::constitutive_law::{ConstitutiveLaw, Deformation};
-
-/// The volumetric energy U(J) of [`NeoHookeanIsochoric`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum VolumetricTerm {
-    /// U = K/2 (J − 1)².
-    Quadratic,
-    /// U = K/4 (J² − 1 − 2 ln J) (Simo, Taylor 1991).
-    SimoTaylor,
-}
+use crate::material::volumetric_term::VolumetricTerm;
 
 /// ψ = μ/2 (J^(−2/3) I₁ − 3) + U(J) \[Pa\] (method book, eq. 3.4).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,20 +41,12 @@ impl ConstitutiveLaw for NeoHookeanIsochoric {
     }
 
     fn bulk_energy(&self, J: f64) -> f64 {
-        let K = self.constants.bulk_modulus;
-        match self.volumetric {
-            VolumetricTerm::Quadratic => 0.5 * K * (J - 1.0).powi(2),
-            VolumetricTerm::SimoTaylor => 0.25 * K * (J * J - 1.0 - 2.0 * J.ln()),
-        }
+        self.volumetric.energy(self.constants.bulk_modulus, J)
     }
 
     #[inline(always)]
     fn bulk_slope<R: Real>(&self, J: R) -> R {
-        let K = self.constants.bulk_modulus;
-        match self.volumetric {
-            VolumetricTerm::Quadratic => (J - 1.0) * K,
-            VolumetricTerm::SimoTaylor => (J * J - 1.0) / J * (0.5 * K),
-        }
+        self.volumetric.slope(self.constants.bulk_modulus, J)
     }
 
     fn constants(&self) -> ElasticConstants {

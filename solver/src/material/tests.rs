@@ -1,7 +1,8 @@
 #![allow(non_snake_case)]
 
 use super::*;
-use crate::algebra::tensor::{Matrix3, Vector3, rotation};
+use crate::algebra::real::Dual;
+use crate::algebra::tensor::{Matrix3, Vector3, map, rotation};
 use proptest::prelude::*;
 
 /// Every law, each with ordinary constants; a new law is covered by its line.
@@ -22,9 +23,23 @@ fn laws() -> Vec<(&'static str, Law)> {
             "isochoric Simo-Taylor",
             Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(stiff, VolumetricTerm::SimoTaylor)),
         ),
+        ("Ogden, brain", ogden(&[(842.0, -4.7)], 0.49, VolumetricTerm::Quadratic)),
+        (
+            "Ogden, three terms",
+            ogden(&[(300.0, 1.3), (40.0, 5.0), (90.0, -2.0)], 0.45, VolumetricTerm::SimoTaylor),
+        ),
         ("St Venant-Kirchhoff", Law::StVenantKirchhoff(StVenantKirchhoff::new(constants))),
         ("linear elastic", Law::LinearElastic(LinearElastic::new(constants))),
     ]
+}
+
+/// Ogden's law with terms (μ \[Pa\], α).
+fn ogden(terms: &[(f64, f64)], poisson_ratio: f64, volumetric: VolumetricTerm) -> Law {
+    let terms: Vec<OgdenTerm> = terms.iter().map(|&(mu, alpha)| OgdenTerm { mu, alpha }).collect();
+    let terms = OgdenTerms::new(&terms).unwrap();
+    let constants =
+        ElasticConstants::from_shear_poisson(terms.shear_modulus(), poisson_ratio).unwrap();
+    Law::Ogden(Ogden::new(terms, constants.bulk_modulus, volumetric).unwrap())
 }
 
 fn deformation(entries: [f64; 9]) -> Matrix3 {
@@ -128,4 +143,89 @@ fn pairs_of_constants_convert_into_each_other() {
     let b = ElasticConstants::from_lame_shear(a.lame_modulus(), a.shear_modulus).unwrap();
     approx::assert_relative_eq!(b.young_modulus(), 10.0, max_relative = 1e-14);
     approx::assert_relative_eq!(b.poisson_ratio(), 0.1, max_relative = 1e-14);
+}
+
+/// dP of a law along `direction`, by dual numbers.
+fn slope_of_stress(law: &Law, F: &Matrix3, direction: &Matrix3) -> Matrix3 {
+    let F = map(|i, j| Dual { value: F[(i, j)], slope: direction[(i, j)] });
+    let P = with_law!(law, law => law.first_piola_kirchhoff(&Deformation::new(F)));
+    Matrix3::from_fn(|i, j| P[i][j].slope)
+}
+
+#[test]
+fn tangents_are_derivatives_of_stresses_also_where_stretches_are_equal() {
+    let turn = rotation(&Vector3::new(0.3, -0.5, 0.8), 0.7);
+    let stretched = |stretches: [f64; 3]| turn * Matrix3::from_diagonal(&stretches.into());
+    let direction = Matrix3::new(0.3, -0.2, 0.5, 0.4, 0.7, 0.1, -0.6, 0.2, -0.4);
+    for F in [
+        Matrix3::identity(),
+        stretched([1.2, 1.2, 1.2]),
+        stretched([1.3, 1.3, 0.7]) * turn,
+        stretched([1.3, 1.3 + 1e-8, 0.7]) * turn,
+        stretched([0.7, 1.0, 1.4]) * turn,
+    ] {
+        for (name, law) in laws() {
+            let step = 1e-5;
+            let at = |along: f64| law.first_piola_kirchhoff(&(F + direction * along));
+            let difference = (at(step) - at(-step)) / (2.0 * step);
+            let slope = slope_of_stress(&law, &F, &direction);
+            let error = (slope - difference).norm() / law.constants().bulk_modulus;
+            assert!(error < 1e-8, "{name}: {error:e} at {F}");
+        }
+    }
+}
+
+#[test]
+fn the_law_of_ogden_with_alpha_two_is_the_neo_hookean_law() {
+    let F = deformation([0.2, -0.1, 0.3, 0.05, -0.15, 0.1, 0.0, 0.25, 0.1]);
+    for volumetric in [VolumetricTerm::Quadratic, VolumetricTerm::SimoTaylor] {
+        let law = ogden(&[(842.0, 2.0)], 0.49, volumetric);
+        let twin = Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(law.constants(), volumetric));
+        let (P, expected) = (law.first_piola_kirchhoff(&F), twin.first_piola_kirchhoff(&F));
+        assert!((P - expected).norm() < 1e-14 * expected.norm(), "{P} {expected}");
+        approx::assert_relative_eq!(
+            law.strain_energy(&F),
+            twin.strain_energy(&F),
+            max_relative = 1e-14
+        );
+    }
+}
+
+#[test]
+fn the_law_of_ogden_with_alpha_two_and_minus_two_is_that_of_mooney_and_rivlin() {
+    let F = deformation([0.2, -0.1, 0.3, 0.05, -0.15, 0.1, 0.0, 0.25, 0.1]);
+    let law = ogden(&[(500.0, 2.0), (300.0, -2.0)], 0.49, VolumetricTerm::Quadratic);
+    let J = F.determinant();
+    let C = F.transpose() * F / J.cbrt().powi(2);
+    let second = 0.5 * (C.trace().powi(2) - C.dot(&C));
+    let expected = 250.0 * (C.trace() - 3.0) + 150.0 * (second - 3.0) + law.bulk_energy(J);
+    approx::assert_relative_eq!(law.strain_energy(&F), expected, max_relative = 1e-13);
+}
+
+#[test]
+fn brain_tissue_of_miller_and_chinzei_is_stiffer_in_compression_than_in_tension() {
+    let law = ogden(&[(842.0, -4.7)], 0.49, VolumetricTerm::Quadratic);
+    approx::assert_relative_eq!(law.constants().shear_modulus, 842.0);
+    let stress = |stretch: f64| {
+        let lateral = 1.0 / stretch.sqrt();
+        let F = Matrix3::from_diagonal(&Vector3::new(stretch, lateral, lateral));
+        let P = law.first_piola_kirchhoff(&F);
+        P[(0, 0)] - P[(1, 1)] * lateral / stretch
+    };
+    // Of an incompressible bar: P = 2μ/α (λ^(α − 1) − λ^(−α/2 − 1)).
+    let exact = |l: f64| 2.0 * 842.0 / -4.7 * (l.powf(-5.7) - l.powf(1.35));
+    for stretch in [0.7, 1.3] {
+        approx::assert_relative_eq!(stress(stretch), exact(stretch), max_relative = 1e-13);
+    }
+    assert!(-stress(0.7) > 3.0 * stress(1.3));
+}
+
+#[test]
+fn terms_of_ogden_that_give_no_stiffness_are_refused() {
+    let term = |mu, alpha| OgdenTerm { mu, alpha };
+    let refusal = |terms: &[OgdenTerm]| OgdenTerms::new(terms).unwrap_err().to_string();
+    assert!(refusal(&[]).contains("one to three"));
+    assert!(refusal(&[term(1.0, 2.0); 4]).contains("4 entries"));
+    assert!(refusal(&[term(1.0, 2.0), term(-1.0, 4.0)]).contains("mu is -1"));
+    assert!(refusal(&[term(1.0, 0.0)]).contains("alpha is 0"));
 }

@@ -10,6 +10,7 @@ use crate::model::contact::{ContactPlan, check_obstacles};
 use crate::model::essential::{Constraints, check_shared_nodes};
 use crate::model::load::{LoadPattern, check_loads, initial_velocity, load_patterns};
 use crate::model::mass::{fictitious_mass, lumped_mass};
+use crate::model::pressure::{PressureLoad, pressure_loads};
 use crate::model::stiffness::stiffness_diagonal;
 use crate::model::time_step_bound::per_point_bound;
 use crate::problem::{Dimension, Motion, Problem, Region, Relaxation, RelaxationMass};
@@ -37,6 +38,8 @@ pub struct Model {
     pub sums: Sums,
     /// The external forces.
     pub loads: Vec<LoadPattern>,
+    /// The pressures, external forces that follow the surface.
+    pub pressures: Vec<PressureLoad>,
     /// The essential conditions.
     pub constraints: Constraints,
     /// The obstacles, and the nodes that may touch them.
@@ -94,6 +97,7 @@ impl Model {
             inertia,
             added_mass: 0.0,
             loads: load_patterns(problem, discretisation, &density)?,
+            pressures: pressure_loads(problem, discretisation)?,
             contact,
             initial_velocity: initial_velocity(problem, discretisation)?,
             point_positions: quadrature.positions.clone(),

@@ -4,9 +4,9 @@
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::{Discretisation, Warning};
 use crate::error::Error;
-use crate::geometry::Panel;
+use crate::geometry::{Panel, Selector};
 use crate::model::essential::Constraints;
-use crate::problem::{Amplitude, Motion, Problem, Traction};
+use crate::problem::{Amplitude, Loads, Motion, Problem, Traction};
 
 /// A nodal force pattern with the amplitude that scales it.
 #[derive(Debug, Clone)]
@@ -28,18 +28,26 @@ pub fn load_patterns(
     let d = problem.dimension.components();
     let size = d * discretisation.cloud.positions.len();
     let mut patterns = Vec::new();
-    for body_force in &problem.loads.body_forces {
+    for (index, body_force) in problem.loads.body_forces.iter().enumerate() {
+        let mut acts = false;
         let mut force = vec![0.0; size];
         let supports = &discretisation.supports;
         let weights = &discretisation.quadrature.weights;
         for (point, (density, weight)) in density.iter().zip(weights).enumerate() {
-            let acceleration =
-                body_force.acceleration.at(&discretisation.quadrature.positions[point]);
+            let position = &discretisation.quadrature.positions[point];
+            if !body_force.part.contains(position) {
+                continue;
+            }
+            acts = true;
+            let acceleration = body_force.acceleration.at(position);
             let mass = density * weight;
             for entry in supports.row(point) {
                 let nodal_mass = mass * supports.phi[entry];
                 add(&mut force, d, supports.nodes[entry], &(acceleration * nodal_mass));
             }
+        }
+        if !acts {
+            return Err(Error::EmptyBodyForce { index });
         }
         patterns.push(LoadPattern { force, amplitude: body_force.amplitude.clone() });
     }
@@ -107,22 +115,23 @@ pub fn check_loads(
     constraints: &Constraints,
 ) -> Vec<Warning> {
     let cloud = &discretisation.cloud;
-    let carried = |traction: &&Traction| {
-        let selected = |&node: &usize| {
-            cloud.on_boundary[node] && traction.part.contains(&cloud.positions[node])
-        };
+    let carried = |part: &Selector, acts: &dyn Fn(usize) -> bool| {
+        let selected =
+            |&node: &usize| cloud.on_boundary[node] && part.contains(&cloud.positions[node]);
         let prescribed = |node: usize| {
             (0..problem.dimension.components())
-                .filter(|&k| traction.traction[k] != 0.0)
+                .filter(|&k| acts(k))
                 .all(|k| constraints.always_prescribes(node as u32, k))
         };
         let mut nodes = (0..cloud.positions.len()).filter(selected).peekable();
         nodes.peek().is_some() && nodes.all(prescribed)
     };
-    let tractions = problem.loads.tractions.iter().filter(carried);
-    let mut warnings: Vec<Warning> = tractions
-        .map(|traction| Warning::CarriedTraction { name: traction.name.clone() })
-        .collect();
+    let Loads { tractions, pressures, .. } = &problem.loads;
+    let tractions = tractions.iter().filter(|t| carried(&t.part, &|k| t.traction[k] != 0.0));
+    let pressures = pressures.iter().filter(|p| carried(&p.part, &|_| true));
+    let names = tractions.map(|t| &t.name).chain(pressures.map(|p| &p.name));
+    let mut warnings: Vec<Warning> =
+        names.map(|name| Warning::CarriedTraction { name: name.clone() }).collect();
     if !matches!(problem.motion, Motion::Dynamic { .. }) {
         warnings.extend(unfinished(problem));
     }
@@ -134,13 +143,17 @@ fn unfinished(problem: &Problem) -> impl Iterator<Item = Warning> {
     let end = problem.motion.end();
     let conditions = problem.conditions.iter().map(|c| (c.name.clone(), &c.amplitude));
     let tractions = problem.loads.tractions.iter().map(|t| (t.name.clone(), &t.amplitude));
+    let pressures = problem.loads.pressures.iter().map(|p| (p.name.clone(), &p.amplitude));
     let body_forces = problem.loads.body_forces.iter().enumerate();
     let body_forces = body_forces.map(|(n, b)| (format!("body_force[{n}]"), &b.amplitude));
-    conditions.chain(tractions).chain(body_forces).filter_map(move |(name, amplitude)| {
-        let (Amplitude::Linear { duration } | Amplitude::Smooth { duration }) = *amplitude else {
-            return None;
-        };
-        let factor = amplitude.at(end);
-        (duration > end).then_some(Warning::UnfinishedLoad { name, duration, end, factor })
-    })
+    conditions.chain(tractions).chain(pressures).chain(body_forces).filter_map(
+        move |(name, amplitude)| {
+            let (Amplitude::Linear { duration } | Amplitude::Smooth { duration }) = *amplitude
+            else {
+                return None;
+            };
+            let factor = amplitude.at(end);
+            (duration > end).then_some(Warning::UnfinishedLoad { name, duration, end, factor })
+        },
+    )
 }

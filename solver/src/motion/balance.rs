@@ -4,7 +4,7 @@ use crate::algebra::packed::{dot, largest};
 use crate::model::Model;
 use crate::model::essential::ConstraintForces;
 use crate::motion::internal_force::{SmallestJacobian, internal_force};
-use crate::motion::step::Buffers;
+use crate::motion::step::{Buffers, add_pressures};
 
 /// Nodal force over stiffness times displacement below which a body counts as free of
 /// stress \[–\]: a residual relative to smaller forces would say nothing, such as that of a
@@ -26,8 +26,9 @@ pub(crate) struct Imbalance {
 }
 
 impl Imbalance {
-    /// At displacements `u` \[m\] under the conditions of time `t` \[s\] and the
-    /// external forces in `buffers`; constraint forces are written to `forces`.
+    /// At displacements `u` \[m\] under the conditions and pressures of time `t` \[s\] and the
+    /// external forces in `buffers`, which the pressures are added to; constraint forces are
+    /// written to `forces`.
     pub fn new(
         model: &Model,
         u: &[f64],
@@ -36,6 +37,7 @@ impl Imbalance {
         forces: &mut ConstraintForces,
     ) -> Imbalance {
         let d = model.components;
+        add_pressures(model, t, u, &mut buffers.f_ext);
         let smallest_jacobian =
             internal_force(model, u, &mut buffers.workspace, &mut buffers.f_int);
         let force: Vec<f64> = buffers

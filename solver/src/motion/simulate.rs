@@ -7,7 +7,7 @@ use crate::motion::newton::equilibrate;
 use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::relaxation::relax;
 use crate::motion::state::State;
-use crate::motion::step::{Buffers, Scheme, StepReport, external_force, step};
+use crate::motion::step::{Buffers, Scheme, StepReport, add_pressures, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};
 use crate::motion::summary::Summary;
 use crate::problem::{Motion, StepControl};
@@ -52,6 +52,7 @@ fn refuse_unheld(model: &Model, load_end: f64) -> Result<(), Error> {
     }
     let mut force = vec![0.0; model.size()];
     external_force(model, load_end, &mut force);
+    add_pressures(model, load_end, &vec![0.0; model.size()], &mut force);
     let held = model.constraints.active(load_end);
     for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate().take(model.components) {
         let along = || force.iter().skip(axis).step_by(model.components);

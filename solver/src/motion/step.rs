@@ -102,6 +102,7 @@ pub fn step(
     let smallest_jacobian =
         internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
     external_force(model, load_time, &mut buffers.f_ext);
+    add_pressures(model, load_time, &state.displacement, &mut buffers.f_ext);
     if buffers.track_work {
         buffers.velocity_before.copy_from_slice(&state.velocity);
     }
@@ -117,7 +118,15 @@ pub fn step(
     StepReport { smallest_jacobian, largest_increment }
 }
 
-/// Sum of all load patterns at time `t` \[s\].
+/// Adds the forces of all pressures at time `t` \[s\] and displacements `u` \[m\], which
+/// [`external_force`] leaves out.
+pub fn add_pressures(model: &Model, t: f64, u: &[f64], f_ext: &mut [f64]) {
+    for load in &model.pressures {
+        load.add_force(t, u, model.components, f_ext);
+    }
+}
+
+/// Sum of all load patterns at time `t` \[s\]: what does not depend on displacements.
 pub fn external_force(model: &Model, t: f64, f_ext: &mut [f64]) {
     let length = CHUNK * model.components;
     let add = |(chunk, f_ext): (usize, &mut [f64])| {

@@ -45,14 +45,27 @@ impl<'a> Tangent<'a> {
     /// The scaled product, projected.
     pub fn apply(&mut self, vector: &[f64]) -> Vec<f64> {
         let direction: Vec<f64> = vector.iter().zip(&self.root_mass).map(|(x, r)| x / r).collect();
-        let mut product = self.stiffness_times(&direction);
+        let mut product = self.internal_stiffness_times(&direction);
         product.iter_mut().zip(&self.root_mass).for_each(|(p, r)| *p /= r);
         self.project(&mut product);
         product
     }
 
-    /// K v \[N\], not projected.
+    /// K v \[N\] less the stiffness of pressures, not projected.
     pub fn stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {
+        let mut product = self.internal_stiffness_times(direction);
+        if !self.model.pressures.is_empty() {
+            let mut following = vec![0.0; self.u.len()];
+            for load in &self.model.pressures {
+                let d = self.model.components;
+                load.add_stiffness_times(self.t, self.u, direction, d, &mut following);
+            }
+            product.iter_mut().zip(&following).for_each(|(p, f)| *p -= f);
+        }
+        product
+    }
+
+    fn internal_stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.u.len()];
         stiffness_times(self.model, self.u, direction, self.workspace, &mut product);
         product

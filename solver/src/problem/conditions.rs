@@ -74,13 +74,17 @@ pub struct Loads {
     pub body_forces: Vec<BodyForce>,
     /// Forces per reference area; they add up.
     pub tractions: Vec<Traction>,
+    /// Pressures on the deformed surface; they add up.
+    pub pressures: Vec<Pressure>,
     /// Velocity at t = 0 \[m/s\], the first part that contains a node.
     pub initial_velocities: Vec<(Selector, Vector3)>,
 }
 
-/// A force per mass \[N/kg\] on the whole body.
+/// A force per mass \[N/kg\] on the body or a part of it, such as what lies above a fluid.
 #[derive(Debug, Clone)]
 pub struct BodyForce {
+    /// The quadrature points that it acts on.
+    pub part: Selector,
     /// At amplitude 1 \[N/kg\].
     pub acceleration: Field,
     /// The factor over time.
@@ -96,6 +100,20 @@ pub struct Traction {
     pub part: Selector,
     /// At amplitude 1 \[Pa\].
     pub traction: Vector3,
+    /// The factor over time.
+    pub amplitude: Amplitude,
+}
+
+/// A pressure \[Pa\] along the inward normal of the deformed surface: it turns with the
+/// surface, and its force goes with the deformed area.
+#[derive(Debug, Clone)]
+pub struct Pressure {
+    /// Name in reports and messages.
+    pub name: String,
+    /// Which part of the boundary.
+    pub part: Selector,
+    /// At amplitude 1 \[Pa\]; positive where it presses on the body.
+    pub pressure: f64,
     /// The factor over time.
     pub amplitude: Amplitude,
 }

@@ -9,7 +9,8 @@ mod recipe;
 pub use crate::geometry::{Dimension, Field};
 pub use amplitude::Amplitude;
 pub use conditions::{
-    BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed, Traction,
+    BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed, Pressure,
+    Traction,
 };
 pub use motion::{Motion, Newton, Relaxation, RelaxationMass, StepControl};
 pub use recipe::{

@@ -29,8 +29,16 @@ pub fn objective_laws() -> Vec<Law> {
         Law::MooneyRivlin(MooneyRivlin::new(1052.0, 100.0, 0.49).unwrap()),
         Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants())),
         Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(constants(), VolumetricTerm::Quadratic)),
+        ogden(),
         Law::StVenantKirchhoff(StVenantKirchhoff::new(constants())),
     ]
+}
+
+/// Brain tissue of Miller, Chinzei 2002, of ν = 0.49.
+pub fn ogden() -> Law {
+    let terms = OgdenTerms::new(&[OgdenTerm { mu: 842.0, alpha: -4.7 }]).unwrap();
+    let constants = ElasticConstants::from_shear_poisson(842.0, 0.49).unwrap();
+    Law::Ogden(Ogden::new(terms, constants.bulk_modulus, VolumetricTerm::Quadratic).unwrap())
 }
 
 pub fn material(law: Law) -> Material {
@@ -148,7 +156,11 @@ pub fn condition(name: &str, part: Selector, values: [Option<f64>; 3]) -> Essent
 
 pub fn gravity(problem: &mut Problem, acceleration: Vector3) {
     let amplitude = Amplitude::Constant;
-    problem.loads.body_forces.push(BodyForce { acceleration: acceleration.into(), amplitude });
+    problem.loads.body_forces.push(BodyForce {
+        part: Selector::All,
+        acceleration: acceleration.into(),
+        amplitude,
+    });
 }
 
 pub fn obstacle(shape: Shape, side: ObstacleSide, friction: Friction) -> Obstacle {

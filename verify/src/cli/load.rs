@@ -48,6 +48,8 @@ fn diagnose(case: &Case, error: &Error) -> Diagnostic {
     let key = match error {
         Error::NothingHolds { .. } => "prescribe",
         Error::EmptySelection { name } => &format!("prescribe.{name}.where"),
+        Error::BeyondData { name, .. } => &format!("prescribe.{name}.data"),
+        Error::NoDisplacement { name, .. } => &format!("prescribe.{name}"),
         Error::ContradictingConditions { second, .. } => &format!("prescribe.{second}"),
         Error::DrivenIntoObstacle { condition, .. } => &format!("prescribe.{condition}"),
         Error::NodesInObstacle { name, .. } | Error::EmptyObstacle { name } => {
@@ -56,6 +58,8 @@ fn diagnose(case: &Case, error: &Error) -> Diagnostic {
         Error::EmptyInitialVelocity { index } => &format!("initial_velocity[{index}]"),
         Error::EmptyRegion { .. } => "probe",
         Error::EmptyTraction { name } => &format!("traction.{name}.where"),
+        Error::EmptyBodyForce { index } => &format!("body_force[{index}].where"),
+        Error::EmptyPressure { name } => &format!("pressure.{name}.where"),
         Error::DependentConstraints { .. } => "discretisation.enforcement",
         Error::NoQuadraturePoints
         | Error::UncoveredNode { .. }

@@ -1,8 +1,5 @@
 //! Inflation of a thick spherical shell of incompressible neo-Hookean material
 //! (Green and Zerna 1968, section 3.10; Ogden 1984, section 5.3.2).
-//!
-//! No case uses it: the pressure follows the surface, and the solver has dead tractions
-//! only.
 
 /// A shell between the radii `inner` and `outer` \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]

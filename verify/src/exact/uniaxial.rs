@@ -3,7 +3,7 @@
 
 use super::roots::{bisect, free_stretch};
 use mtled::algebra::tensor::{Matrix3, Vector3};
-use mtled::material::Law;
+use mtled::material::{Law, OgdenTerm};
 
 /// A homogeneous bar under uniaxial stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,14 +42,30 @@ pub fn incompressible_stretch(shear_modulus: f64, cauchy_stress: f64) -> f64 {
     })
 }
 
+/// Cauchy stress of an incompressible bar of Ogden's law σ = Σ 2μ/α (λ^α − λ^(−α/2))
+/// \[Pa\] (Ogden 1972; method book, eq. 3.14).
+pub fn incompressible_ogden_stress(terms: &[OgdenTerm], stretch: f64) -> f64 {
+    let stress = |t: &OgdenTerm| {
+        2.0 * t.mu / t.alpha * (stretch.powf(t.alpha) - stretch.powf(-0.5 * t.alpha))
+    };
+    terms.iter().map(stress).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
     use mtled::material::{
-        ElasticConstants, LinearElastic, MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ,
-        StVenantKirchhoff, VolumetricTerm,
+        ElasticConstants, LinearElastic, MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ, Ogden,
+        OgdenTerms, StVenantKirchhoff, VolumetricTerm,
     };
+
+    const BRAIN: OgdenTerm = OgdenTerm { mu: 842.0, alpha: -4.7 };
+
+    fn ogden(terms: &[OgdenTerm], bulk_modulus: f64) -> Law {
+        let terms = OgdenTerms::new(terms).unwrap();
+        Law::Ogden(Ogden::new(terms, bulk_modulus, VolumetricTerm::Quadratic).unwrap())
+    }
 
     fn laws(poisson_ratio: f64) -> Vec<Law> {
         let c = ElasticConstants::from_young_poisson(3000.0, poisson_ratio).unwrap();
@@ -62,6 +78,7 @@ mod tests {
             Law::StVenantKirchhoff(StVenantKirchhoff::new(c)),
             Law::LinearElastic(LinearElastic::new(c)),
             Law::MooneyRivlin(MooneyRivlin::new(900.0, 100.0, 0.49).unwrap()),
+            ogden(&[BRAIN], 1e5),
         ]
     }
 
@@ -110,6 +127,19 @@ mod tests {
             let expected = incompressible_cauchy_stress(1000.0, stretch) / stretch;
             assert_relative_eq!(state.nominal_stress, expected, max_relative = 1e-4);
         }
+    }
+
+    #[test]
+    fn nearly_incompressible_brain_tissue_tends_to_the_incompressible_bar_of_ogden() {
+        let terms = [BRAIN, OgdenTerm { mu: 100.0, alpha: 3.0 }];
+        for stretch in [0.6, 0.9, 1.5, 2.0] {
+            let state = uniaxial_stress(&ogden(&terms, 1e10), stretch).unwrap();
+            let expected = incompressible_ogden_stress(&terms, stretch) / stretch;
+            assert_relative_eq!(state.nominal_stress, expected, max_relative = 1e-5);
+        }
+        // With α = 2 it is the neo-Hookean bar.
+        let neo_hookean = incompressible_ogden_stress(&[OgdenTerm { mu: 7.0, alpha: 2.0 }], 1.3);
+        assert_relative_eq!(neo_hookean, incompressible_cauchy_stress(7.0, 1.3), epsilon = 1e-12);
     }
 
     #[test]

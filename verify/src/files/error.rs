@@ -66,8 +66,12 @@ pub enum Mistake {
     Geometry(GeometryError),
     #[error("line {line} is `{text}`; expected {expected}")]
     BadLine { line: usize, text: String, expected: &'static str },
-    #[error("the array has shape {shape:?} and type {kind}; expected (n, 2) or (n, 3) of floats")]
-    BadArray { shape: Vec<u64>, kind: String },
+    #[error("the array has shape {shape:?} and type {kind}; expected {expected} of floats")]
+    BadArray { shape: Vec<u64>, kind: String, expected: &'static str },
+    #[error("there is no point data of three components called `{name}`; the file has {known}")]
+    NoPointData { name: String, known: String },
+    #[error("there are {points} points and {values} vectors in `{name}`")]
+    VectorCount { name: String, points: usize, values: usize },
     #[error("the file states {points} points, which are {expected} coordinates, and has {found}")]
     CoordinateCount { points: usize, expected: usize, found: usize },
     #[error(

@@ -6,7 +6,7 @@ use crate::scene::{one_error, parse_case};
 use anyhow::Result;
 use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::discretisation::quadrature::quadrature;
-use mtled::geometry::{Shape, Surface};
+use mtled::geometry::{Selector, Shape, Surface};
 use mtled::material::Material;
 use mtled::problem::{
     Amplitude, BodyForce, Enforcement, Field, Gradients, InsideRule, MassRule, Prescribed, Problem,
@@ -161,6 +161,7 @@ pub fn impose(problem: &mut Problem, oriented: Oriented) -> Result<()> {
     problem.conditions[0].prescribed =
         Prescribed::Field(Field::of(move |X| oriented.displacement(X)));
     problem.loads.body_forces = vec![BodyForce {
+        part: Selector::All,
         acceleration: Field::of(move |X| oriented.body_force(X)),
         amplitude: Amplitude::Smooth { duration: 1.0 },
     }];

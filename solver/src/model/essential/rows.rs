@@ -4,7 +4,7 @@
 use crate::algebra::tensor::{Matrix3, Vector3, rotation};
 use crate::discretisation::{Discretisation, selects};
 use crate::error::Error;
-use crate::problem::{EssentialCondition, Prescribed};
+use crate::problem::{EssentialCondition, Field, Prescribed};
 
 /// One constrained component of one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,12 +27,37 @@ pub(super) fn selected_nodes(
     let select = |condition: &EssentialCondition| {
         let selected = |&node: &u32| selects(condition, cloud, node as usize);
         let nodes: Vec<u32> = (0..cloud.positions.len() as u32).filter(selected).collect();
-        match nodes.is_empty() {
-            true => Err(Error::EmptySelection { name: condition.name.clone() }),
-            false => Ok(nodes),
+        if nodes.is_empty() {
+            return Err(Error::EmptySelection { name: condition.name.clone() });
         }
+        if let Prescribed::Field(field) = &condition.prescribed {
+            for &node in &nodes {
+                refuse_unknown(&condition.name, field, node as usize, &cloud.positions)?;
+            }
+        }
+        Ok(nodes)
     };
     conditions.iter().map(select).collect()
+}
+
+/// Refuses a node that is too far from the data of a field, or at which it is no number.
+fn refuse_unknown(
+    name: &str,
+    field: &Field,
+    node: usize,
+    positions: &[Vector3],
+) -> Result<(), Error> {
+    let (name, position) = (name.to_string(), positions[node]);
+    if let Field::Scattered(data) = field {
+        let (distance, reach) = (data.distance(&position), data.reach());
+        if distance > reach {
+            return Err(Error::BeyondData { name, node, position, distance, reach });
+        }
+    }
+    match field.at(&position).iter().all(|component| component.is_finite()) {
+        true => Ok(()),
+        false => Err(Error::NoDisplacement { name, node, position }),
+    }
 }
 
 /// The rows of one component, in ascending order of nodes. A node that several

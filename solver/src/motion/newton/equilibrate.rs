@@ -8,7 +8,7 @@ use crate::model::essential::ConstraintForces;
 use crate::motion::internal_force::strain_energy;
 use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::state::State;
-use crate::motion::step::{Buffers, external_force};
+use crate::motion::step::{Buffers, add_pressures, external_force};
 use crate::motion::summary::Summary;
 use crate::problem::Newton;
 
@@ -124,11 +124,13 @@ impl Solver<'_> {
         let stored = strain_energy(model, &u, &mut buffers.workspace)
             - strain_energy(model, &state.displacement, &mut buffers.workspace);
         external_force(model, state.time, &mut buffers.f_ext);
+        add_pressures(model, state.time, &state.displacement, &mut buffers.f_ext);
         let before = std::mem::take(&mut state.displacement);
         let steps: Vec<f64> = u.iter().zip(&before).map(|(u, before)| u - before).collect();
         let mut external = 0.5 * dot(&buffers.f_ext, &steps);
         state.time = self.path.time(fraction);
         external_force(model, state.time, &mut buffers.f_ext);
+        add_pressures(model, state.time, &u, &mut buffers.f_ext);
         external += 0.5 * dot(&buffers.f_ext, &steps);
         state.work.external += external;
         state.work.constraint += stored - external;

@@ -1,6 +1,8 @@
-//! Node positions \[m\] from CSV, NPY, VTU and legacy VTK files.
+//! Node positions \[m\] from CSV, NPY, VTU and legacy VTK files, and points with
+//! displacements from the first three.
 
 mod csv;
+mod displacements;
 mod legacy_vtk;
 mod npy;
 mod rows;
@@ -10,6 +12,8 @@ use super::bytes::bytes_of;
 use super::error::{FileError, Mistake};
 use mtled::algebra::tensor::Vector3;
 use std::path::Path;
+
+pub use displacements::read_displacements;
 
 /// Reads node positions, with the format given by the extension of the name. Files of two
 /// columns get z = 0.

@@ -1,4 +1,4 @@
-//! Points from a NumPy array of shape (n, 2) or (n, 3)
+//! Rows of numbers from a NumPy array, such as points of shape (n, 2) or (n, 3)
 //! (format: numpy.org/doc/stable/reference/generated/numpy.lib.format.html).
 
 use super::rows::from_rows;
@@ -15,10 +15,25 @@ struct Header {
 }
 
 pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
+    let (values, columns) = numbers(bytes, &[2, 3], "(n, 2) or (n, 3)")?;
+    Ok(from_rows(&values, columns))
+}
+
+/// The numbers of an array row by row, with the number of columns, which is one of `allowed`.
+pub fn numbers(
+    bytes: &[u8],
+    allowed: &[u64],
+    expected: &'static str,
+) -> Result<(Vec<f64>, usize), Mistake> {
+    let bad_array = |header: Header| Mistake::BadArray {
+        shape: header.shape,
+        kind: format!("'{}'", header.kind),
+        expected,
+    };
     let (text, data) = split(bytes)?;
     let header = header(&text)?;
     let columns = match header.shape[..] {
-        [_, columns @ (2 | 3)] => columns as usize,
+        [_, columns] if allowed.contains(&columns) => columns as usize,
         _ => return Err(bad_array(header)),
     };
     let (order, scalar) = match header.kind.as_str() {
@@ -40,10 +55,10 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     let words = data.chunks_exact(scalar.size());
     let values: Vec<f64> = words.map(|word| scalar.read(word, order)).collect();
     if !header.by_columns {
-        return Ok(from_rows(&values, columns));
+        return Ok((values, columns));
     }
     let by_rows = (0..values.len()).map(|n| values[n % columns * count + n / columns]);
-    Ok(from_rows(&by_rows.collect::<Vec<f64>>(), columns))
+    Ok((by_rows.collect(), columns))
 }
 
 /// The text of the header and the data behind it.
@@ -84,10 +99,6 @@ fn header(text: &str) -> Result<Header, Mistake> {
         Some(Header { kind: kind.to_string(), by_columns, shape })
     };
     read().ok_or(damaged("its header has no descr, fortran_order or shape"))
-}
-
-fn bad_array(header: Header) -> Mistake {
-    Mistake::BadArray { shape: header.shape, kind: format!("'{}'", header.kind) }
 }
 
 fn damaged(reason: &str) -> Mistake {

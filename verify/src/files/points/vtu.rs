@@ -1,4 +1,4 @@
-//! The points of a VTU file: ASCII, or binary inline or appended, plain or
+//! The points of a VTU file and vectors at them: ASCII, or binary inline or appended, plain or
 //! compressed by zlib.
 
 use super::rows::from_stated;
@@ -24,12 +24,22 @@ struct Storage {
 }
 
 pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
+    vectors(bytes, None)
+}
+
+/// The vectors of an array of the point data, as many as points.
+pub fn point_data(bytes: &[u8], name: &str) -> Result<Vec<Vector3>, Mistake> {
+    vectors(bytes, Some(name))
+}
+
+/// The points, or the point data of a name.
+fn vectors(bytes: &[u8], name: Option<&str>) -> Result<Vec<Vector3>, Mistake> {
     let appended = find(bytes, b"<AppendedData");
     let PointsArray { file, piece, array, text } =
-        points_array(&bytes[..appended.unwrap_or(bytes.len())])?;
+        points_array(&bytes[..appended.unwrap_or(bytes.len())], name)?;
     let storage = storage(&file)?;
     if let Some(components) = array.get("NumberOfComponents").filter(|&n| n != "3") {
-        return Err(Mistake::bad_field("NumberOfComponents", components, "3 for points"));
+        return Err(Mistake::bad_field("NumberOfComponents", components, "3 for vectors"));
     }
     let scalar = match array.get("type").map(String::as_str) {
         Some("Float32") => Scalar::F32,
@@ -74,7 +84,8 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
     bytes.windows(what.len()).position(|window| window == what)
 }
 
-/// Attributes of VTKFile, of its only Piece and of the DataArray in Points, and its text.
+/// Attributes of VTKFile, of its only Piece and of the DataArray in Points or PointData, and
+/// its text.
 struct PointsArray {
     file: Attributes,
     piece: Attributes,
@@ -82,7 +93,16 @@ struct PointsArray {
     text: String,
 }
 
-fn points_array(xml: &[u8]) -> Result<PointsArray, Mistake> {
+fn points_array(xml: &[u8], name: Option<&str>) -> Result<PointsArray, Mistake> {
+    let section: &[u8] = if name.is_some() { b"PointData" } else { b"Points" };
+    let mut known = Vec::new();
+    let mut wanted = |tag: &BytesStart| {
+        let Some(name) = name else { return true };
+        let found = attributes(tag).remove("Name").unwrap_or_default();
+        let same = found == name;
+        known.push(found);
+        same
+    };
     let mut reader = Reader::from_reader(xml);
     let (mut file, mut pieces, mut array) = (None, Vec::new(), None);
     let (mut in_points, mut text, mut buffer) = (false, String::new(), Vec::new());
@@ -95,21 +115,27 @@ fn points_array(xml: &[u8]) -> Result<PointsArray, Mistake> {
             Event::Start(tag) | Event::Empty(tag) if tag.name().as_ref() == b"Piece" => {
                 pieces.push(attributes(&tag));
             }
-            Event::Start(tag) if tag.name().as_ref() == b"Points" => in_points = true,
+            Event::Start(tag) if tag.name().as_ref() == section => in_points = true,
             Event::Start(tag)
-                if in_points && tag.name().as_ref() == b"DataArray" && array.is_none() =>
+                if in_points
+                    && tag.name().as_ref() == b"DataArray"
+                    && array.is_none()
+                    && wanted(&tag) =>
             {
                 array = Some(attributes(&tag));
                 open = Some(0);
             }
             Event::Empty(tag)
-                if in_points && tag.name().as_ref() == b"DataArray" && array.is_none() =>
+                if in_points
+                    && tag.name().as_ref() == b"DataArray"
+                    && array.is_none()
+                    && wanted(&tag) =>
             {
                 array = Some(attributes(&tag));
             }
             Event::Start(_) => open = open.map(|inside| inside + 1),
             Event::Text(part) if open == Some(0) => text += &String::from_utf8_lossy(&part),
-            Event::End(tag) if tag.name().as_ref() == b"Points" => in_points = false,
+            Event::End(tag) if tag.name().as_ref() == section => in_points = false,
             Event::End(_) => open = open.and_then(|inside| inside.checked_sub(1)),
             Event::Eof => break,
             _ => {}
@@ -118,12 +144,19 @@ fn points_array(xml: &[u8]) -> Result<PointsArray, Mistake> {
     }
     let format = "a VTU file (XML with <VTKFile>)";
     let file = file.ok_or(Mistake::WrongFormat { format, start: start_of(xml) })?;
-    let array = array.ok_or(Mistake::MissingField { field: "Points/DataArray" })?;
+    let array = array.ok_or_else(|| match name {
+        None => Mistake::MissingField { field: "Points/DataArray" },
+        Some(name) => Mistake::NoPointData { name: name.to_string(), known: listed(&known) },
+    })?;
     if pieces.len() > 1 {
         return Err(Mistake::SeveralPieces { pieces: pieces.len() });
     }
     let piece = pieces.pop().unwrap_or_default();
     Ok(PointsArray { file, piece, array, text })
+}
+
+fn listed(names: &[String]) -> String {
+    if names.is_empty() { "none".to_string() } else { names.join(", ") }
 }
 
 fn attributes(tag: &BytesStart) -> Attributes {

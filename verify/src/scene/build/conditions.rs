@@ -1,13 +1,15 @@
 //! Conditions, loads and obstacles of a case file → those of the solver.
 
 use crate::scene::build::builder::Builder;
+use crate::scene::build::field::near;
 use crate::scene::format::{
-    AmplitudeFormat, CaseFormat, DisplacementFormat, ObstacleFormat, PrescribeFormat,
+    AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, ObstacleFormat, PrescribeFormat,
     RotationFormat,
 };
 use mtled::algebra::tensor::Vector3;
+use mtled::geometry::{Field, Selector};
 use mtled::problem::{
-    Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Traction,
+    Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Pressure, Traction,
 };
 
 impl Builder<'_> {
@@ -22,22 +24,40 @@ impl Builder<'_> {
         if let Some(release) = row.release {
             self.positive(&format!("{key}.release"), release);
         }
-        let prescribed = match (&row.displacement, &row.rotation) {
-            (Some(displacement), None) => {
-                self.displacement(&format!("{key}.displacement"), displacement)
-            }
-            (None, Some(rotation)) => self.rotation(&format!("{key}.rotation"), rotation),
-            (Some(_), Some(_)) => {
-                let message = "cannot be given together with displacement; remove one";
-                self.mistake(&format!("{key}.rotation"), message);
-                return None;
-            }
-            (None, None) => {
-                let message = "prescribes nothing; it needs a displacement or a rotation";
-                self.mistake(key, message);
-                return None;
-            }
+        let given = [
+            ("displacement", row.displacement.is_some()),
+            ("rotation", row.rotation.is_some()),
+            ("formula", row.formula.is_some()),
+            ("data", row.data.is_some()),
+        ];
+        let mut given = given.into_iter().filter(|(_, given)| *given).map(|(name, _)| name);
+        let Some(first) = given.next() else {
+            let message =
+                "prescribes nothing; it needs a displacement, a rotation, a formula or data";
+            self.mistake(key, message);
+            return None;
         };
+        if let Some(second) = given.next() {
+            let message = format!("cannot be given together with {first}; remove one");
+            self.mistake(&format!("{key}.{second}"), message);
+            return None;
+        }
+        let at = format!("{key}.{first}");
+        let (mut part, mut prescribed) = (part, None);
+        if let Some(displacement) = &row.displacement {
+            prescribed = Some(self.displacement(&at, displacement));
+        } else if let Some(rotation) = &row.rotation {
+            prescribed = Some(self.rotation(&at, rotation));
+        } else if let Some(formula) = &row.formula {
+            prescribed = self.formula(&at, formula).map(Prescribed::Field);
+        } else if let Some(data) = &row.data {
+            let scattered = self.scattered(&at, data)?;
+            if data.beyond == BeyondFormat::Free {
+                part = part.map(|part| Selector::Intersection(vec![part, near(&scattered)]));
+            }
+            prescribed = Some(Prescribed::Field(Field::Scattered(scattered)));
+        }
+        let prescribed = prescribed?;
         let (name, extent, release) = (row.name.clone(), row.of.into(), row.release);
         Some(EssentialCondition { name, extent, part: part?, prescribed, amplitude, release })
     }
@@ -99,7 +119,11 @@ impl Builder<'_> {
             self.no_z(&format!("{key}.acceleration"), &row.acceleration);
             let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
             let acceleration = Vector3::from(row.acceleration).into();
-            loads.body_forces.push(BodyForce { acceleration, amplitude });
+            let part = match &row.part {
+                None => Some(Selector::All),
+                Some(part) => self.selector(&format!("{key}.where"), part),
+            };
+            loads.body_forces.extend(part.map(|part| BodyForce { part, acceleration, amplitude }));
         }
         for (n, row) in format.traction.iter().enumerate() {
             let key = format!("traction[{n}]");
@@ -108,6 +132,13 @@ impl Builder<'_> {
             let part = self.selector(&format!("{key}.where"), &row.part);
             let (name, traction) = (row.name.clone(), Vector3::from(row.traction));
             loads.tractions.extend(part.map(|part| Traction { name, part, traction, amplitude }));
+        }
+        for (n, row) in format.pressure.iter().enumerate() {
+            let key = format!("pressure[{n}]");
+            let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
+            let part = self.selector(&format!("{key}.where"), &row.part);
+            let (name, pressure) = (row.name.clone(), row.pressure);
+            loads.pressures.extend(part.map(|part| Pressure { name, part, pressure, amplitude }));
         }
         for (n, row) in format.initial_velocity.iter().enumerate() {
             let key = format!("initial_velocity[{n}]");

@@ -5,13 +5,17 @@ use crate::scene::format::{CaseFormat, LawFormat, MaterialFormat};
 use mtled::geometry::Selector;
 use mtled::material::{
     ElasticConstants, Law, LinearElastic, Material, MaterialError, MooneyRivlin,
-    NeoHookeanIsochoric, NeoHookeanLogJ, StVenantKirchhoff, VolumetricTerm,
+    NeoHookeanIsochoric, NeoHookeanLogJ, Ogden, OgdenTerm, OgdenTerms, StVenantKirchhoff,
+    VolumetricTerm,
 };
 use mtled::problem::Region;
 use std::collections::BTreeMap;
 
 const PAIRS: &str = "young_modulus and poisson_ratio, lame_modulus and shear_modulus, \
                      or shear_modulus and bulk_modulus";
+
+/// Constants that ogden takes one of.
+const OF_OGDEN: [&str; 2] = ["poisson_ratio", "bulk_modulus"];
 
 impl Builder<'_> {
     /// Regions with their materials; one region for a body of one material.
@@ -52,11 +56,10 @@ impl Builder<'_> {
         let key = format!("material.{name}");
         self.positive(&format!("{key}.density"), format.density);
         self.keys_of_law(&key, format);
-        let law = if format.law == LawFormat::MooneyRivlin {
-            Law::MooneyRivlin(self.rubber(&key, format)?)
-        } else {
-            let constants = self.constants(&key, format)?;
-            law(format, constants)
+        let law = match format.law {
+            LawFormat::MooneyRivlin => Law::MooneyRivlin(self.rubber(&key, format)?),
+            LawFormat::Ogden => Law::Ogden(self.ogden(&key, format)?),
+            _ => law(format, self.constants(&key, format)?),
         };
         Some(Material { density: format.density, law })
     }
@@ -76,10 +79,52 @@ impl Builder<'_> {
                 self.mistake(&format!("{key}.{name}"), message);
             }
         }
-        if format.volumetric.is_some() && format.law != LawFormat::NeoHookeanIsochoric {
-            let message = "belongs to law = \"neo_hookean_isochoric\"";
+        let split = matches!(format.law, LawFormat::NeoHookeanIsochoric | LawFormat::Ogden);
+        if format.volumetric.is_some() && !split {
+            let message = "belongs to law = \"neo_hookean_isochoric\" or \"ogden\"";
             self.mistake(&format!("{key}.volumetric"), message);
         }
+        if format.terms.is_some() && format.law != LawFormat::Ogden {
+            self.mistake(&format!("{key}.terms"), "belongs to law = \"ogden\"");
+        }
+    }
+
+    fn ogden(&mut self, key: &str, format: &MaterialFormat) -> Option<Ogden> {
+        let Some(rows) = &format.terms else {
+            let message = "is missing; ogden needs terms such as [{ mu = 842.0, alpha = -4.7 }]";
+            self.mistake(&format!("{key}.terms"), message);
+            return None;
+        };
+        let terms: Vec<OgdenTerm> =
+            rows.iter().map(|row| OgdenTerm { mu: row.mu, alpha: row.alpha }).collect();
+        // One by one for the place of a mistake.
+        for (n, term) in terms.iter().enumerate() {
+            self.accept(&format!("{key}.terms[{n}]"), OgdenTerms::new(&[*term]))?;
+        }
+        let terms = self.accept(key, OgdenTerms::new(&terms))?;
+        let given: Vec<(&str, f64)> = (constants_given(format).into_iter())
+            .filter_map(|(name, value)| Some((name, value?)))
+            .collect();
+        let bulk_modulus = match given[..] {
+            [("bulk_modulus", bulk_modulus)] => bulk_modulus,
+            [("poisson_ratio", nu)] => {
+                let mu = terms.shear_modulus();
+                self.accept(key, ElasticConstants::from_shear_poisson(mu, nu))?.bulk_modulus
+            }
+            _ => {
+                let wrong = given.iter().find(|(name, _)| !OF_OGDEN.contains(name));
+                let (name, message) = match (wrong, given.is_empty()) {
+                    (Some((name, _)), _) => (*name, "does not belong to ogden, which takes terms"),
+                    (None, true) => ("poisson_ratio", "is missing; ogden takes terms"),
+                    (None, false) => ("bulk_modulus", "cannot be used; ogden takes terms"),
+                };
+                let message = format!("{message} and either poisson_ratio or bulk_modulus");
+                self.mistake(&format!("{key}.{name}"), message);
+                return None;
+            }
+        };
+        let volumetric = format.volumetric.map_or(VolumetricTerm::Quadratic, Into::into);
+        self.accept(key, Ogden::new(terms, bulk_modulus, volumetric))
     }
 
     fn rubber(&mut self, key: &str, format: &MaterialFormat) -> Option<MooneyRivlin> {
@@ -132,6 +177,8 @@ impl Builder<'_> {
             let name = match error {
                 MaterialError::NotPositive { name, .. } => name,
                 MaterialError::BulkModulus { .. } => "lame_modulus",
+                MaterialError::OgdenTerms { .. } => "terms",
+                MaterialError::OgdenExponent { .. } => "alpha",
                 _ => "poisson_ratio",
             };
             let message = error.to_string();
@@ -153,7 +200,7 @@ fn constants_given(format: &MaterialFormat) -> [(&'static str, Option<f64>); 5] 
     ]
 }
 
-/// A law of two constants; mooney_rivlin has three and is made elsewhere.
+/// A law of two constants; mooney_rivlin and ogden are made elsewhere.
 fn law(format: &MaterialFormat, constants: ElasticConstants) -> Law {
     match format.law {
         LawFormat::NeoHookeanIsochoric => {
@@ -162,7 +209,7 @@ fn law(format: &MaterialFormat, constants: ElasticConstants) -> Law {
         }
         LawFormat::StVenantKirchhoff => Law::StVenantKirchhoff(StVenantKirchhoff::new(constants)),
         LawFormat::LinearElastic => Law::LinearElastic(LinearElastic::new(constants)),
-        LawFormat::NeoHookeanLogJ | LawFormat::MooneyRivlin => {
+        LawFormat::NeoHookeanLogJ | LawFormat::MooneyRivlin | LawFormat::Ogden => {
             Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants))
         }
     }

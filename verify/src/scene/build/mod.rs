@@ -3,6 +3,7 @@
 
 mod builder;
 mod conditions;
+mod field;
 mod geometry;
 mod material;
 mod recipe;
@@ -122,6 +123,7 @@ impl Builder<'_> {
         self.unique_names(named("probe", &format.probe, |row| &row.name));
         let conditions = named("prescribe", &format.prescribe, |row| &row.name)
             .chain(named("traction", &format.traction, |row| &row.name))
+            .chain(named("pressure", &format.pressure, |row| &row.name))
             .chain(named("obstacle", &format.obstacle, |row| &row.name));
         self.unique_names(conditions);
     }

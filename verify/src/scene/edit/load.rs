@@ -3,8 +3,8 @@
 use crate::scene::edit::values::{replace, rounded, scale};
 use toml_edit::{DocumentMut, Item, Value};
 
-/// Multiplies prescribed displacements and angles, tractions, body forces and initial
-/// velocities.
+/// Multiplies prescribed displacements and angles, tractions, pressures, body forces and
+/// initial velocities.
 pub fn scale_loads(document: &mut DocumentMut, factor: f64) {
     let numbers = [
         ("prescribe", "displacement", &["x", "y", "z"][..]),
@@ -17,6 +17,20 @@ pub fn scale_loads(document: &mut DocumentMut, factor: f64) {
             };
             keys.iter().for_each(|key| scale(inner, key, factor));
         }
+    }
+    for name in ["formula", "data"] {
+        for row in rows(document, "prescribe") {
+            let Some(inner) = row.get_mut(name).and_then(Item::as_table_like_mut) else {
+                continue;
+            };
+            if !inner.contains_key("factor") {
+                inner.insert("factor", toml_edit::value(1.0));
+            }
+            scale(inner, "factor", factor);
+        }
+    }
+    for row in rows(document, "pressure") {
+        scale(row, "pressure", factor);
     }
     let triples = [
         ("traction", "traction"),

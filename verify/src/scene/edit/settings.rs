@@ -176,6 +176,8 @@ refine = [{ where = "all", cell = 0.0015 }]
 displacement = { x = 0.01, z = 0 }
 [[traction]]
 traction = [0.0, 2, -4.0]
+[[pressure]]
+pressure = 300
 "#;
 
     #[test]
@@ -221,6 +223,7 @@ traction = [0.0, 2, -4.0]
         let half = edited(TEXT, &[Setting::number(Knob::Load, 0.5)]).unwrap();
         assert!(half.contains("displacement = { x = 0.005, z = 0.0 }"), "{half}");
         assert!(half.contains("traction = [0.0, 1.0, -2.0]"), "{half}");
+        assert!(half.contains("pressure = 150.0"), "{half}");
     }
 
     #[test]

@@ -2,7 +2,8 @@
 
 use crate::scene::format::choice::choice;
 use crate::scene::format::conditions::{
-    BodyForceFormat, InitialVelocityFormat, ObstacleFormat, PrescribeFormat, TractionFormat,
+    BodyForceFormat, InitialVelocityFormat, ObstacleFormat, PrescribeFormat, PressureFormat,
+    TractionFormat,
 };
 use crate::scene::format::geometry::{SelectorFormat, ShapeFormat};
 use crate::scene::format::material::MaterialFormat;
@@ -41,12 +42,15 @@ pub struct CaseFormat {
     /// Prescribed displacements.
     #[serde(default)]
     pub prescribe: Vec<PrescribeFormat>,
-    /// Forces per mass on the whole body.
+    /// Forces per mass on the body or parts of it.
     #[serde(default)]
     pub body_force: Vec<BodyForceFormat>,
     /// Dead tractions on parts of the boundary.
     #[serde(default)]
     pub traction: Vec<TractionFormat>,
+    /// Pressures that follow the deformed surface.
+    #[serde(default)]
+    pub pressure: Vec<PressureFormat>,
     /// Velocities at t = 0; the first part that contains a node counts.
     #[serde(default)]
     pub initial_velocity: Vec<InitialVelocityFormat>,

@@ -1,13 +1,14 @@
 //! Prescribed displacements, loads and obstacles.
 
 use crate::scene::format::choice::choice;
-use crate::scene::format::geometry::{SelectorFormat, ShapeFormat, Triple};
+use crate::scene::format::geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
 use mtled::geometry::Extent;
 use mtled::problem::{Friction, ObstacleSide};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::path::PathBuf;
 
-/// A prescribed displacement: `displacement` or `rotation`, not both.
+/// A prescribed displacement: one of `displacement`, `rotation`, `formula` and `data`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PrescribeFormat {
@@ -18,6 +19,8 @@ pub struct PrescribeFormat {
     pub part: SelectorFormat,
     pub displacement: Option<DisplacementFormat>,
     pub rotation: Option<RotationFormat>,
+    pub formula: Option<FormulaFormat>,
+    pub data: Option<DataFormat>,
     #[serde(default)]
     pub amplitude: AmplitudeFormat,
     /// Enforced before this time [s]; for ever if left out.
@@ -55,6 +58,68 @@ pub struct RotationFormat {
     pub angle: f64,
 }
 
+/// A displacement at amplitude 1 [m] as formulas of the reference position x, y, z [m], such
+/// as "0.02*sin(PI*x/0.1)": + - * / ^, parentheses, sqrt, exp, ln, sin, cos, tan, asin, acos,
+/// atan, sinh, cosh, tanh, abs, PI.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FormulaFormat {
+    pub x: String,
+    pub y: String,
+    /// Left out in plane strain.
+    pub z: Option<String>,
+    /// Multiplies all of them.
+    #[serde(default = "one")]
+    pub factor: f64,
+}
+
+/// Displacements at amplitude 1 at scattered points, such as measured ones. Between them the
+/// linear function counts that fits the nearest 16 best.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DataFormat {
+    /// CSV with a header x, y, z, ux, uy, uz; NPY of shape (n, 6) in this order; or VTU.
+    pub file: PathBuf,
+    /// Unit of positions and displacements in the file.
+    #[serde(default = "metre")]
+    pub unit: UnitFormat,
+    /// Name of the point data of a VTU file.
+    #[serde(default = "displacement")]
+    pub field: String,
+    /// Largest distance of a node from the nearest point [m].
+    pub reach: f64,
+    /// What happens to selected nodes that are farther.
+    #[serde(default)]
+    pub beyond: BeyondFormat,
+    /// Multiplies the displacements.
+    #[serde(default = "one")]
+    pub factor: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn metre() -> UnitFormat {
+    UnitFormat::Metre
+}
+
+fn displacement() -> String {
+    "displacement".to_string()
+}
+
+choice! {
+    /// What happens to nodes that are too far from all data.
+    #[derive(Default)]
+    BeyondFormat {
+        /// They are an error.
+        #[default]
+        "error" Error,
+        /// They are not prescribed.
+        "free" Free,
+    }
+}
+
 /// A factor over time; constant if left out.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -76,10 +141,13 @@ pub enum AmplitudeFormat {
     Table(Vec<(f64, f64)>),
 }
 
-/// A force per mass on the whole body.
+/// A force per mass on the body.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForceFormat {
+    /// The part that it acts on, such as what lies above a fluid; everything if left out.
+    #[serde(rename = "where")]
+    pub part: Option<SelectorFormat>,
     /// [m/s²]
     pub acceleration: Triple,
     #[serde(default)]
@@ -95,6 +163,19 @@ pub struct TractionFormat {
     pub part: SelectorFormat,
     /// Force per reference area [Pa].
     pub traction: Triple,
+    #[serde(default)]
+    pub amplitude: AmplitudeFormat,
+}
+
+/// A pressure on the deformed surface: along its inward normal, whatever way it turns.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PressureFormat {
+    pub name: String,
+    #[serde(rename = "where")]
+    pub part: SelectorFormat,
+    /// Force per deformed area [Pa], positive where it presses on the body.
+    pub pressure: f64,
     #[serde(default)]
     pub amplitude: AmplitudeFormat,
 }

@@ -5,8 +5,8 @@ use mtled::material::VolumetricTerm;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A constitutive law with its parameters: exactly one pair of elastic
-/// constants, or A, B and poisson_ratio for mooney_rivlin.
+/// A constitutive law with its parameters: exactly one pair of elastic constants; A, B and
+/// poisson_ratio for mooney_rivlin; terms and poisson_ratio or bulk_modulus for ogden.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialFormat {
@@ -21,7 +21,7 @@ pub struct MaterialFormat {
     pub lame_modulus: Option<f64>,
     /// μ [Pa], with lame_modulus or bulk_modulus.
     pub shear_modulus: Option<f64>,
-    /// K [Pa], with shear_modulus.
+    /// K [Pa], with shear_modulus or terms.
     pub bulk_modulus: Option<f64>,
     /// Mooney-Rivlin A [Pa].
     #[serde(rename = "A")]
@@ -29,8 +29,20 @@ pub struct MaterialFormat {
     /// Mooney-Rivlin B [Pa].
     #[serde(rename = "B")]
     pub b: Option<f64>,
-    /// Volumetric energy of neo_hookean_isochoric; quadratic if left out.
+    /// One to three terms of ogden.
+    pub terms: Option<Vec<OgdenTermFormat>>,
+    /// Volumetric energy of neo_hookean_isochoric and ogden; quadratic if left out.
     pub volumetric: Option<VolumetricFormat>,
+}
+
+/// The term 2μ/α² (λ̄₁^α + λ̄₂^α + λ̄₃^α − 3) of ogden, as Miller and Chinzei (2002) write it.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OgdenTermFormat {
+    /// Its part of the shear modulus at rest [Pa], positive.
+    pub mu: f64,
+    /// [–], not 0; -4.7 for brain tissue.
+    pub alpha: f64,
 }
 
 choice! {
@@ -42,6 +54,8 @@ choice! {
         "neo_hookean_log_j" NeoHookeanLogJ,
         /// ψ = μ/2 (J^(−2/3) I₁ − 3) + U(J).
         "neo_hookean_isochoric" NeoHookeanIsochoric,
+        /// ψ = Σ 2μ/α² (λ̄₁^α + λ̄₂^α + λ̄₃^α − 3) + U(J), λ̄ = J^(−1/3) λ.
+        "ogden" Ogden,
         /// ψ = λ/2 (tr E)² + μ E:E.
         "st_venant_kirchhoff" StVenantKirchhoff,
         /// ψ = λ/2 (tr ε)² + μ ε:ε, small displacements only.
@@ -50,7 +64,7 @@ choice! {
 }
 
 choice! {
-    /// Volumetric energy U(J) of neo_hookean_isochoric.
+    /// Volumetric energy U(J) of neo_hookean_isochoric and ogden.
     VolumetricFormat for VolumetricTerm {
         /// U = K/2 (J−1)².
         "quadratic" Quadratic,

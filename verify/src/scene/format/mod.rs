@@ -11,7 +11,8 @@ mod time;
 
 pub use case::{CaseFormat, DimensionFormat};
 pub use conditions::{
-    AmplitudeFormat, DisplacementFormat, ObstacleFormat, PrescribeFormat, RotationFormat,
+    AmplitudeFormat, BeyondFormat, DataFormat, DisplacementFormat, FormulaFormat, ObstacleFormat,
+    PrescribeFormat, RotationFormat,
 };
 pub use geometry::{SelectorFormat, ShapeFormat, UnitFormat};
 pub use material::{LawFormat, MaterialFormat};

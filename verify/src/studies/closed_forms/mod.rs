@@ -276,6 +276,7 @@ fn column_problem(
         ],
         loads: Loads {
             body_forces: vec![BodyForce {
+                part: Selector::All,
                 acceleration: Vector3::new(-gravity, 0.0, 0.0).into(),
                 amplitude: Amplitude::Smooth { duration: 1.0 },
             }],

@@ -8,7 +8,7 @@ use crate::studies::closed_forms::results::{BOUND, Results};
 use anyhow::{Context, Result};
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
-use mtled::geometry::Shape;
+use mtled::geometry::{Selector, Shape};
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::{Amplitude, BackgroundGrid, BodyForce, Motion, Problem, StepControl};
@@ -102,6 +102,7 @@ pub fn swing(results: &mut Results) -> Result<()> {
     let mut problem = free_body(PLANE, shape, material, recipe);
     problem.conditions = vec![bonded_face(0, 0.0, 0.0, Amplitude::Constant)];
     problem.loads.body_forces = vec![BodyForce {
+        part: Selector::All,
         acceleration: Vector3::new(0.0, -1e-3, 0.0).into(),
         amplitude: Amplitude::Constant,
     }];

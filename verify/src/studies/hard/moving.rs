@@ -6,7 +6,7 @@ use crate::studies::hard::case::{Expected, HardCase, Limit, case};
 use crate::studies::workbench::Workbench;
 use anyhow::Result;
 use mtled::algebra::tensor::Vector3;
-use mtled::geometry::Shape;
+use mtled::geometry::{Selector, Shape};
 use mtled::problem::{
     Amplitude, BodyForce, Friction, Motion, Obstacle, ObstacleSide, Problem, StepControl,
 };
@@ -64,6 +64,7 @@ fn sudden(safety_factor: f64) -> Result<Problem> {
     let mut problem = cube(rubber()?, SIZE / 4.0);
     problem.conditions = vec![face(0.0, [Some(0.0); 3], Amplitude::Constant)];
     problem.loads.body_forces = vec![BodyForce {
+        part: Selector::All,
         acceleration: Vector3::new(5.0, 0.0, 0.0).into(),
         amplitude: Amplitude::Constant,
     }];

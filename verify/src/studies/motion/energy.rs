@@ -6,7 +6,7 @@ use crate::specimens::simple::{SIZE, block_shape, bonded_face, free_body, recipe
 use crate::studies::motion::vibration::{Log, Vibration, vibrate};
 use crate::studies::workbench::{Workbench, exact};
 use mtled::algebra::tensor::Vector3;
-use mtled::geometry::Shape;
+use mtled::geometry::{Selector, Shape};
 use mtled::motion::energy::Energies;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{
@@ -191,6 +191,7 @@ fn loaded(seed: u64, end: f64) -> anyhow::Result<Problem> {
         bonded_face(2, SIZE, -0.1 * SIZE, smooth),
     ];
     problem.loads.body_forces = vec![BodyForce {
+        part: Selector::All,
         acceleration: Vector3::new(9.81, 0.0, 0.0).into(),
         amplitude: Amplitude::Linear { duration: 0.5 * end },
     }];

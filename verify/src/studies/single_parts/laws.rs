@@ -6,8 +6,8 @@ use anyhow::Result;
 use mtled::algebra::random::Random;
 use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::material::{
-    ElasticConstants, Law, LinearElastic, MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ,
-    StVenantKirchhoff, VolumetricTerm,
+    ElasticConstants, Law, LinearElastic, MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ, Ogden,
+    OgdenTerm, OgdenTerms, StVenantKirchhoff, VolumetricTerm,
 };
 use mtled_checks::measure::larger;
 use mtled_checks::study::{Cell, Study, Table, number, text};
@@ -30,9 +30,18 @@ fn all_laws() -> Result<Vec<(&'static str, Law)>> {
         ("neo_hookean_log_j", Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants))),
         ("isochoric_quadratic", isochoric(VolumetricTerm::Quadratic)),
         ("isochoric_simo_taylor", isochoric(VolumetricTerm::SimoTaylor)),
+        ("ogden", ogden()?),
         ("st_venant_kirchhoff", Law::StVenantKirchhoff(StVenantKirchhoff::new(constants))),
         ("linear_elastic", Law::LinearElastic(LinearElastic::new(constants))),
     ])
+}
+
+/// Brain tissue of Miller, Chinzei 2002 with a second term.
+fn ogden() -> Result<Law> {
+    let terms = [(842.0, -4.7), (200.0, 3.0)].map(|(mu, alpha)| OgdenTerm { mu, alpha });
+    let terms = OgdenTerms::new(&terms)?;
+    let constants = ElasticConstants::from_shear_poisson(terms.shear_modulus(), 0.49)?;
+    Ok(Law::Ogden(Ogden::new(terms, constants.bulk_modulus, VolumetricTerm::Quadratic)?))
 }
 
 /// Largest errors of a law over its bulk modulus \[–\].

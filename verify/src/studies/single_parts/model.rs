@@ -102,7 +102,11 @@ pub fn thickness(bench: &Workbench, study: &mut Study) -> Result<()> {
     let part = Selector::Plane { point, normal, tolerance: 1e-9 };
     let name = "top".into();
     problem.loads.tractions.push(Traction { name, part, traction, amplitude: amplitude.clone() });
-    problem.loads.body_forces.push(BodyForce { acceleration: acceleration.into(), amplitude });
+    problem.loads.body_forces.push(BodyForce {
+        part: Selector::All,
+        acceleration: acceleration.into(),
+        amplitude,
+    });
     problem.motion = relaxation(400, 1e-8);
     let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
     let (model, state) = (&solved.prepared.model, &solved.state);

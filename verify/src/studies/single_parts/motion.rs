@@ -9,7 +9,7 @@ use crate::studies::workbench::{Workbench, exact};
 use anyhow::Result;
 use mtled::algebra::random::Random;
 use mtled::algebra::tensor::Vector3;
-use mtled::geometry::Shape;
+use mtled::geometry::{Selector, Shape};
 use mtled::model::Model;
 use mtled::model::contact::{ContactState, gap};
 use mtled::motion::internal_force::{Workspace, internal_force};
@@ -128,7 +128,11 @@ pub fn damping(bench: &Workbench, study: &mut Study) -> Result<()> {
     const STEPS: usize = 60;
     let mut problem = cube(bench)?;
     let (acceleration, amplitude) = (Vector3::new(0.0, 0.0, -9.81), Amplitude::Constant);
-    problem.loads.body_forces.push(BodyForce { acceleration: acceleration.into(), amplitude });
+    problem.loads.body_forces.push(BodyForce {
+        part: Selector::All,
+        acceleration: acceleration.into(),
+        amplitude,
+    });
     let damping = 1.0 / STEP;
     problem.motion = steps(STEPS, damping);
     let model = prepare(&problem)?.model;

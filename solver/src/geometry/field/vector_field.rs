@@ -1,7 +1,8 @@
-//! Vectors that depend on the reference position.
+//! A vector as a function of the reference position.
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
+use crate::geometry::field::scattered::Scattered;
 use std::fmt;
 use std::sync::Arc;
 
@@ -13,6 +14,8 @@ pub enum Field {
     Uniform(Vector3),
     /// A function of the reference position \[m\].
     Function(Arc<dyn Fn(&Vector3) -> Vector3 + Send + Sync>),
+    /// Through data at scattered points.
+    Scattered(Arc<Scattered>),
 }
 
 impl Field {
@@ -26,6 +29,7 @@ impl Field {
         match self {
             Field::Uniform(value) => *value,
             Field::Function(function) => function(X),
+            Field::Scattered(data) => data.at(X),
         }
     }
 }
@@ -41,6 +45,7 @@ impl fmt::Debug for Field {
         match self {
             Field::Uniform(value) => f.debug_tuple("Uniform").field(value).finish(),
             Field::Function(_) => f.write_str("Function"),
+            Field::Scattered(_) => f.write_str("Scattered"),
         }
     }
 }
