@@ -20,7 +20,7 @@ pub fn rigid_motions_left_to_contact(model: &Model, t: f64) -> usize {
 }
 
 /// Places and directions of what the conditions prescribe.
-fn prescribed(model: &Model, t: f64) -> Vec<(Vector3, Vector3)> {
+pub(crate) fn prescribed(model: &Model, t: f64) -> Vec<(Vector3, Vector3)> {
     let mut rows: Vec<(Vector3, Vector3)> = Vec::new();
     for set in model.constraints.active(t) {
         let along = Vector3::ith(set.component, 1.0);
@@ -32,16 +32,40 @@ fn prescribed(model: &Model, t: f64) -> Vec<(Vector3, Vector3)> {
 /// Dimension of the rigid motions without a component along any of the rows (place,
 /// direction).
 fn kernel(model: &Model, rows: &[(Vector3, Vector3)]) -> usize {
-    let motions = rigid_motions(model.components, model.extent);
+    rigid_motions_beside(model, rows, ROUND_OFF).len()
+}
+
+/// Square of a component along a row, in the mean, that is none \[–\].
+const ROUND_OFF: f64 = 1e-10;
+
+/// A basis of the rigid motions whose components along the rows (place \[m\], direction)
+/// are none: the mean of their squares is below `small`. Each has displacements of about 1
+/// over the extent, as a function of the place.
+pub(crate) fn rigid_motions_beside(
+    model: &Model,
+    rows: &[(Vector3, Vector3)],
+    small: f64,
+) -> Vec<impl Fn(&Vector3) -> Vector3> {
+    let motions = std::rc::Rc::new(rigid_motions(model.components, model.extent));
     let mut products = DMatrix::<f64>::zeros(motions.len(), motions.len());
+    let origin = model.positions[0];
     for (X, along) in rows {
-        let X = X - model.positions[0];
+        let X = X - origin;
         let values = motions.iter().map(|motion| motion(&X).dot(along));
         let values = DVector::from_iterator(motions.len(), values);
         products.ger(1.0, &values, &values, 1.0);
     }
-    let small = 1e-10 * (rows.len() as f64).max(1.0);
-    products.symmetric_eigenvalues().iter().filter(|&&value| value < small).count()
+    let small = small * (rows.len() as f64).max(1.0);
+    let eigen = products.symmetric_eigen();
+    let found = (0..motions.len()).filter(|&mode| eigen.eigenvalues[mode] < small);
+    let combined = found.map(|mode| {
+        let (motions, factors) = (motions.clone(), eigen.eigenvectors.column(mode).into_owned());
+        move |X: &Vector3| {
+            let terms = motions.iter().zip(&factors);
+            terms.map(|(motion, factor)| motion(&(X - origin)) * *factor).sum()
+        }
+    });
+    combined.collect()
 }
 
 type Motion = Box<dyn Fn(&Vector3) -> Vector3>;

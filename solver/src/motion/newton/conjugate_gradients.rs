@@ -14,6 +14,9 @@ use crate::motion::tangent::Tangent;
 const CHANGED: f64 = 0.1;
 /// The same for the shift, as a factor \[–\].
 const SHIFTED: f64 = 3.0;
+/// Products after which the diagonal alone takes over for good: on a few irregular clouds the
+/// transform to nodal values is nearly singular.
+const PATIENCE: usize = 400;
 
 /// Approximate solution of (K + shift D) Δu = r.
 pub(super) struct Correction {
@@ -120,8 +123,13 @@ impl Solver {
             }
             axpy(&mut change, square / curvature, &direction);
             axpy(&mut residual, -square / curvature, &product);
+            let restart = count + 1 == PATIENCE && self.preconditioner.take().is_some();
             descent = self.preconditioned(model, free, &mut residual);
             let before = std::mem::replace(&mut square, dot(&residual, &descent));
+            if restart {
+                direction.clone_from(&descent);
+                continue;
+            }
             for (p, z) in direction.iter_mut().zip(&descent) {
                 *p = z + square / before * *p;
             }

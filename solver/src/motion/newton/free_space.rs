@@ -40,7 +40,7 @@ struct Together {
     entries: Vec<(u32, f64)>,
     /// Rows of conditions.
     conditions: usize,
-    /// Of C M⁻¹ Cᵀ.
+    /// Of C M⁻¹ Cᵀ; stopped motions come last.
     cholesky: SparseCholesky,
     scratch: Scratch,
 }
@@ -51,7 +51,7 @@ impl Together {
         entries.iter().map(|(index, factor)| factor * v[*index as usize]).sum()
     }
 
-    /// v −= M⁻¹ Cᵀ (C M⁻¹ Cᵀ)⁻¹ gaps; returns the multipliers of the contacts.
+    /// v −= M⁻¹ Cᵀ (C M⁻¹ Cᵀ)⁻¹ gaps; returns the multipliers after those of conditions.
     fn take(&mut self, model: &Model, v: &mut [f64], mut gaps: Vec<f64>) -> Vec<f64> {
         self.cholesky.solve(&mut gaps, &mut self.scratch);
         for (ends, multiplier) in self.starts.windows(2).zip(&gaps) {
@@ -70,16 +70,16 @@ impl<'a> FreeSpace<'a> {
         FreeSpace { model, t, forces, contacts: Vec::new(), together: None }
     }
 
-    /// Closes these contacts.
-    pub fn close(&mut self, contacts: Vec<ContactRow>) {
+    /// Closes these contacts, and stops motions \[component of node\].
+    pub fn close(&mut self, contacts: Vec<ContactRow>, stopped: &[Vec<f64>]) {
         self.contacts = contacts;
         self.together = None;
         if !self.contacts.is_empty() {
-            self.together = self.assembled();
+            self.together = self.assembled(stopped);
         }
     }
 
-    fn assembled(&self) -> Option<Together> {
+    fn assembled(&self, stopped: &[Vec<f64>]) -> Option<Together> {
         let (model, d) = (self.model, self.model.components);
         let (mut starts, mut entries) = (vec![0], Vec::new());
         model.constraints.for_each_row(self.t, |component, nodes| {
@@ -94,6 +94,11 @@ impl<'a> FreeSpace<'a> {
                 let factor = |k: usize| ((first + k) as u32, rows.phi[entry] * along[k]);
                 entries.extend((0..d).filter(|&k| along[k] != 0.0).map(factor));
             }
+            starts.push(entries.len());
+        }
+        for motion in stopped {
+            let momentum = |(i, v): (usize, &f64)| (i as u32, model.inertia[i / d] * v);
+            entries.extend(motion.iter().enumerate().map(momentum));
             starts.push(entries.len());
         }
         let gram = gram_matrix(model, &starts, &entries)?;
@@ -119,7 +124,9 @@ impl<'a> FreeSpace<'a> {
     pub fn project_contacts(&mut self, v: &mut [f64]) -> Vec<f64> {
         let Some(together) = &mut self.together else { return Vec::new() };
         let gaps = (0..together.starts.len() - 1).map(|row| together.product(row, v)).collect();
-        together.take(self.model, v, gaps)
+        let mut multipliers = together.take(self.model, v, gaps);
+        multipliers.truncate(self.contacts.len());
+        multipliers
     }
 
     /// Adds to a change v of the displacement \[m\] what closes the contacts, and leaves
@@ -130,6 +137,7 @@ impl<'a> FreeSpace<'a> {
         gaps.extend((self.contacts.iter().enumerate()).map(|(index, contact)| {
             together.product(together.conditions + index, v) - contact.way
         }));
+        gaps.resize(together.starts.len() - 1, 0.0);
         together.take(self.model, v, gaps);
     }
 

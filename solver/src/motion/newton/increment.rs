@@ -2,6 +2,7 @@
 
 use super::active_contacts::ActiveContacts;
 use super::conjugate_gradients::{Correction, Solver as LinearSolver, System};
+use super::drift::drifts;
 use super::equilibrate::Path;
 use super::free_space::FreeSpace;
 use crate::algebra::packed::{dot, largest};
@@ -201,16 +202,26 @@ impl<'a> Solver<'a> {
         if model.contact.obstacles.is_empty() {
             return 0;
         }
-        self.free.close(self.contacts.rows(model, &now.u));
+        self.close(now);
         let forces = self.contact_forces(&now.imbalance);
         let normal = self.contacts.normal_forces(model, &now.u, &forces);
         let changes = self.contacts.update(model, before, &now.u, &normal);
         if changes > 0 {
-            self.free.close(self.contacts.rows(model, &now.u));
+            self.close(now);
         }
         now.imbalance.acceleration = self.accelerations(&now.imbalance);
         self.free.project(&mut now.imbalance.acceleration);
         changes
+    }
+
+    /// Closes the contacts, and stops rigid motions along them that nothing drives.
+    fn close(&mut self, now: &Equilibrium) {
+        let rows = self.contacts.rows(self.model, &now.u);
+        let stopped = match self.floating {
+            true => drifts(self.model, self.free.t, &now.u, &rows, &now.imbalance.force),
+            false => Vec::new(),
+        };
+        self.free.close(rows, &stopped);
     }
 
     /// What the closed contacts exert.

@@ -4,6 +4,7 @@ mod active_contacts;
 mod coarse_matrix;
 mod coarse_space;
 mod conjugate_gradients;
+mod drift;
 mod equilibrate;
 mod free_space;
 mod increment;

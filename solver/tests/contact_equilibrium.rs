@@ -1,0 +1,165 @@
+//! Contact in Newton's method.
+
+mod common;
+
+use common::*;
+use mtled::algebra::tensor::{Vector3, rotation};
+use mtled::discretisation::Discretisation;
+use mtled::geometry::Shape;
+use mtled::model::Model;
+use mtled::model::contact::gap;
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
+use mtled::motion::summary::Summary;
+use mtled::problem::*;
+
+struct Solved {
+    discretisation: Discretisation,
+    model: Model,
+    state: State,
+    summary: Summary,
+}
+
+fn solve(problem: &Problem) -> Solved {
+    let (discretisation, model) = build(problem);
+    let mut state = State::new(&model);
+    let summary = simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();
+    Solved { discretisation, model, state, summary }
+}
+
+fn newton() -> Motion {
+    Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-9 })
+}
+
+fn contact_force(state: &State) -> Vector3 {
+    state.contact.forces.iter().map(|contact| contact.force).sum()
+}
+
+/// Smallest gap of a boundary node, by the value of its displacement \[m\].
+fn smallest_gap(solved: &Solved) -> f64 {
+    let Solved { discretisation, model, state, .. } = solved;
+    let rows = discretisation.rows_at(&model.positions).unwrap();
+    let place = |&node: &u32| {
+        let node = node as usize;
+        model.positions[node] + rows.interpolate(node, &state.displacement, model.components)
+    };
+    let gaps =
+        model.contact.nodes.iter().map(|node| gap(&model.contact.obstacles[0], &place(node)));
+    gaps.fold(f64::INFINITY, f64::min)
+}
+
+fn weight(model: &Model) -> f64 {
+    9.81 * model.lumped_mass.iter().sum::<f64>()
+}
+
+/// A cube a tenth of a millimetre above a floor, which nothing but the floor holds.
+fn resting(poisson_ratio: f64) -> Problem {
+    let mut problem = jittered(cube(6), 0.2, 1);
+    problem = with_law(problem, neo_hookean(30000.0, poisson_ratio));
+    problem.recipe.gradients = Gradients::Consistent { tolerance: 1e-6 };
+    gravity(&mut problem, Vector3::new(0.0, 0.0, -9.81));
+    problem.obstacles.push(floor(-1e-4, Vector3::z(), Friction::Frictionless));
+    problem.motion = newton();
+    problem
+}
+
+#[test]
+fn a_block_that_falls_on_a_floor_settles_under_its_weight_as_a_bar_does() {
+    let solved = solve(&resting(0.0));
+    let top = solved.model.positions.iter().position(|X| X.z == EDGE).unwrap();
+    let material = solved.model.lumped_mass.iter().sum::<f64>() / EDGE.powi(3);
+    let exact = -1e-4 - material * 9.81 * EDGE * EDGE / (2.0 * 30000.0);
+    let moved = solved.state.displacement_of(top, 3).z;
+    assert!((moved / exact - 1.0).abs() < 0.02, "{moved:e} m, {exact:e} m");
+}
+
+#[test]
+fn what_obstacles_exert_balances_the_loads() {
+    let solved = solve(&resting(0.3));
+    let force = contact_force(&solved.state) / weight(&solved.model);
+    assert!((force - Vector3::z()).norm() < 1e-7, "{force}");
+}
+
+/// A ball in a larger hollow one, which it touches nowhere at first.
+fn ball_in_a_ball(friction: Friction) -> Problem {
+    let mut problem = with_law(cube(10), neo_hookean(3000.0, 0.45));
+    problem.body = Shape::Sphere { centre: Vector3::zeros(), radius: 0.5 * EDGE };
+    problem.recipe.gradients = Gradients::Consistent { tolerance: 1e-6 };
+    gravity(&mut problem, Vector3::new(0.0, 0.0, -9.81));
+    let hollow = Shape::Sphere { centre: Vector3::zeros(), radius: 0.53 * EDGE };
+    problem.obstacles.push(obstacle(hollow, ObstacleSide::Inside, friction));
+    problem.motion = newton();
+    problem
+}
+
+#[test]
+fn a_ball_comes_to_rest_at_the_bottom_of_a_hollow_one() {
+    let solved = solve(&ball_in_a_ball(Friction::Frictionless));
+    let centre = mean_by_mass(&solved.model, &solved.state.displacement);
+    assert!(centre.xy().norm() < 0.01 * centre.z.abs(), "{centre}");
+    assert!(centre.z < -0.03 * EDGE, "{centre}");
+    let force = contact_force(&solved.state) / weight(&solved.model);
+    // What it takes to stop the ball from turning is in it.
+    assert!((force - Vector3::z()).norm() < 1e-4, "{force}");
+}
+
+#[test]
+fn no_node_enters_an_obstacle_and_no_obstacle_pulls() {
+    let solved = solve(&ball_in_a_ball(Friction::Frictionless));
+    let smallest = smallest_gap(&solved);
+    assert!(smallest > -1e-6 * solved.model.contact.skin, "{smallest:e} m");
+    let forces = &solved.state.contact.forces;
+    let pulling = forces.iter().filter(|contact| {
+        let node = contact.node as usize;
+        let inward = -(solved.model.positions[node] + solved.state.displacement_of(node, 3));
+        contact.force.dot(&inward) < -1e-9 * weight(&solved.model)
+    });
+    assert!(forces.len() > 5 && pulling.count() == 0);
+}
+
+#[test]
+fn newton_and_relaxation_agree_on_a_body_in_contact() {
+    let mut problem = resting(0.3);
+    let by_newton = solve(&problem);
+    problem.motion = Motion::Static(Relaxation { tolerance: 1e-5, ..Relaxation::default() });
+    let relaxed = solve(&problem);
+    let centre = |solved: &Solved| mean_by_mass(&solved.model, &solved.state.displacement).z;
+    let (a, b) = (centre(&by_newton), centre(&relaxed));
+    assert!((a / b - 1.0).abs() < 0.01, "{a:e} m, {b:e} m");
+}
+
+#[test]
+fn a_block_sticks_on_a_slope_without_slip() {
+    let mut problem = resting(0.3);
+    let normal = rotation(&Vector3::y(), 0.3) * Vector3::z();
+    problem.loads = Loads::default();
+    gravity(&mut problem, -9.81 * normal + 2.0 * Vector3::y());
+    problem.obstacles = vec![floor(-1e-6, Vector3::z(), Friction::NoSlip)];
+    let solved = solve(&problem);
+    let slid = mean_by_mass(&solved.model, &solved.state.displacement).xy().norm();
+    assert!(slid < 0.05 * EDGE, "{slid:e} m");
+    let load: Vector3 = solved.model.loads.iter().fold(Vector3::zeros(), |sum, load| {
+        sum + load.force.chunks(3).map(Vector3::from_column_slice).sum::<Vector3>()
+    });
+    let force = contact_force(&solved.state);
+    assert!((force + load).norm() < 1e-6 * load.norm(), "{force} {load}");
+}
+
+#[test]
+fn corrections_in_contact_are_few() {
+    let counts = solve(&ball_in_a_ball(Friction::Frictionless)).summary.newton.unwrap();
+    assert!(counts.iterations <= 40 && counts.increments == 1, "{counts:?}");
+}
+
+#[test]
+fn a_body_that_nothing_catches_ends_in_an_error() {
+    let mut problem = resting(0.3);
+    problem.loads = Loads::default();
+    gravity(&mut problem, Vector3::new(0.0, 0.0, 9.81));
+    let (_, model) = build(&problem);
+    let mut state = State::new(&model);
+    let ended = simulate(&model, &problem.motion, &mut state, &mut Unobserved);
+    assert!(ended.is_err());
+    assert!(state.displacement.iter().all(|u| u.is_finite()));
+}
