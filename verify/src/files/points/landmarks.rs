@@ -110,7 +110,7 @@ mod tests {
             found: Some(Vector3::new(0.002, 0.002, 0.003)),
         };
         let of_header = "name,x_mm,y_mm,z_mm,x2_mm,y2_mm,z2_mm\ntip,1,2,3,2,2,3\n";
-        assert_eq!(read(of_header, None).unwrap(), [expected.clone()]);
+        assert_eq!(read(of_header, None).unwrap(), vec![expected.clone()]);
         let plain = "# found twice\nname,x,y,z,x2,y2,z2\ntip,1,2,3,2,2,3\n";
         assert_eq!(read(plain, Some(LengthUnit::Millimetre)).unwrap(), [expected]);
         let message = read(plain, None).unwrap_err().to_string();
