@@ -49,7 +49,7 @@ pub struct WarpArgs {
     pub points_out: Option<PathBuf>,
     /// Distance outside of the body over which the displacement decays to zero; 0 ends it at the
     /// boundary [default: three times the largest displacement, so that nothing folds].
-    #[arg(long, value_name = "MM", value_parser = not_negative)]
+    #[arg(long, value_name = "MM", value_parser = not_negative, allow_hyphen_values = true)]
     pub decay: Option<f64>,
     /// The case file that was solved, where it has been moved since.
     #[arg(long, value_name = "FILE")]

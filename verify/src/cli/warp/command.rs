@@ -35,12 +35,14 @@ pub fn warp(arguments: &WarpArgs, common: &Common) -> Result<u8> {
     let landmarks = landmarks.transpose()?;
     let decay = arguments.decay.map(|millimetres| 1e-3 * millimetres);
     let field = DisplacementField::new(&stored, &case.problem, decay)?;
+    if let Some((path, image)) = &image {
+        refuse_other_space(path, image, &field, common)?;
+    }
     outputs.ensure_writable()?;
 
     let mut summary = Summary::of(&field);
     let mut files = Vec::new();
-    if let Some((path, image)) = &image {
-        refuse_other_space(path, image, &field, common)?;
+    if let Some((_, image)) = &image {
         files.extend(warped_image(arguments, &outputs, image, &field, &mut summary)?);
     }
     if let (Some(landmarks), Some(path)) = (&landmarks, &outputs.landmarks) {
