@@ -14,6 +14,7 @@ pub mod reference;
 
 pub mod bundled;
 pub mod run;
+pub mod warp;
 
 pub mod accuracy;
 pub mod specimens;

@@ -18,6 +18,7 @@ mod solve;
 mod streams;
 mod study;
 mod verify;
+mod warp;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use common::{COULD_NOT_RUN, Common, Format, STOPPED};
@@ -45,6 +46,7 @@ const EXAMPLES: &str = "Examples:
   mtled verify --baseline baseline.json         has anything got worse?
   mtled report last_week reports/verify         compare two runs
   mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON files
+  mtled warp reports/brain_slice --image t1.nii deform an image by the result of a run
   mtled inspect my_case.toml                    are its nodes and supports suitable?
   mtled budget my_case.toml                     how large is the error, why, and at what cost?
   mtled tune my_case.toml --target-error 1%     the cheapest recipe with this accuracy
@@ -58,6 +60,8 @@ const EXAMPLES: &str = "Examples:
 enum Command {
     /// Solve a case file.
     Solve(solve::SolveArgs),
+    /// Deform images and move landmarks by the displacement field of a solved case.
+    Warp(warp::WarpArgs),
     /// Examine the nodes, supports and quadrature of a case without running it: points per node,
     /// condition numbers, masses, zero-energy modes, time step.
     Inspect(inspect::InspectArgs),
@@ -153,6 +157,7 @@ fn requested_format() -> Format {
 fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
     match &cli.command {
         Command::Solve(arguments) => solve::solve(arguments, &cli.common),
+        Command::Warp(arguments) => warp::warp(arguments, &cli.common),
         Command::Inspect(arguments) => inspect::inspect(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
         Command::Budget(arguments) => budget::budget(arguments, &cli.common),

@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 pub struct SolveArgs {
     /// Case file (TOML), or name of a bundled case.
     case: PathBuf,
-    /// Folder for VTU frames, history.csv and result.json, which replace those of an earlier run
-    /// [default: reports/<case>].
+    /// Folder for VTU frames, history.csv, displacement_field.json (see `mtled warp`) and
+    /// result.json, which replace those of an earlier run [default: reports/<case>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Leave out the error bars, which take coarser clouds and up to a third of the time of the

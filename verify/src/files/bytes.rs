@@ -149,4 +149,25 @@ impl Scalar {
             Scalar::F64 => f64::from_bits(whole),
         }
     }
+
+    /// Appends a number; one that the type cannot hold becomes the nearest that it can.
+    pub fn write(self, value: f64, order: ByteOrder, out: &mut Vec<u8>) {
+        let word = match self {
+            Scalar::U8 => u64::from(value.round() as u8),
+            Scalar::I8 => value.round() as i8 as u64,
+            Scalar::U16 => u64::from(value.round() as u16),
+            Scalar::I16 => value.round() as i16 as u64,
+            Scalar::U32 => u64::from(value.round() as u32),
+            Scalar::I32 => value.round() as i32 as u64,
+            Scalar::U64 => value.round() as u64,
+            Scalar::I64 => value.round() as i64 as u64,
+            Scalar::F32 => u64::from((value as f32).to_bits()),
+            Scalar::F64 => value.to_bits(),
+        };
+        let bytes = word.to_le_bytes();
+        match order {
+            ByteOrder::Little => out.extend(&bytes[..self.size()]),
+            ByteOrder::Big => out.extend(bytes[..self.size()].iter().rev()),
+        }
+    }
 }

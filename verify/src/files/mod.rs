@@ -1,8 +1,10 @@
-//! Readers of files of other programs: label maps (NRRD, NIfTI), surfaces (STL), node
-//! positions (CSV, NPY, VTU, VTK). All lengths are returned in metres.
+//! Files of other programs: label maps (NRRD, NIfTI), surfaces (STL), node positions (CSV, NPY,
+//! VTU, VTK) and landmarks (CSV) are read, images (NRRD, NIfTI) read and written. All lengths
+//! inside are in metres.
 
 mod bytes;
 mod error;
+pub mod image;
 pub mod nifti;
 pub mod nrrd;
 mod nrrd_header;

@@ -16,23 +16,40 @@ const HEADER: usize = 348;
 
 /// Reads a label map; NIfTI is RAS already. `unit` overrides the file's.
 pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMap, FileError> {
+    let voxels = read_voxels(path)?;
+    voxels.labels(unit).map_err(|mistake| mistake.of(path))
+}
+
+/// An image as it stands in its file.
+pub(super) struct Voxels {
+    pub header: NiftiHeader,
+    /// The bytes that the header was read from.
+    pub header_bytes: Vec<u8>,
+    pub size: [usize; 3],
+    pub scalar: Scalar,
+    pub order: ByteOrder,
+    /// Slope and intercept of the stored values.
+    pub scaling: (f64, f64),
+    /// Stored values, first index fastest.
+    pub stored: Vec<u8>,
+}
+
+/// Reads an image of one value per voxel, compressed or not.
+pub(super) fn read_voxels(path: &Path) -> Result<Voxels, FileError> {
     let (mut file, _) = open(path)?;
     let start = file.fill_buf().map_err(|error| Mistake::Unreadable(error).of(path))?;
     match start.starts_with(&[0x1f, 0x8b]) {
-        true => parse(MultiGzDecoder::new(file), unit),
-        false => parse(file, unit),
+        true => parse_voxels(MultiGzDecoder::new(file)),
+        false => parse_voxels(file),
     }
     .map_err(|mistake| mistake.of(path))
 }
 
-pub(super) fn parse(mut stream: impl Read, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> {
-    let header = header(&at_most(&mut stream, HEADER as u64)?)?;
+pub(super) fn parse_voxels(mut stream: impl Read) -> Result<Voxels, Mistake> {
+    let header_bytes = at_most(&mut stream, HEADER as u64)?;
+    let header = header(&header_bytes)?;
     let size = size(&header)?;
-    let (origin, directions) = frame(&header)?;
-    let metres = match unit {
-        Some(unit) => unit.in_metres(),
-        None => stated_unit(&header)?.in_metres(),
-    };
+    frame(&header)?;
     let order = match header.endianness {
         Endianness::Little => ByteOrder::Little,
         Endianness::Big => ByteOrder::Big,
@@ -40,10 +57,26 @@ pub(super) fn parse(mut stream: impl Read, unit: Option<LengthUnit>) -> Result<L
     let (scalar, count) = (scalar(&header)?, voxels::voxel_count(&size)?);
     let scaling = scaling(&header)?;
     skip(&mut stream, offset(&header)?.saturating_sub(HEADER as u64))?;
-    let expected = count * scalar.size();
-    let (data, _) = voxel_bytes(stream, expected)?;
-    let labels = voxels::labels(&data, scalar, order, scaling)?;
-    voxels::label_map(size, origin * metres, directions * metres, labels)
+    let (stored, _) = voxel_bytes(stream, count * scalar.size())?;
+    Ok(Voxels { header, header_bytes, size, scalar, order, scaling, stored })
+}
+
+impl Voxels {
+    /// Centre of the first voxel and steps along the indices \[m\]; `unit` overrides the file's.
+    pub fn frame(&self, unit: Option<LengthUnit>) -> Result<(Vector3, Matrix3), Mistake> {
+        let (origin, directions) = frame(&self.header)?;
+        let metres = match unit {
+            Some(unit) => unit.in_metres(),
+            None => stated_unit(&self.header)?.in_metres(),
+        };
+        Ok((origin * metres, directions * metres))
+    }
+
+    fn labels(&self, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> {
+        let (origin, directions) = self.frame(unit)?;
+        let labels = voxels::labels(&self.stored, self.scalar, self.order, self.scaling)?;
+        voxels::label_map(self.size, origin, directions, labels)
+    }
 }
 
 fn header(bytes: &[u8]) -> Result<NiftiHeader, Mistake> {

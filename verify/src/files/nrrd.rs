@@ -8,42 +8,63 @@ use super::unit::LengthUnit;
 use super::voxels::{self, LabelMapFile};
 use flate2::bufread::MultiGzDecoder;
 use mtled::geometry::LabelMap;
-use std::io::{BufRead, Read};
-use std::path::Path;
+use std::io::{BufRead, Cursor, Read};
+use std::path::{Path, PathBuf};
 
 /// Headers are shorter than this \[byte\].
 const LONGEST_HEADER: u64 = 1 << 20;
 
-/// Reads a label map into RAS metres; `unit` overrides the file's.
-pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileError> {
+/// An NRRD file whose header has been read.
+pub(super) struct Opened {
+    pub header: Header,
+    /// The header as it stands in the file, its empty line included.
+    pub text: Vec<u8>,
+    /// What follows it, or the detached data file.
+    pub data: Box<dyn BufRead>,
+    /// Length of the data with what may be skipped \[byte\].
+    pub length: u64,
+    /// The file that was named, then a detached data file.
+    pub files: Vec<PathBuf>,
+}
+
+/// Reads the header of a file and opens its data.
+pub(super) fn open_image(path: &Path) -> Result<Opened, FileError> {
     let (mut file, length) = open(path)?;
-    let start = at_most(&mut file, LONGEST_HEADER).map_err(|mistake| mistake.of(path))?;
+    let mut start = at_most(&mut file, LONGEST_HEADER).map_err(|mistake| mistake.of(path))?;
     let header = Header::parse(&start).map_err(|mistake| mistake.of(path))?;
-    let data_length = length.saturating_sub(header.length as u64);
-    if header.length as u64 == LONGEST_HEADER && data_length > 0 {
+    let length = length.saturating_sub(header.length as u64);
+    if header.length as u64 == LONGEST_HEADER && length > 0 {
         return Err(Mistake::LongHeader { longest: LONGEST_HEADER }.of(path));
     }
+    let behind = start.split_off(header.length);
     let mut files = vec![path.to_path_buf()];
-    let map = match header.get("datafile") {
-        None => map(&header, (&start[header.length..]).chain(file), data_length, unit),
+    let (data, length): (Box<dyn BufRead>, u64) = match header.get("datafile") {
+        None => (Box::new(Cursor::new(behind).chain(file)), length),
         Some(name) if name.starts_with("LIST") || name.contains('%') => {
             let expected = "the name of one data file";
             return Err(Mistake::bad_field("data file", name, expected).of(path));
         }
         Some(name) => {
             let data = path.parent().unwrap_or(Path::new(".")).join(name);
-            files.push(data.clone());
-            let (data, length) = open(&data)?;
-            map(&header, data, length, unit)
+            let (file, length) = open(&data)?;
+            files.push(data);
+            (Box::new(file), length)
         }
     };
-    Ok(LabelMapFile { map: map.map_err(|mistake| mistake.of(path))?, files })
+    Ok(Opened { header, text: start, data, length, files })
+}
+
+/// Reads a label map into RAS metres; `unit` overrides the file's.
+pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileError> {
+    let Opened { header, data, length, files, .. } = open_image(path)?;
+    let map = map(&header, data, length, unit).map_err(|mistake| mistake.of(path))?;
+    Ok(LabelMapFile { map, files })
 }
 
 /// The image whose voxels are in `length` bytes of data.
 fn map(
     header: &Header,
-    mut data: impl BufRead,
+    data: impl BufRead,
     length: u64,
     unit: Option<LengthUnit>,
 ) -> Result<LabelMap, Mistake> {
@@ -55,6 +76,18 @@ fn map(
         None => header.unit()?.in_metres(),
     };
     let count = voxels::voxel_count(&size)?;
+    let labels = match encoding {
+        Encoding::Text => text_labels(behind_lines(header, data)?.0, count, scalar)?,
+        Encoding::Raw | Encoding::Gzip => {
+            let bytes = stored(header, data, length, count * scalar.size())?;
+            voxels::labels(&bytes, scalar, order, (1.0, 0.0))?
+        }
+    };
+    voxels::label_map(size, origin * metres, directions * metres, labels)
+}
+
+/// The data behind the lines that are to be skipped, and how many bytes these have.
+fn behind_lines<R: BufRead>(header: &Header, mut data: R) -> Result<(R, u64), Mistake> {
     let lines = header.skip("lineskip", "line skip")?.unwrap_or(0);
     let mut before = 0;
     for _ in 0..lines {
@@ -63,10 +96,24 @@ fn map(
             length => before += length as u64,
         }
     }
-    let expected = count * scalar.size();
+    Ok((data, before))
+}
+
+/// The `expected` bytes of all voxels from `length` bytes of data, which are raw or gzip.
+pub(super) fn stored(
+    header: &Header,
+    data: impl BufRead,
+    length: u64,
+    expected: usize,
+) -> Result<Vec<u8>, Mistake> {
+    let (mut data, before) = behind_lines(header, data)?;
     let bytes_before = header.skip("byteskip", "byte skip")?;
-    let labels = match encoding {
-        Encoding::Text => text_labels(data, count, scalar)?,
+    match header.encoding()? {
+        Encoding::Gzip => {
+            let mut data = MultiGzDecoder::new(data);
+            skip(&mut data, bytes_before.unwrap_or(0))?;
+            exactly(data, expected)
+        }
         Encoding::Raw => {
             let left = length.saturating_sub(before);
             // A skip of −1 means that the voxels are the last bytes.
@@ -76,15 +123,12 @@ fn map(
                 return Err(Mistake::Truncated { expected, found: found as usize });
             }
             skip(&mut data, skipped)?;
-            voxels::labels(&exactly(data, expected)?, scalar, order, (1.0, 0.0))?
+            exactly(data, expected)
         }
-        Encoding::Gzip => {
-            let mut data = MultiGzDecoder::new(data);
-            skip(&mut data, bytes_before.unwrap_or(0))?;
-            voxels::labels(&exactly(data, expected)?, scalar, order, (1.0, 0.0))?
+        Encoding::Text => {
+            Err(Mistake::bad_field("encoding", "ascii", "raw or gzip; save it in one of these"))
         }
-    };
-    voxels::label_map(size, origin * metres, directions * metres, labels)
+    }
 }
 
 /// All of the data, which must be as many as expected; a line end may follow.

@@ -10,6 +10,7 @@ mod probes;
 mod record;
 mod result;
 mod solve;
+mod stored_field;
 pub mod vtu;
 mod work;
 
@@ -25,4 +26,5 @@ pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Recorder, Recording, Sample};
 pub use result::{result_json, summary_text};
 pub use solve::{Integrated, Solved, integrate, integrate_prepared, solve_case};
+pub use stored_field::{FIELD_FILE, FieldError, SolvedCase, StoredField};
 pub use work::Work;

@@ -1,4 +1,4 @@
-//! Files of a run: VTU frames with a PVD, histories as CSV, `result.json`.
+//! Files of a run: VTU frames with a PVD, histories as CSV, the displacement field, `result.json`.
 #![allow(non_snake_case)]
 
 use super::error_bar::{Estimated, Indicator};
@@ -6,6 +6,7 @@ use super::prepare::Prepared;
 use super::record::{Frame, Recording};
 use super::result::{failed_json, result_json};
 use super::solve::Solved;
+use super::stored_field::{FIELD_FILE, StoredField};
 use super::vtu::{Order, PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::scene::Case;
 use anyhow::{Context, Result};
@@ -29,6 +30,8 @@ pub fn write_outputs(
 ) -> Result<String> {
     let indicator = bars.and_then(|bars| bars.as_ref().ok()?.indicator.as_ref());
     write_recorded(case, &solved.prepared, record, indicator, dir)?;
+    let (u, stopped) = (&solved.state.displacement, solved.summary.stopped);
+    StoredField::new(case, &solved.prepared, u, stopped).write(dir)?;
     write_result(&result_json(case, solved, record, bars), dir)
 }
 
@@ -68,7 +71,7 @@ fn write_recorded(
 
 /// Removes `result.json` and the collections of frames, then the frames and the histories.
 fn remove_earlier_run(dir: &Path) -> Result<()> {
-    let mut others = vec![dir.join("history.csv")];
+    let mut others = vec![dir.join("history.csv"), dir.join(FIELD_FILE)];
     let mut indices = vec![dir.join("result.json")];
     let unreadable = || format!("cannot read the folder {}", dir.display());
     if dir.exists() {

@@ -109,6 +109,11 @@ impl Case {
         self.document.locate(key)
     }
 
+    /// The name of the file as it was given; of a bundled case, its name with `.toml`.
+    pub fn file(&self) -> &str {
+        self.document.file()
+    }
+
     /// The file as it was read.
     pub fn text(&self) -> &str {
         self.document.text()

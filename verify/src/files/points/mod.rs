@@ -3,6 +3,7 @@
 
 mod csv;
 mod displacements;
+mod landmarks;
 mod legacy_vtk;
 mod npy;
 mod rows;
@@ -14,6 +15,7 @@ use mtled::algebra::tensor::Vector3;
 use std::path::Path;
 
 pub use displacements::read_displacements;
+pub use landmarks::{Landmark, read_landmarks};
 
 /// Reads node positions, with the format given by the extension of the name. Files of two
 /// columns get z = 0.

@@ -1,0 +1,119 @@
+//! `mtled warp` from its arguments to its files.
+
+use super::arguments::WarpArgs;
+use super::outputs::{Outputs, write_all};
+use super::summary::Summary;
+use crate::cli::common::Common;
+use crate::cli::load::load;
+use crate::files::LengthUnit;
+use crate::files::image::{Image, Interpolation, field_bytes, image_bytes, read_image};
+use crate::files::points::read_landmarks;
+use crate::run::StoredField;
+use crate::scene::Case;
+use crate::warp::{
+    DisplacementField, WarpError, deform, forward_field, move_landmarks, nodes_inside, to_csv,
+};
+use anyhow::{Context, Result};
+use std::path::{Path, PathBuf};
+
+pub fn warp(arguments: &WarpArgs, common: &Common) -> Result<u8> {
+    let outputs = Outputs::of(arguments)?;
+    let stored = StoredField::read(&arguments.result)?;
+    let case = solved_case(arguments, &stored)?;
+    stored.check(&arguments.result, &case)?;
+    if stored.stopped {
+        common.warn("the run was stopped before its end: this is the deformation up to then");
+    }
+    let image = arguments.image.as_deref().map(|path| {
+        read_image(path, arguments.image_unit.map(LengthUnit::from)).map(|image| (path, image))
+    });
+    let image = image.transpose()?;
+    let landmarks = arguments
+        .points
+        .as_deref()
+        .map(|path| read_landmarks(path, arguments.unit.map(LengthUnit::from)));
+    let landmarks = landmarks.transpose()?;
+    let decay = arguments.decay.map(|millimetres| 1e-3 * millimetres);
+    let field = DisplacementField::new(&stored, &case.problem, decay)?;
+    if let Some((path, image)) = &image {
+        refuse_other_space(path, image, &field, common)?;
+    }
+    outputs.ensure_writable()?;
+
+    let mut summary = Summary::of(&field);
+    let mut files = Vec::new();
+    if let Some((_, image)) = &image {
+        files.extend(warped_image(arguments, &outputs, image, &field, &mut summary)?);
+    }
+    if let (Some(landmarks), Some(path)) = (&landmarks, &outputs.landmarks) {
+        summary.landmarks = move_landmarks(&field, landmarks);
+        files.push((path.clone(), to_csv(&summary.landmarks)?.into_bytes()));
+    }
+    write_all(&files)?;
+    summary.files = files.into_iter().map(|(path, _)| path).collect();
+    summary.warn(common);
+    common.print_summary(&|| summary.json(), &|| summary.text())?;
+    Ok(0)
+}
+
+/// The case that was solved.
+fn solved_case(arguments: &WarpArgs, stored: &StoredField) -> Result<Case> {
+    match &arguments.case {
+        Some(file) => load(file),
+        None => load(&stored.case.file).with_context(|| {
+            format!(
+                "{} was solved; where it has been moved, name it with --case",
+                stored.case.file.display()
+            )
+        }),
+    }
+}
+
+fn refuse_other_space(
+    path: &Path,
+    image: &Image,
+    field: &DisplacementField,
+    common: &Common,
+) -> Result<(), WarpError> {
+    let (inside, all) = (nodes_inside(field, &image.grid), field.nodes().len());
+    if inside == 0 {
+        return Err(WarpError::OtherSpace {
+            path: path.to_path_buf(),
+            image: image.grid.bounds(),
+            body: field.node_bounds(),
+        });
+    }
+    if inside < all {
+        let outside = all - inside;
+        common.warn_about(
+            path,
+            format!("{outside} of {all} nodes of the body lie outside of this image"),
+        );
+    }
+    Ok(())
+}
+
+/// The deformed image and the fields that are asked for, as bytes of files.
+fn warped_image(
+    arguments: &WarpArgs,
+    outputs: &Outputs,
+    image: &Image,
+    field: &DisplacementField,
+    summary: &mut Summary,
+) -> Result<Vec<(PathBuf, Vec<u8>)>> {
+    let how = if arguments.labels { Interpolation::Nearest } else { Interpolation::Linear };
+    let deformed = deform(field, image, how);
+    let mut files = Vec::new();
+    if let Some((path, format)) = &outputs.image {
+        files.push((path.clone(), image_bytes(image, &deformed.voxels, *format, path)?));
+    }
+    if let Some((path, format)) = &outputs.field {
+        let vectors = forward_field(field, &image.grid);
+        files.push((path.clone(), field_bytes(&image.grid, &vectors, *format, path)?));
+    }
+    if let Some((path, format)) = &outputs.inverse_field {
+        files.push((path.clone(), field_bytes(&image.grid, &deformed.sources, *format, path)?));
+    }
+    summary.deformed = Some(deformed.into());
+    Ok(files)
+}

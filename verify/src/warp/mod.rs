@@ -1,0 +1,13 @@
+//! Images and landmarks moved by the displacement field of a run.
+
+mod deform;
+mod error;
+mod field;
+mod inverse;
+mod landmarks;
+
+pub use deform::{Deformed, deform, forward_field, nodes_inside};
+pub use error::WarpError;
+pub use field::DisplacementField;
+pub use inverse::{MOST_ITERATIONS, Source, TOLERANCE, source_of};
+pub use landmarks::{MovedLandmark, move_landmarks, to_csv};
