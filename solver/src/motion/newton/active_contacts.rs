@@ -33,7 +33,7 @@ impl Contact {
     }
 }
 
-/// The closed contacts (the active set of Hüeber, Wohlmuth 2005).
+/// The closed contacts (method book, eq. 21.9: the active set of Hüeber, Wohlmuth 2005).
 #[derive(Debug, Clone, Default)]
 pub(super) struct ActiveContacts {
     contacts: Vec<Contact>,
@@ -129,7 +129,8 @@ impl ActiveContacts {
     }
 
     /// How the normals turn as the nodes of frictionless contacts slide under forces \[N\]:
-    /// node and stiffness −λ ∂n/∂x \[N/m\], on request only what of it resists.
+    /// node and stiffness −λ ∂n/∂x \[N/m\], on request only what of it resists
+    /// (method book, eq. 21.10).
     pub fn sliding_stiffness(
         &self,
         model: &Model,

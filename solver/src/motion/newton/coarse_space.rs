@@ -20,7 +20,7 @@ const FLOOR: f64 = 1e-9;
 const TAIL: f64 = 0.5;
 
 /// P A₀⁻¹ Pᵀ with quadratic splines on a coarse lattice, P their values at the nodes and
-/// A₀ their stiffness at rest (method book, eq. 20.10). Held displacements are stiff
+/// A₀ their stiffness at rest (method book, eq. 21.7). Held displacements are stiff
 /// springs of A₀, so that the functions end there.
 pub(super) struct CoarseSpace {
     /// P and Pᵀ.

@@ -16,7 +16,8 @@ const DRIVEN: f64 = 1e-3;
 
 /// Rigid motions \[component of node\] that neither the conditions nor the closed contacts
 /// hinder and that the unbalanced forces \[N\] do not drive, such as a ball that turns in a
-/// smooth hollow one. The loads say nothing about them; Newton's method stops them.
+/// smooth hollow one. The loads say nothing about them; Newton's method stops them
+/// (method book, eq. 21.12).
 pub(super) fn drifts(
     model: &Model,
     t: f64,

@@ -32,7 +32,7 @@ pub(super) struct FreeSpace<'a> {
 }
 
 /// Conditions and contacts as one system C u = ū: the displacement field takes the
-/// prescribed values, those of contacts along their normals (method book, eq. 20.11).
+/// prescribed values, those of contacts along their normals (method book, eq. 21.8).
 struct Together {
     /// Row i of C is `starts[i]..starts[i + 1]`; the conditions come first.
     starts: Vec<usize>,

@@ -340,7 +340,8 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Factor of the shift after a correction, by the part of the contacts that changed \[–\].
+/// Factor of the shift after a correction, by the part of the contacts that changed \[–\]
+/// (method book, eq. 21.11).
 fn shift_factor(changed: f64) -> f64 {
     match changed {
         changed if changed > 0.2 => 4.0,

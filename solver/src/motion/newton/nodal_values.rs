@@ -11,7 +11,7 @@ use rayon::prelude::*;
 const REGULARISATION: f64 = 0.1;
 
 /// T = S (2 I − Φ S) ≈ Φ⁻¹ with Φ_ab = φ_b(X_a) and a sparse S that inverts Φ within the
-/// support of each node (method book, eq. 20.9). Short waves of the nodal parameters, which
+/// support of each node (method book, eq. 21.6). Short waves of the nodal parameters, which
 /// the shape functions smooth away, are short waves of the values again.
 pub(super) struct NodalValues {
     phi: [Sparse; 2],

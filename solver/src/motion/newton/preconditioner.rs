@@ -8,7 +8,7 @@ use crate::model::Model;
 
 /// B = T (D⁻¹ + P A₀⁻¹ Pᵀ) Tᵀ: from forces on nodal parameters to those on nodal values,
 /// there the inverse of the diagonal and of the stiffness of smooth displacements, and
-/// back (method book, eq. 20.8).
+/// back (method book, eq. 21.5).
 pub(super) struct Preconditioner {
     values: NodalValues,
     coarse: CoarseSpace,
