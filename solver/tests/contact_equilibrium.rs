@@ -1,5 +1,7 @@
 //! Contact in Newton's method.
 
+#![allow(non_snake_case)]
+
 mod common;
 
 use common::*;

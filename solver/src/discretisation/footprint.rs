@@ -9,7 +9,7 @@ use crate::discretisation::nodes::{RequestedSizes, SizeField};
 use crate::discretisation::quadrature::followed_edge;
 use crate::discretisation::shape_memory::ShapeMemory;
 use crate::geometry::{GeometryError, POINTS, Selector, Shape};
-use crate::problem::{Cloud, Dimension, InsideRule, Problem, Refinement};
+use crate::problem::{Cloud, Dimension, InsideRule, Motion, Problem, Refinement};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -31,7 +31,7 @@ pub struct Footprint {
 
 /// Bytes of the program itself, 2e6 of them in development builds only; this and the
 /// following bytes at the peak are fitted to the measured bodies.
-const PROGRAM: f64 = 18e6;
+const PROGRAM: f64 = 18.8e6;
 const PER_NODE: f64 = 1700.0;
 const PER_ENTRY: f64 = 82.0;
 const PER_PANEL: f64 = 380.0;
@@ -39,6 +39,10 @@ const PER_PANEL_ENTRY: f64 = 14.0;
 /// Rows of φ and Grad φ: what stays, and the second copy of so many points for a while.
 const PER_ROW_ENTRY: f64 = 36.0;
 const BATCH: f64 = 16_384.0;
+/// The preconditioner of Newton's method: φ at the nodes and its approximate inverse, the
+/// splines and their factor.
+const PER_NEWTON_ENTRY: f64 = 84.0;
+const PER_NEWTON_NODE: f64 = 1500.0;
 const PER_BATCH_ENTRY: f64 = 54.0;
 /// Panels over the boundary's area divided by their size², and those of an image or a
 /// function, which come from tetrahedra.
@@ -125,6 +129,12 @@ impl Footprint {
             + PER_BATCH_ENTRY * self.points.min(BATCH) * self.neighbours
             + self.panels * (PER_PANEL + PER_PANEL_ENTRY * self.neighbours)
             + problem.loads.pressures.len() as f64 * self.panels * PER_ROW_ENTRY * self.neighbours
+            + match problem.motion {
+                Motion::Equilibrium(_) => {
+                    self.nodes * (PER_NEWTON_NODE + PER_NEWTON_ENTRY * self.neighbours)
+                }
+                _ => 0.0,
+            }
             + shapes.kept;
         let choosing = shapes.kept + size_field_bytes(problem);
         let bytes = PROGRAM + set_up.max(choosing).max(shapes.reading);

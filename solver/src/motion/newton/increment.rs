@@ -3,8 +3,9 @@
 use super::active_contacts::ActiveContacts;
 use super::conjugate_gradients::{Correction, Solver as LinearSolver, System};
 use super::drift::drifts;
-use super::equilibrate::Path;
+
 use super::free_space::FreeSpace;
+use super::load_path::Path;
 use crate::algebra::packed::{dot, largest};
 use crate::model::Model;
 use crate::model::contact::ContactForce;

@@ -8,6 +8,7 @@ mod drift;
 mod equilibrate;
 mod free_space;
 mod increment;
+mod load_path;
 mod nodal_values;
 mod preconditioner;
 
