@@ -52,7 +52,7 @@ pub struct Model {
     pub extent: f64,
     /// Reference positions of the quadrature points \[point\] \[m\].
     pub point_positions: Vec<Vector3>,
-    /// Values of the shape functions at the nodes
+    /// φ at the nodes, row by row, only for Newton's method.
     pub nodal_rows: Option<Rows>,
     /// What to doubt about the problem itself.
     pub warnings: Vec<Warning>,
@@ -118,6 +118,11 @@ impl Model {
     /// Number of displacement components of all nodes.
     pub fn size(&self) -> usize {
         self.components * self.positions.len()
+    }
+
+    /// M⁻¹ f of forces \[component of node\] \[N\], with the inertia \[m/s²\].
+    pub fn accelerations(&self, force: &[f64]) -> Vec<f64> {
+        force.iter().enumerate().map(|(i, f)| f / self.inertia[i / self.components]).collect()
     }
 
     /// Bytes that one evaluation of the internal force reads from the blocks.

@@ -36,7 +36,6 @@ impl Imbalance {
         buffers: &mut Buffers,
         forces: &mut ConstraintForces,
     ) -> Imbalance {
-        let d = model.components;
         add_pressures(model, t, u, &mut buffers.f_ext);
         let smallest_jacobian =
             internal_force(model, u, &mut buffers.workspace, &mut buffers.f_int);
@@ -46,8 +45,7 @@ impl Imbalance {
             .zip(&buffers.f_int)
             .map(|(external, internal)| external - internal)
             .collect();
-        let mut acceleration: Vec<f64> =
-            force.iter().enumerate().map(|(i, f)| f / model.inertia[i / d]).collect();
+        let mut acceleration = model.accelerations(&force);
         model.constraints.project(t, &model.inertia, &mut acceleration, forces);
         let free_of_stress = STRESS_FREE * largest(&model.stiffness) * largest(u);
         let scale = largest(&buffers.f_int).max(largest(&buffers.f_ext)).max(free_of_stress);

@@ -28,8 +28,6 @@ pub(super) struct CoarseSpace {
     /// Without held displacements.
     free: CoarseMatrix,
     cholesky: Option<SparseCholesky>,
-    /// Functions.
-    count: usize,
     scratch: Scratch,
 }
 
@@ -65,18 +63,12 @@ impl CoarseSpace {
         let mut free = CoarseMatrix::new(count, d);
         (0..model.positions.len()).for_each(|node| free.reserve(row_of(&values, node).0));
         functions.add_stiffness(model, &mut free);
-        for (node, stiffness) in model.stiffness.iter().enumerate() {
-            let (columns, values) = row_of(&values, node);
-            for (&i, &value) in columns.iter().zip(values) {
-                free.add_to_diagonal(i, FLOOR * stiffness * f64::from(value));
-            }
-        }
+        add_to_nodes(model, &values, FLOOR, &mut free);
         stiffen_tails(model, &values, &mut free);
         CoarseSpace {
             values: [values, transposed],
             free,
             cholesky: None,
-            count,
             scratch: Scratch::default(),
         }
     }
@@ -90,12 +82,7 @@ impl CoarseSpace {
             matrix.add_spring(columns, values, along, *stiffness);
         }
         if shift > 0.0 {
-            for (node, stiffness) in model.stiffness.iter().enumerate() {
-                let (columns, values) = row_of(&self.values[0], node);
-                for (&i, &value) in columns.iter().zip(values) {
-                    matrix.add_to_diagonal(i, shift * stiffness * f64::from(value));
-                }
-            }
+            add_to_nodes(model, &self.values[0], shift, &mut matrix);
         }
         let matrix = matrix.assembled();
         let again = self.cholesky.as_mut().is_some_and(|cholesky| cholesky.factor_again(&matrix));
@@ -107,10 +94,20 @@ impl CoarseSpace {
     /// z += P A₀⁻¹ Pᵀ r.
     pub fn add<const D: usize>(&mut self, r: &[[f64; D]], z: &mut [[f64; D]]) {
         let Some(cholesky) = &self.cholesky else { return };
-        let mut moments = vec![[0.0; D]; self.count];
+        let mut moments = vec![[0.0; D]; self.free.len()];
         self.values[1].product(r, &mut moments, |entry, sum| *entry = sum);
         cholesky.solve(moments.as_flattened_mut(), &mut self.scratch);
         self.values[0].product(&moments, z, |entry, sum| *entry += sum);
+    }
+}
+
+/// Adds a part of the stiffness of every node, lumped to the functions that reach it.
+fn add_to_nodes(model: &Model, values: &Sparse, part: f64, matrix: &mut CoarseMatrix) {
+    for (node, stiffness) in model.stiffness.iter().enumerate() {
+        let (columns, values) = row_of(values, node);
+        for (&i, &value) in columns.iter().zip(values) {
+            matrix.add_to_diagonal(i, part * stiffness * f64::from(value));
+        }
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) struct System<'a> {
 /// Solves corrections, and keeps the preconditioner from one to the next.
 pub(super) struct Solver {
     preconditioner: Option<Preconditioner>,
-    /// For what it was made: held directions, stage of the conditions, and the shift.
+    /// For what it was made: held nodes, roughly with the directions, and the shift.
     held: Vec<(u32, [u64; 3])>,
     shift: f64,
 }
@@ -146,8 +146,7 @@ impl Solver {
         residual: &mut [f64],
     ) -> Vec<f64> {
         let d = model.components;
-        let mut descent: Vec<f64> =
-            residual.iter().enumerate().map(|(i, r)| r / model.inertia[i / d]).collect();
+        let mut descent = model.accelerations(residual);
         free.project(&mut descent);
         for (i, (r, z)) in residual.iter_mut().zip(&descent).enumerate() {
             *r = model.inertia[i / d] * z;

@@ -210,7 +210,7 @@ impl<'a> Solver<'a> {
         if changes > 0 {
             self.close(now);
         }
-        now.imbalance.acceleration = self.accelerations(&now.imbalance);
+        now.imbalance.acceleration = model.accelerations(&now.imbalance.force);
         self.free.project(&mut now.imbalance.acceleration);
         changes
     }
@@ -227,27 +227,26 @@ impl<'a> Solver<'a> {
 
     /// What the closed contacts exert.
     fn contact_forces(&mut self, imbalance: &Imbalance) -> Vec<ContactForce> {
-        let multipliers = self.free.project_contacts(&mut self.accelerations(imbalance));
+        let multipliers = self.contact_multipliers(imbalance);
         self.contacts.forces(&self.free.contacts, &multipliers)
     }
 
-    /// What the closed contacts exert, and the free accelerations without it that the
-    /// conditions are to prevent \[m/s²\].
+    /// What the closed contacts exert, and the accelerations that are left to the
+    /// conditions \[m/s²\].
     pub fn without_contact(&mut self, imbalance: &Imbalance) -> (Vec<ContactForce>, Vec<f64>) {
-        let model = self.model;
-        let multipliers = self.free.project_contacts(&mut self.accelerations(imbalance));
+        let multipliers = self.contact_multipliers(imbalance);
         let mut force = imbalance.force.clone();
         self.free.take_contact_forces(&mut force, &multipliers);
         let contact = self.contacts.forces(&self.free.contacts, &multipliers);
-        let d = model.components;
-        (contact, force.iter().enumerate().map(|(i, f)| f / model.inertia[i / d]).collect())
+        (contact, self.model.accelerations(&force))
     }
 
-    /// M⁻¹(f_ext − f_int), not projected.
-    fn accelerations(&self, imbalance: &Imbalance) -> Vec<f64> {
-        let model = self.model;
-        let force = imbalance.force.iter().enumerate();
-        force.map(|(i, f)| f / model.inertia[i / model.components]).collect()
+    /// Of the rows of the closed contacts \[N\].
+    fn contact_multipliers(&mut self, imbalance: &Imbalance) -> Vec<f64> {
+        match self.free.contacts.is_empty() {
+            true => Vec::new(),
+            false => self.free.project_contacts(&mut self.model.accelerations(&imbalance.force)),
+        }
     }
 
     /// The shift with which the resultant moves the body by a part of the spacing.

@@ -6,23 +6,13 @@ use mtled::algebra::tensor::Vector3;
 const EXPECTED: &str = "two or three finite numbers x, y, z, as many in every line";
 
 pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(bytes);
+    let mut reader = reader(bytes, false);
     let mut columns = None;
     let mut width = None;
     let mut points = Vec::new();
     for row in reader.records() {
-        let row = row
-            .map_err(|error| Mistake::Undecodable { encoding: "CSV", reason: error.to_string() })?;
-        let line = row.position().map_or(0, |position| position.line() as usize);
-        let bad = || {
-            let text = row.iter().collect::<Vec<_>>().join(",");
-            Mistake::BadLine { line, text: text.chars().take(60).collect(), expected: EXPECTED }
-        };
+        let row = row.map_err(undecodable)?;
+        let bad = || bad_line(&row, EXPECTED);
         // Empty cells, as of a comma at the end of a line, are no column.
         let width = *width.get_or_insert(row.len());
         if row.iter().skip(width).any(|cell| !cell.is_empty()) {
@@ -46,6 +36,28 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
         points.push(Vector3::new(values[0], values[1], values.get(2).copied().unwrap_or(0.0)));
     }
     Ok(points)
+}
+
+/// Rows of cells, with comments after # and blanks around cells left out.
+pub fn reader(bytes: &[u8], has_headers: bool) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .has_headers(has_headers)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(bytes)
+}
+
+/// A file that is no text.
+pub fn undecodable(error: csv::Error) -> Mistake {
+    Mistake::Undecodable { encoding: "CSV", reason: error.to_string() }
+}
+
+/// A row that is not what was expected.
+pub fn bad_line(row: &csv::StringRecord, expected: &'static str) -> Mistake {
+    let line = row.position().map_or(1, |position| position.line() as usize);
+    let text = row.iter().collect::<Vec<_>>().join(",");
+    Mistake::BadLine { line, text: text.chars().take(60).collect(), expected }
 }
 
 fn finite(cell: &str) -> Option<f64> {

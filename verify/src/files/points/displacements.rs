@@ -1,6 +1,7 @@
 //! Points with a displacement each, from CSV, NPY and VTU files.
 #![allow(non_snake_case)]
 
+use super::csv::{bad_line, reader, undecodable};
 use super::{npy, vtu};
 use crate::files::bytes::bytes_of;
 use crate::files::error::{FileError, Mistake};
@@ -55,28 +56,17 @@ fn from_vtu(bytes: &[u8], name: &str) -> Result<Vec<(Vector3, Vector3)>, Mistake
 }
 
 fn from_csv(bytes: &[u8]) -> Result<Vec<(Vector3, Vector3)>, Mistake> {
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .flexible(true)
-        .from_reader(bytes);
-    let undecodable =
-        |error: csv::Error| Mistake::Undecodable { encoding: "CSV", reason: error.to_string() };
-    let bad = |row: &csv::StringRecord, expected| {
-        let line = row.position().map_or(1, |position| position.line() as usize);
-        let text = row.iter().collect::<Vec<_>>().join(",");
-        Mistake::BadLine { line, text: text.chars().take(60).collect(), expected }
-    };
+    let mut reader = reader(bytes, true);
     let header = reader.headers().map_err(undecodable)?.clone();
     let column = |name: &str| header.iter().position(|cell| cell.eq_ignore_ascii_case(name));
     let columns: Option<Vec<usize>> = COLUMNS.into_iter().map(column).collect();
-    let columns = columns.ok_or_else(|| bad(&header, HEADER))?;
+    let columns = columns.ok_or_else(|| bad_line(&header, HEADER))?;
     let rows = reader.records().map(|row| {
         let row = row.map_err(undecodable)?;
         let cell = |&column: &usize| row.get(column).and_then(|cell| cell.parse::<f64>().ok());
         let values: Option<Vec<f64>> = columns.iter().map(cell).collect();
         let values = values.filter(|values| values.iter().all(|value| value.is_finite()));
-        values.map(|values| pair(&values)).ok_or_else(|| bad(&row, ROW))
+        values.map(|values| pair(&values)).ok_or_else(|| bad_line(&row, ROW))
     });
     rows.collect()
 }

@@ -1,5 +1,6 @@
 //! Landmarks with names, from CSV.
 
+use super::csv::{bad_line, reader, undecodable};
 use crate::files::bytes::bytes_of;
 use crate::files::error::{FileError, Mistake};
 use crate::files::unit::LengthUnit;
@@ -44,13 +45,7 @@ pub fn read_landmarks(path: &Path, unit: Option<LengthUnit>) -> Result<Vec<Landm
 }
 
 fn parse(bytes: &[u8], unit: Option<LengthUnit>) -> Result<Vec<Landmark>, Mistake> {
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .flexible(true)
-        .from_reader(bytes);
-    let undecodable =
-        |error: csv::Error| Mistake::Undecodable { encoding: "CSV", reason: error.to_string() };
+    let mut reader = reader(bytes, true);
     let header = reader.headers().map_err(undecodable)?.clone();
     let columns = columns(&header).ok_or_else(|| bad_line(&header, HEADER))?;
     let unit = unit.or(columns.stated).ok_or_else(|| bad_line(&header, HEADER))?;
@@ -60,12 +55,6 @@ fn parse(bytes: &[u8], unit: Option<LengthUnit>) -> Result<Vec<Landmark>, Mistak
     });
     let landmarks: Vec<Landmark> = rows.collect::<Result<_, _>>()?;
     if landmarks.is_empty() { Err(Mistake::NoPoints) } else { Ok(landmarks) }
-}
-
-fn bad_line(row: &StringRecord, expected: &'static str) -> Mistake {
-    let line = row.position().map_or(1, |position| position.line() as usize);
-    let text = row.iter().collect::<Vec<_>>().join(",");
-    Mistake::BadLine { line, text: text.chars().take(60).collect(), expected }
 }
 
 fn columns(header: &StringRecord) -> Option<Columns> {
