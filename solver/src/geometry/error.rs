@@ -37,6 +37,10 @@ pub enum GeometryError {
     NoSuchLabel { label: u32 },
     #[error("no label was chosen")]
     NoLabels,
+    #[error(
+        "the label map is smoothed by {smoothing} voxels; above 0 and at most {most} are possible"
+    )]
+    Smoothing { smoothing: f64, most: f64 },
 
     #[error("the surface has {vertices} vertices and {triangles} triangles")]
     SurfaceEmpty { vertices: usize, triangles: usize },

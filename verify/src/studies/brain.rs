@@ -291,7 +291,7 @@ fn drawing(run: &SliceRun, moment: usize, when: &str) -> Result<Drawing> {
     };
     let pixel = field.map().voxel().x;
     let part = |labels: &[u32]| -> Result<Vec<Vec<[f64; 2]>>> {
-        let shape = LabelField::section(field.map().clone(), labels, z)?;
+        let shape = LabelField::section(field.map().clone(), labels, field.smoothing(), z)?;
         Ok(Shape::Labels(std::sync::Arc::new(shape)).outline(z, pixel))
     };
     let parts =

@@ -9,19 +9,20 @@ use std::sync::Arc;
 
 /// Voxels of empty space around the image, which may be filled to its edge.
 const MARGIN: usize = 3;
-/// Standard deviation of the smoothing \[voxel\].
-const SMOOTHING: f64 = 0.7;
+/// How far from 1/2 the smoothed image stays at the centres of voxels, on their own side.
+const CLEARANCE: f64 = 0.01;
 
 /// Signed distance to the smoothed outline of some labels, sampled once.
 ///
-/// The 0/1 image is smoothed by a Gaussian of 0.7 voxels; the distance to its
-/// 1/2 level is computed at the voxel centres, shifted by a constant so that the
-/// enclosed volume is that of the voxels, and interpolated trilinearly.
-/// Features thinner than about one voxel vanish.
+/// The 0/1 image is smoothed by Gaussians, between which no voxel may change
+/// sides (method book, section 4); the distance to its 1/2 level is computed at the
+/// voxel centres, shifted by a constant so that the enclosed volume is that of the
+/// voxels, and interpolated trilinearly.
 #[derive(Debug, Clone)]
 pub struct LabelField {
     map: Arc<LabelMap>,
     labels: Vec<u32>,
+    smoothing: f64,
     /// Signed distance on the voxel centres \[m\]; one layer along an axis
     /// for a plane cross-section.
     distance: ScalarGrid,
@@ -32,9 +33,13 @@ pub struct LabelField {
     bounds: (Vector3, Vector3),
 }
 
-fn check_labels(map: &LabelMap, labels: &[u32]) -> Result<(), GeometryError> {
+fn check(map: &LabelMap, labels: &[u32], smoothing: f64) -> Result<(), GeometryError> {
     if labels.is_empty() {
         return Err(GeometryError::NoLabels);
+    }
+    let most = LabelField::MOST_SMOOTHING;
+    if !(smoothing > 0.0 && smoothing <= most) {
+        return Err(GeometryError::Smoothing { smoothing, most });
     }
     match labels.iter().find(|label| !map.labels.contains(label)) {
         Some(&label) => Err(GeometryError::NoSuchLabel { label }),
@@ -43,17 +48,28 @@ fn check_labels(map: &LabelMap, labels: &[u32]) -> Result<(), GeometryError> {
 }
 
 impl LabelField {
-    /// The solid of all voxels that have one of `labels`.
-    pub fn new(map: Arc<LabelMap>, labels: &[u32]) -> Result<Self, GeometryError> {
-        check_labels(&map, labels)?;
+    /// Standard deviation of the smoothing \[voxel\] that suits most images.
+    pub const SMOOTHING: f64 = 0.7;
+    /// The largest standard deviation of the smoothing \[voxel\].
+    pub const MOST_SMOOTHING: f64 = 4.0;
+
+    /// The solid of all voxels that have one of `labels`; `smoothing` is the
+    /// standard deviation of the Gaussian \[voxel\].
+    pub fn new(map: Arc<LabelMap>, labels: &[u32], smoothing: f64) -> Result<Self, GeometryError> {
+        check(&map, labels, smoothing)?;
         let size = map.size.map(|n| n + 2 * MARGIN);
-        Ok(Self::sampled(map, labels.to_vec(), size, [MARGIN as i64; 3]))
+        Ok(Self::sampled(map, (labels, smoothing), size, [MARGIN as i64; 3]))
     }
 
     /// The cross-section of [`LabelField::new`] at height z \[m\], without ends:
     /// that of the layer of voxels nearest to z. One index must run along z.
-    pub fn section(map: Arc<LabelMap>, labels: &[u32], z: f64) -> Result<Self, GeometryError> {
-        check_labels(&map, labels)?;
+    pub fn section(
+        map: Arc<LabelMap>,
+        labels: &[u32],
+        smoothing: f64,
+        z: f64,
+    ) -> Result<Self, GeometryError> {
+        check(&map, labels, smoothing)?;
         let shape = "label map";
         let step = map.voxel();
         let along_z = |k: &usize| map.directions[(2, *k)].abs() > (1.0 - 1e-6) * step[*k];
@@ -69,7 +85,7 @@ impl LabelField {
         let mut shift = [MARGIN as i64; 3];
         size[axis] = 1;
         shift[axis] = -(layer.round().clamp(0.0, last) as i64);
-        let section = Self::sampled(map, labels.to_vec(), size, shift);
+        let section = Self::sampled(map, (labels, smoothing), size, shift);
         if section.distance.values.iter().all(|&d| d >= 0.0) { Err(empty) } else { Ok(section) }
     }
 
@@ -78,11 +94,16 @@ impl LabelField {
         if self.distance.size.contains(&1) {
             return Ok(self.clone());
         }
-        LabelField::section(self.map.clone(), &self.labels, z)
+        LabelField::section(self.map.clone(), &self.labels, self.smoothing, z)
     }
 
     /// Sample (i, j, k) is voxel (i, j, k) − `shift`.
-    fn sampled(map: Arc<LabelMap>, labels: Vec<u32>, size: [usize; 3], shift: [i64; 3]) -> Self {
+    fn sampled(
+        map: Arc<LabelMap>,
+        (labels, smoothing): (&[u32], f64),
+        size: [usize; 3],
+        shift: [i64; 3],
+    ) -> Self {
         let step = map.voxel();
         let chosen = |at: [i64; 3]| {
             let within = (0..3).all(|k| at[k] >= 0 && at[k] < map.size[k] as i64);
@@ -93,7 +114,7 @@ impl LabelField {
         let values = indices(size).map(|ijk| if inside(ijk) { 1.0 } else { 0.0 }).collect();
         let mut image = ScalarGrid { size, step, values };
         let voxels: f64 = image.values.iter().sum();
-        (0..3).filter(|&axis| size[axis] > 1).for_each(|axis| smooth(&mut image, axis));
+        smooth(&mut image, smoothing);
         image.values.iter_mut().for_each(|v| *v = 0.5 - *v);
         let mut distance = image.distance_to_zero_level();
         keep_volume(&mut distance, voxels);
@@ -101,7 +122,7 @@ impl LabelField {
         let corner = map.origin - map.directions * first;
         let frame = Matrix3::from_fn(|k, c| map.directions[(c, k)] / step[k]);
         let bounds = bounds(&distance, &corner, &frame);
-        LabelField { map, labels, distance, corner, frame, bounds }
+        LabelField { map, labels: labels.to_vec(), smoothing, distance, corner, frame, bounds }
     }
 
     /// Signed distance \[m\], negative inside.
@@ -117,6 +138,11 @@ impl LabelField {
     /// The labels that the solid consists of.
     pub fn labels(&self) -> &[u32] {
         &self.labels
+    }
+
+    /// Standard deviation of the smoothing \[voxel\].
+    pub fn smoothing(&self) -> f64 {
+        self.smoothing
     }
 
     /// Number of sampled distances.
@@ -150,9 +176,25 @@ fn bounds(grid: &ScalarGrid, corner: &Vector3, frame: &Matrix3) -> (Vector3, Vec
     (lower, upper)
 }
 
+/// Smooths a 0/1 image by passes of 0.7 voxels at most, after each of which values cross 1/2
+/// nowhere (after Whitaker 2000): steps between layers of voxels go, thin parts stay.
+fn smooth(image: &mut ScalarGrid, smoothing: f64) {
+    let solid: Vec<bool> = image.values.iter().map(|&v| v > 0.5).collect();
+    let passes = ((smoothing / LabelField::SMOOTHING).powi(2) - 1e-9).ceil().max(1.0);
+    for _ in 0..passes as usize {
+        let size = image.size;
+        for axis in (0..3).filter(|&axis| size[axis] > 1) {
+            smooth_along(image, axis, smoothing / passes.sqrt());
+        }
+        for (value, &solid) in image.values.iter_mut().zip(&solid) {
+            *value = if solid { value.max(0.5 + CLEARANCE) } else { value.min(0.5 - CLEARANCE) };
+        }
+    }
+}
+
 /// Gaussian along one axis, zero outside the grid.
-fn smooth(image: &mut ScalarGrid, axis: usize) {
-    let kernel: Vec<f64> = (0..4).map(|n| (-0.5 * (n as f64 / SMOOTHING).powi(2)).exp()).collect();
+fn smooth_along(image: &mut ScalarGrid, axis: usize, deviation: f64) {
+    let kernel: Vec<f64> = (0..4).map(|n| (-0.5 * (n as f64 / deviation).powi(2)).exp()).collect();
     let sum = kernel[0] + 2.0 * kernel[1..].iter().sum::<f64>();
     let stride: usize = image.size[..axis].iter().product();
     let n = image.size[axis];

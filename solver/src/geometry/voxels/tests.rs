@@ -23,7 +23,7 @@ fn voxel_ball(turn: Matrix3, voxel: Vector3) -> (Shape, Vector3) {
     let origin = Vector3::new(0.2, -0.1, 0.05);
     let directions = turn * Matrix3::from_diagonal(&voxel);
     let map = LabelMap::new(size, origin, directions, labels).unwrap();
-    let field = LabelField::new(Arc::new(map), &[7]).unwrap();
+    let field = LabelField::new(Arc::new(map), &[7], LabelField::SMOOTHING).unwrap();
     (Shape::Labels(Arc::new(field)), origin + turn * middle)
 }
 
@@ -85,7 +85,7 @@ fn slab() -> Arc<LabelMap> {
 
 #[test]
 fn the_ends_of_a_slab_are_no_boundary_of_its_section() {
-    let field = LabelField::new(slab(), &[3]).unwrap();
+    let field = LabelField::new(slab(), &[3], LabelField::SMOOTHING).unwrap();
     let body = Shape::Labels(Arc::new(field));
     let dimension = Dimension::PlaneStrain { thickness: 1e-3, z: 2e-3 };
     let section = body.section(&dimension).unwrap();
@@ -128,6 +128,6 @@ fn invalid_label_maps_are_refused() {
     let skew = Matrix3::new(1.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
     let skew = LabelMap::new([1, 1, 1], origin, skew, vec![1]).unwrap_err();
     assert!(matches!(skew, GeometryError::SkewDirections { first: 0, second: 1, .. }));
-    let missing = LabelField::new(slab(), &[3, 4]).unwrap_err();
+    let missing = LabelField::new(slab(), &[3, 4], LabelField::SMOOTHING).unwrap_err();
     assert_eq!(missing, GeometryError::NoSuchLabel { label: 4 });
 }

@@ -13,16 +13,13 @@ const REGULARISATION: f64 = 0.1;
 /// T = S (2 I − Φ S) ≈ Φ⁻¹ with Φ_ab = φ_b(X_a) and a sparse S that inverts Φ within the
 /// support of each node (method book, eq. 21.6). Short waves of the nodal parameters, which
 /// the shape functions smooth away, are short waves of the values again.
+///
+/// Q = I − S Φ is what is left: parameters whose values vanish almost, and which T leaves out.
 pub(super) struct NodalValues {
+    /// Φ and Φᵀ.
     phi: [Sparse; 2],
+    /// S and Sᵀ.
     local: [Sparse; 2],
-}
-
-/// A matrix or its transposed one.
-#[derive(Clone, Copy)]
-pub(super) enum Side {
-    Plain,
-    Transposed,
 }
 
 impl NodalValues {
@@ -56,20 +53,38 @@ impl NodalValues {
         transposed.starts.windows(2).map(mean).collect()
     }
 
-    /// T v or Tᵀ v, into `result`.
-    pub fn apply<const D: usize>(
+    /// Tᵀ r into `forces` and Qᵀ r into `rest`.
+    pub fn to_values<const D: usize>(
         &self,
-        side: Side,
-        v: &[[f64; D]],
-        result: &mut [[f64; D]],
-        scratch: &mut [[f64; D]],
+        r: &[[f64; D]],
+        forces: &mut [[f64; D]],
+        rest: &mut [[f64; D]],
     ) {
-        let (phi, local) = (&self.phi[side as usize], &self.local[side as usize]);
+        let ([_, phi], [_, local]) = (&self.phi, &self.local);
+        local.product(r, forces, |entry, sum| *entry = sum);
+        rest.copy_from_slice(r);
+        phi.product(forces, rest, |entry, sum| *entry -= sum);
+        local.product(rest, forces, |entry, sum| *entry += sum);
+    }
+
+    /// T v + Q rest, into `result`.
+    pub fn to_parameters<const D: usize>(
+        &self,
+        v: &[[f64; D]],
+        mut rest: Vec<[f64; D]>,
+        result: &mut [[f64; D]],
+    ) {
+        let ([phi, _], [local, _]) = (&self.phi, &self.local);
         local.product(v, result, |entry, sum| *entry = sum);
-        // What is left of v, and its part.
-        scratch.copy_from_slice(v);
-        phi.product(result, scratch, |entry, sum| *entry -= sum);
-        local.product(scratch, result, |entry, sum| *entry += sum);
+        let mut values = vec![[0.0; D]; v.len()];
+        for (rest, result) in rest.iter_mut().zip(result.iter_mut()) {
+            for (rest, result) in rest.iter_mut().zip(result) {
+                *rest += *result;
+                *result += *rest;
+            }
+        }
+        phi.product(&rest, &mut values, |entry, sum| *entry = sum);
+        local.product(&values, result, |entry, sum| *entry -= sum);
     }
 }
 

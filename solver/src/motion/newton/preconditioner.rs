@@ -3,12 +3,16 @@
 #![allow(non_snake_case)]
 
 use super::coarse_space::{CoarseSpace, Held};
-use super::nodal_values::{NodalValues, Side};
+use super::nodal_values::NodalValues;
 use crate::model::Model;
 
-/// B = T (D⁻¹ + P A₀⁻¹ Pᵀ) Tᵀ: from forces on nodal parameters to those on nodal values,
-/// there the inverse of the diagonal and of the stiffness of smooth displacements, and
-/// back (method book, eq. 21.5).
+/// Flexibility of parameters without values over that of values \[–\].
+const HIDDEN: f64 = 50.0;
+
+/// B = T (D⁻¹ + P A₀⁻¹ Pᵀ) Tᵀ + 50 Q D⁻¹ Qᵀ: from forces on nodal parameters to those on
+/// nodal values, there the inverse of the diagonal and of the stiffness of smooth
+/// displacements, and back; the last term is for parameters without values (method book,
+/// eq. 21.5).
 pub(super) struct Preconditioner {
     values: NodalValues,
     coarse: CoarseSpace,
@@ -45,14 +49,15 @@ impl Preconditioner {
 
     fn apply_in<const D: usize>(&mut self, r: &[f64], result: &mut [f64]) {
         let (r, result) = (r.as_chunks::<D>().0, result.as_chunks_mut::<D>().0);
-        let mut scratch = vec![[0.0; D]; r.len()];
         let mut forces = vec![[0.0; D]; r.len()];
-        self.values.apply(Side::Transposed, r, &mut forces, &mut scratch);
+        let mut rest = vec![[0.0; D]; r.len()];
+        self.values.to_values(r, &mut forces, &mut rest);
         let mut moved = forces.clone();
-        for (entry, flexibility) in moved.iter_mut().zip(&self.flexibility) {
-            entry.iter_mut().for_each(|x| *x *= flexibility);
+        for ((moved, rest), flexibility) in moved.iter_mut().zip(&mut rest).zip(&self.flexibility) {
+            moved.iter_mut().for_each(|x| *x *= flexibility);
+            rest.iter_mut().for_each(|x| *x *= HIDDEN * flexibility);
         }
         self.coarse.add(&forces, &mut moved);
-        self.values.apply(Side::Plain, &moved, result, &mut scratch);
+        self.values.to_parameters(&moved, rest, result);
     }
 }

@@ -70,8 +70,9 @@ impl Builder<'_> {
                 Some(Shape::Difference(Box::new(first?), Box::new(second?)))
             }
             ShapeFormat::Stl { file, unit } => self.surface(&format!("{key}.stl"), file, *unit),
-            ShapeFormat::LabelMap { file, labels, unit } => {
-                self.labels(&format!("{key}.label_map"), file, labels, *unit)
+            ShapeFormat::LabelMap { file, labels, unit, smoothing } => {
+                let smoothing = smoothing.unwrap_or(LabelField::SMOOTHING);
+                self.labels(&format!("{key}.label_map"), file, labels, (*unit, smoothing))
             }
         }
     }
@@ -134,7 +135,7 @@ impl Builder<'_> {
         key: &str,
         file: &Path,
         labels: &[u32],
-        unit: Option<UnitFormat>,
+        (unit, smoothing): (Option<UnitFormat>, f64),
     ) -> Option<Shape> {
         let map = self.map(&format!("{key}.file"), file, unit)?;
         let before = self.count();
@@ -144,22 +145,37 @@ impl Builder<'_> {
         for (n, label) in labels.iter().enumerate() {
             self.known_label(&format!("{key}.labels[{n}]"), *label, &map);
         }
+        let largest = LabelField::MOST_SMOOTHING;
+        if !(smoothing > 0.0 && smoothing <= largest) {
+            let wanted =
+                format!("must be above 0 and at most {largest} voxels, but is {smoothing}");
+            self.mistake(&format!("{key}.smoothing"), wanted);
+        }
         if self.count() > before {
             return None;
         }
-        self.field(key, map, labels).map(Shape::Labels)
+        self.field(key, map, labels, smoothing).map(Shape::Labels)
     }
 
     /// The solid of some labels, made once.
-    fn field(&mut self, key: &str, map: Arc<LabelMap>, labels: &[u32]) -> Option<Arc<LabelField>> {
-        let same =
-            |made: &&Arc<LabelField>| Arc::ptr_eq(made.map(), &map) && made.labels() == labels;
+    fn field(
+        &mut self,
+        key: &str,
+        map: Arc<LabelMap>,
+        labels: &[u32],
+        smoothing: f64,
+    ) -> Option<Arc<LabelField>> {
+        let same = |made: &&Arc<LabelField>| {
+            Arc::ptr_eq(made.map(), &map)
+                && made.labels() == labels
+                && made.smoothing() == smoothing
+        };
         if let Some(made) = self.fields.iter().find(same) {
             return Some(made.clone());
         }
         let made = match self.dimension {
-            Dimension::Three => LabelField::new(map, labels),
-            Dimension::PlaneStrain { z, .. } => LabelField::section(map, labels, z),
+            Dimension::Three => LabelField::new(map, labels, smoothing),
+            Dimension::PlaneStrain { z, .. } => LabelField::section(map, labels, smoothing, z),
         };
         let made = made.map_err(|error| self.mistake(key, error)).ok()?;
         self.fields.push(Arc::new(made));

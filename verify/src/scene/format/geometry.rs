@@ -44,6 +44,9 @@ pub enum ShapeFormat {
         labels: Vec<u32>,
         /// Overrides the unit that the file states (mm if it states none).
         unit: Option<UnitFormat>,
+        /// Standard deviation of the smoothing of the surface [voxel], at most 4: 0.7 if
+        /// left out; 1.4 flattens the steps between voxels that contact would feel.
+        smoothing: Option<f64>,
     },
 }
 
