@@ -2,13 +2,13 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Points sorted into cubes of several sizes, each twice the last, so that a
 /// search of any radius visits few cubes.
 pub(crate) struct PointHash {
     smallest: f64,
-    levels: Vec<HashMap<[i64; 3], Vec<u32>>>,
+    levels: Vec<FxHashMap<[i64; 3], Vec<u32>>>,
     points: Vec<Vector3>,
 }
 
@@ -16,7 +16,7 @@ impl PointHash {
     /// For search radii from `smallest` to `largest` \[m\].
     pub fn new(smallest: f64, largest: f64) -> Self {
         let levels = (largest / smallest).log2().ceil().clamp(0.0, 12.0) as usize + 1;
-        PointHash { smallest, levels: vec![HashMap::new(); levels], points: Vec::new() }
+        PointHash { smallest, levels: vec![FxHashMap::default(); levels], points: Vec::new() }
     }
 
     fn key(&self, X: &Vector3, level: usize) -> [i64; 3] {

@@ -69,7 +69,7 @@ impl<'a> SizeField<'a> {
                     size: refinement.size,
                 });
             }
-            distances.push(blank.propagate(known));
+            distances.push(blank.propagate(&known, requested.reach(refinement, step)));
         }
         Ok(SizeField { requested, corner: lower, distances })
     }
@@ -79,11 +79,11 @@ impl<'a> SizeField<'a> {
         let RequestedSizes { spacing, refinements, growth } = self.requested;
         let mut size = spacing;
         for (refinement, distance) in refinements.iter().zip(&self.distances) {
-            let away = if refinement.part.contains(X) {
-                0.0
-            } else {
-                distance.sample(&(X - self.corner)).max(0.0)
-            };
+            let mut away = distance.sample(&(X - self.corner)).max(0.0);
+            // Far from the samples of a part the question costs more than the answer.
+            if away < 2.0 * distance.step.max() && refinement.part.contains(X) {
+                away = 0.0;
+            }
             size = size.min(refinement.size + growth * away);
         }
         size
@@ -222,6 +222,12 @@ impl RequestedSizes<'_> {
         // A long thin body needs more than were asked for.
         DISTANCE_SAMPLES.check((0..3).map(across).product())?;
         Ok(([0, 1, 2].map(|k| across(k) as usize), step))
+    }
+
+    /// How far around a part the spacing is smaller than elsewhere, and two samples more:
+    /// values between samples need them \[m\].
+    fn reach(&self, refinement: &Refinement, step: f64) -> f64 {
+        (self.spacing - refinement.size).max(0.0) / self.growth + 2.0 * step
     }
 
     fn smallest(&self) -> f64 {

@@ -19,6 +19,8 @@ const FRACTION_DEPTH_PLANE: usize = 5;
 /// The boundary is flat in a cell where the signed distance differs by less than this
 /// fraction of its edge from that of a plane \[–\].
 const FLAT: f64 = 1e-9;
+/// The same for a boundary that is cut as a plane of the same mean distance \[–\].
+const NEARLY_FLAT: f64 = 0.02;
 /// Parts of a cell smaller than this fraction of it are dropped \[–\].
 const SMALLEST_FRACTION: f64 = 1e-4;
 
@@ -261,24 +263,27 @@ impl PointCollector<'_> {
     }
 
     /// Inside fraction of a cell, the shift of its centroid and its spread where the
-    /// boundary is flat, judged by the signed distance at centre and corners (method
+    /// boundary is nearly flat, judged by the signed distance at centre and corners (method
     /// book, eq. 7.3).
     fn flat_cut(&self, cell: &Cell, distance: f64) -> Option<(f64, Vector3, Matrix3)> {
-        let near = |value: f64| value.abs() <= FLAT * cell.edge;
+        let near = |value: f64| value.abs() <= NEARLY_FLAT * cell.edge;
         let half = 0.5 * cell.edge;
         let ends: &[[f64; 3]] = match self.components {
             2 => &[[1.0, 1.0, 0.0], [1.0, -1.0, 0.0]],
             _ => &[[1.0, 1.0, 1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0], [1.0, -1.0, -1.0]],
         };
         let mut rises = [0.0; 4];
-        let mut slope = Vector3::zeros();
+        let (mut slope, mut bend, mut most) = (Vector3::zeros(), 0.0, 0.0f64);
         for (rise, end) in rises.iter_mut().zip(ends) {
             let end = Vector3::from(*end);
             let ahead = self.body.signed_distance(&(cell.centre + half * end));
             let behind = self.body.signed_distance(&(cell.centre - half * end));
-            if !near(ahead + behind - 2.0 * distance) {
+            let curved = ahead + behind - 2.0 * distance;
+            if !near(curved) {
                 return None;
             }
+            bend += curved / ends.len() as f64;
+            most = most.max(curved.abs());
             *rise = 0.5 * (ahead - behind);
             slope += end * *rise;
         }
@@ -287,9 +292,14 @@ impl PointCollector<'_> {
         let straight =
             rises.iter().zip(ends).all(|(rise, end)| near(slope.dot(&Vector3::from(*end)) - rise));
         straight.then(|| {
-            let (fraction, shift) = cut(distance, &(2.0 * slope));
+            // The mean distance in the cell is that of a plane.
+            let level = if most > FLAT * cell.edge { distance + bend / 6.0 } else { distance };
+            let (fraction, mut shift) = cut(level, &(2.0 * slope));
+            if self.components == 2 {
+                shift.z = 0.0;
+            }
             let spread = match self.pieces {
-                Some(_) => spread(distance, &(2.0 * slope)) * cell.edge.powi(2),
+                Some(_) => spread(level, &(2.0 * slope)) * cell.edge.powi(2),
                 None => Matrix3::zeros(),
             };
             (fraction, shift * cell.edge, self.in_plane(spread))

@@ -85,9 +85,9 @@ impl Chosen<'_> {
     /// the local spacing away from all kept before.
     fn add(&mut self, candidates: &[Vector3], apart: f64) {
         for candidate in candidates {
-            let size = (self.target.at)(candidate);
-            // First without the projection, which costs more.
-            if self.hash.any_within(candidate, 0.7 * apart * size) {
+            // First without the projection and the local spacing, which cost more.
+            let near = |size: f64| self.hash.any_within(candidate, 0.7 * apart * size);
+            if near(self.target.smallest) || near((self.target.at)(candidate)) {
                 continue;
             }
             let X = project(self.shape, candidate);

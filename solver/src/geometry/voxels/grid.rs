@@ -1,6 +1,8 @@
 //! A scalar field on a regular grid, and distances on it.
 
 use crate::algebra::tensor::Vector3;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 /// Samples on a regular grid, first index fastest. Along an axis with one
 /// sample the field is constant.
@@ -63,7 +65,7 @@ impl ScalarGrid {
     /// nearest of the feet of those samples away from it.
     pub fn distance_to_zero_level(&self) -> ScalarGrid {
         let sign = |at: usize| if self.values[at] < 0.0 { -1.0 } else { 1.0 };
-        let known = (0..self.values.len())
+        let known: Vec<KnownDistance> = (0..self.values.len())
             .filter_map(|at| {
                 let distance = self.crossing_distance(at);
                 let normal = self.slope(at).try_normalize(0.0).unwrap_or_else(Vector3::zeros);
@@ -71,7 +73,7 @@ impl ScalarGrid {
                 distance.is_finite().then_some(KnownDistance { at, distance, foot })
             })
             .collect();
-        let mut distance = self.propagate(known);
+        let mut distance = self.propagate(&known, f64::INFINITY);
         distance.values.iter_mut().enumerate().for_each(|(at, d)| *d *= sign(at));
         distance
     }
@@ -114,57 +116,69 @@ impl ScalarGrid {
         if inverse > 0.0 { 1.0 / inverse.sqrt() } else { f64::INFINITY }
     }
 
-    /// Distance to the nearest foot; known distances stay. Each sample adopts
-    /// the foot of a neighbour if that is nearer (Danielsson 1980).
-    pub fn propagate(&self, known: Vec<KnownDistance>) -> ScalarGrid {
-        let count = self.size.iter().product();
-        let mut nearest = Nearest { distance: vec![f64::INFINITY; count], of: vec![NONE; count] };
-        for (n, sample) in known.iter().enumerate() {
-            nearest.distance[sample.at] = sample.distance;
-            nearest.of[sample.at] = n as u32;
+    /// Distance to the nearest foot, `reach` \[m\] at most; known distances stay. In the order of their distances, samples hand their feet to their neighbours
+    /// (after Danielsson 1980).
+    pub fn propagate(&self, known: &[KnownDistance], reach: f64) -> ScalarGrid {
+        let mut distance = vec![f64::INFINITY; self.size.iter().product()];
+        let mut front = BinaryHeap::new();
+        for (foot, KnownDistance { at, distance: own, .. }) in known.iter().enumerate() {
+            distance[*at] = *own;
+            front.push(Front { distance: *own, at: *at as u32, foot: foot as u32 });
         }
-        for _round in 0..3 {
-            let changes = (0..8).filter(|order| self.sweep(*order, &known, &mut nearest)).count();
-            if changes == 0 {
-                break;
-            }
-        }
-        ScalarGrid { size: self.size, step: self.step, values: nearest.distance }
-    }
-
-    /// One pass in one of eight directions; whether it changed anything.
-    fn sweep(&self, order: usize, known: &[KnownDistance], nearest: &mut Nearest) -> bool {
-        let [nx, ny, nz] = self.size;
         let strides = self.strides();
-        let turned =
-            |i: usize, n: usize, axis: usize| if order >> axis & 1 == 0 { i } else { n - 1 - i };
-        let mut changed = false;
-        for [i, j, k] in indices(self.size) {
-            let ijk = [turned(i, nx, 0), turned(j, ny, 1), turned(k, nz, 2)];
-            let at = self.index(ijk[0], ijk[1], ijk[2]);
-            let own = nearest.of[at];
-            if own != NONE && known[own as usize].at == at {
+        while let Some(Front { distance: own, at, foot }) = front.pop() {
+            let at = at as usize;
+            if own > distance[at] {
                 continue;
             }
-            let here = Vector3::from_fn(|axis, _| ijk[axis] as f64 * self.step[axis]);
-            for (axis, passed) in [i, j, k].into_iter().enumerate() {
-                if passed == 0 {
-                    continue;
-                }
-                let back = order >> axis & 1 == 0;
-                let behind = if back { at - strides[axis] } else { at + strides[axis] };
-                let of = nearest.of[behind];
-                if of == NONE || of == nearest.of[at] {
-                    continue;
-                }
-                let distance = (here - known[of as usize].foot).norm();
-                if distance < nearest.distance[at] {
-                    (nearest.distance[at], nearest.of[at]) = (distance, of);
-                    changed = true;
+            for (axis, stride) in strides.into_iter().enumerate() {
+                let position = at / stride % self.size[axis];
+                let behind = (position > 0).then(|| at - stride);
+                let ahead = (position + 1 < self.size[axis]).then(|| at + stride);
+                for next in behind.into_iter().chain(ahead) {
+                    // Never nearer than here: done already.
+                    if distance[next] <= own {
+                        continue;
+                    }
+                    let there = (self.local(next) - known[foot as usize].foot).norm();
+                    if there < distance[next] && there <= reach && !is_known(known, next) {
+                        distance[next] = there;
+                        front.push(Front { distance: there, at: next as u32, foot });
+                    }
                 }
             }
         }
-        changed
+        // Values are interpolated, which infinite ones cannot be.
+        distance.iter_mut().for_each(|d| *d = d.min(reach));
+        ScalarGrid { size: self.size, step: self.step, values: distance }
+    }
+}
+
+/// Whether a distance was given; they are in the order of the samples.
+fn is_known(known: &[KnownDistance], at: usize) -> bool {
+    known.binary_search_by_key(&at, |sample| sample.at).is_ok()
+}
+
+/// A sample that hands on its foot, the nearest first.
+#[derive(PartialEq)]
+struct Front {
+    distance: f64,
+    at: u32,
+    foot: u32,
+}
+
+impl Eq for Front {}
+
+impl PartialOrd for Front {
+    fn partial_cmp(&self, other: &Front) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Front {
+    fn cmp(&self, other: &Front) -> Ordering {
+        let nearest = other.distance.total_cmp(&self.distance);
+        nearest.then(other.at.cmp(&self.at)).then(other.foot.cmp(&self.foot))
     }
 }
 
@@ -173,14 +187,6 @@ pub(crate) struct KnownDistance {
     pub at: usize,
     pub distance: f64,
     pub foot: Vector3,
-}
-
-const NONE: u32 = u32::MAX;
-
-struct Nearest {
-    distance: Vec<f64>,
-    /// Which known distance a sample's foot belongs to.
-    of: Vec<u32>,
 }
 
 /// All index triples below `size`, the first index fastest.
