@@ -2,7 +2,7 @@
 
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
-use crate::model::contact::ContactState;
+use crate::model::contact::{ContactForce, ContactState};
 use crate::model::essential::{ConstraintForces, Reaction};
 
 /// Displacements and velocities at one instant, and the work so far.
@@ -63,6 +63,17 @@ impl State {
         let (forces, factor) = (&self.constraint_forces, self.force_factor);
         let (positions, u) = (&model.positions, &self.displacement);
         model.constraints.reactions(forces, factor, about, positions, u)
+    }
+
+    /// What obstacles exert on nodes \[N\]: on values of the displacement in Newton's method, on
+    /// parameters in explicit steps. In a motion they are those of the last step, which jump
+    /// from step to step.
+    pub fn contact_forces(&self) -> Vec<ContactForce> {
+        let force = |force: &ContactForce| ContactForce {
+            force: self.force_factor * force.force,
+            ..*force
+        };
+        self.contact.forces.iter().map(force).collect()
     }
 
     /// Nodal parameter of a node as a vector; z is 0 in a plane \[m\].

@@ -192,6 +192,7 @@ fn constrain(model: &Model, scheme: &Scheme, t: f64, state: &mut State) -> f64 {
     contact.enforce(&model.contact, positions, increment, displacement, |i, delta| {
         velocity[i] += delta * rate;
     });
+    contact.forces.iter_mut().for_each(|way| way.force *= mass[way.node as usize]);
     // What contact takes back is no movement: a node that is pressed against an obstacle
     // in equilibrium would seem to move for ever.
     largest_or_nan(velocity) * scheme.time_step

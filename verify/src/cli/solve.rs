@@ -4,8 +4,8 @@ use super::common::{Common, STOPPED};
 use super::load::{load, located};
 use super::progress::progress_bar;
 use crate::run::{
-    Estimated, Prepared, Recorder, Recording, Solved, error_bars, integrate_prepared,
-    prepare_to_run, summary_text, write_failed, write_outputs,
+    Estimated, Prepared, Recorder, Recording, Solved, contact_results, error_bars,
+    integrate_prepared, prepare_to_run, summary_text, write_failed, write_outputs,
 };
 use crate::scene::Case;
 use clap::Args;
@@ -109,9 +109,10 @@ fn finish(
     out: &Path,
     common: &Common,
 ) -> anyhow::Result<u8> {
-    let result = write_outputs(case, solved, record, bars, out)?;
+    let contacts = contact_results(case, &solved.prepared, &solved.state)?;
+    let result = write_outputs(case, solved, record, &contacts, bars, out)?;
     common.print_summary(&|| Ok(result.clone()), &|| {
-        let summary = summary_text(case, solved, record, bars);
+        let summary = summary_text(case, solved, record, &contacts, bars);
         format!("{summary}\n  results in {}\n", out.display())
     })?;
     for doubt in solved.doubts() {

@@ -1,5 +1,6 @@
 //! One case from its problem to its result.
 
+mod contact;
 mod error_bar;
 mod interrupt;
 mod memory;
@@ -14,6 +15,7 @@ mod stored_field;
 pub mod vtu;
 mod work;
 
+pub use contact::contact_results;
 pub use error_bar::{
     CoarserCloud, ErrorBar, ErrorBars, Estimated, Indicator, NoErrorBar, error_bars,
 };

@@ -1,6 +1,7 @@
 //! Files of a run: VTU frames with a PVD, histories as CSV, the displacement field, `result.json`.
 #![allow(non_snake_case)]
 
+use super::contact::contact_fields;
 use super::error_bar::{Estimated, Indicator};
 use super::prepare::Prepared;
 use super::record::{Frame, Recording};
@@ -12,6 +13,7 @@ use crate::scene::Case;
 use anyhow::{Context, Result};
 use mtled::algebra::tensor::Matrix3;
 use mtled::error::Error;
+use mtled::model::contact::{ContactResult, ContactSurface};
 use mtled::motion::internal_force::projected_mean_stress;
 use mtled::problem::{Motion, Problem};
 use mtled_checks::escape::{csv_text, file_name, printable_json};
@@ -25,6 +27,7 @@ pub fn write_outputs(
     case: &Case,
     solved: &Solved,
     record: &Recording,
+    contacts: &[ContactResult],
     bars: Option<&Estimated>,
     dir: &Path,
 ) -> Result<String> {
@@ -32,7 +35,7 @@ pub fn write_outputs(
     write_recorded(case, &solved.prepared, record, indicator, dir)?;
     let (u, stopped) = (&solved.state.displacement, solved.summary.stopped);
     StoredField::new(case, &solved.prepared, u, stopped).write(dir)?;
-    write_result(&result_json(case, solved, record, bars), dir)
+    write_result(&result_json(case, solved, record, contacts, bars), dir)
 }
 
 /// Writes what a run had recorded when it ended with an error.
@@ -130,9 +133,16 @@ fn write_frames(
     let positions = &prepared.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
     let mut collection = Vec::new();
+    let touches = !case.problem.obstacles.is_empty();
+    let surface = touches.then(|| ContactSurface::new(&case.problem, &prepared.discretisation));
+    let surface = surface.transpose()?;
     for (number, frame) in record.frames.iter().enumerate() {
         let name = frame_name(number);
         let mut fields = node_frame(&case.problem, prepared, &points, frame)?;
+        if let Some(surface) = &surface {
+            let displacement = &fields.point_data[0].values;
+            fields.point_data.extend(contact_fields(surface, prepared, frame, displacement));
+        }
         let is_last = number + 1 == record.frames.len();
         if let Some(mode) = record.unstable_mode.as_ref().filter(|_| is_last) {
             let mode = field_at_nodes(prepared, mode)?;
@@ -248,6 +258,9 @@ fn history_csv(case: &Case, record: &Recording) -> Result<String> {
         header.extend(axes.map(|axis| format!("{}.f{axis}_n", condition.name)));
         header.extend(axes.map(|axis| format!("{}.m{axis}_n_m", condition.name)));
     }
+    for obstacle in &case.problem.obstacles {
+        header.extend(axes.map(|axis| format!("{}.contact_f{axis}_n", obstacle.name)));
+    }
     writer.write_record(header.iter().map(|name| csv_text(name)))?;
     for sample in &record.samples {
         let e = &sample.energies;
@@ -260,6 +273,7 @@ fn history_csv(case: &Case, record: &Recording) -> Result<String> {
         for reaction in &sample.reactions {
             row.extend(reaction.force.iter().chain(reaction.moment.iter()));
         }
+        row.extend(sample.contact_forces.iter().flatten());
         writer.write_record(row.iter().map(f64::to_string))?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)

@@ -7,6 +7,7 @@ use crate::scene::{Case, ProbeKind};
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
 use mtled::error::Error;
+use mtled::model::contact::ContactForce;
 use mtled::model::essential::Reaction;
 use mtled::motion::energy::Energies;
 use mtled::motion::observe::{Continue, Observer, View};
@@ -41,6 +42,8 @@ pub struct Sample {
     pub smallest_jacobian: f64,
     /// Nodes that touch an obstacle.
     pub touching: usize,
+    /// What each obstacle exerts on the body \[N\].
+    pub contact_forces: Vec<Vector3>,
 }
 
 /// Nodal parameters at one instant \[m\].
@@ -52,6 +55,8 @@ pub struct Frame {
     pub time: f64,
     /// \[node\]\[component\]
     pub displacement: Vec<f64>,
+    /// What obstacles exert on nodes.
+    pub contact: Vec<ContactForce>,
 }
 
 /// A probe as the recorder evaluates it.
@@ -100,6 +105,7 @@ impl<T> Series<T> {
 pub struct Recorder<'a> {
     probes: Vec<Evaluator>,
     components: usize,
+    obstacles: usize,
     moment_about: Vector3,
     references: Vec<Vec<Vector3>>,
     samples: Series<Sample>,
@@ -135,6 +141,7 @@ impl<'a> Recorder<'a> {
         Ok(Recorder {
             probes,
             components: prepared.model.components,
+            obstacles: prepared.model.contact.obstacles.len(),
             moment_about: case.outputs.moment_about,
             references,
             samples: Series::new(case.outputs.history.max(1)),
@@ -163,6 +170,10 @@ impl<'a> Recorder<'a> {
             }
             Evaluator::Centre(centre) => vec![centre.displacement(u, self.components)],
         });
+        let mut contact_forces = vec![Vector3::zeros(); self.obstacles];
+        for contact in view.state.contact_forces() {
+            contact_forces[contact.obstacle as usize] += contact.force;
+        }
         Sample {
             step: view.state.step,
             time: view.state.time,
@@ -171,6 +182,7 @@ impl<'a> Recorder<'a> {
             energies,
             smallest_jacobian: view.smallest_jacobian,
             touching: view.state.contact.touching.len(),
+            contact_forces,
         }
     }
 }
@@ -184,8 +196,12 @@ impl Observer for Recorder<'_> {
         let energies = (frame || sample).then(|| view.energies());
         if let Some(energies) = energies.filter(is_finite) {
             if frame {
-                let displacement = view.state.displacement.clone();
-                let frame = Frame { step: view.state.step, time: view.state.time, displacement };
+                let frame = Frame {
+                    step: view.state.step,
+                    time: view.state.time,
+                    displacement: view.state.displacement.clone(),
+                    contact: view.state.contact_forces(),
+                };
                 self.frames.keep(frame, view.progress);
             }
             if sample {

@@ -1,5 +1,6 @@
 //! The result of a run as JSON and as a screen of text.
 
+use super::contact::{contacts_json, contacts_text};
 use super::error_bar::{Estimated, error_bars_json, error_bars_text, plus_minus};
 use super::memory::estimated_memory;
 use super::prepare::Prepared;
@@ -10,6 +11,7 @@ use crate::machine::{peak_memory, provenance};
 use crate::scene::{Case, ProbeKind};
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
+use mtled::model::contact::ContactResult;
 use mtled::motion::summary::Summary;
 use mtled::problem::Motion;
 use mtled_checks::escape::printable;
@@ -26,6 +28,7 @@ pub fn result_json(
     case: &Case,
     solved: &Solved,
     record: &Recording,
+    contacts: &[ContactResult],
     bars: Option<&Estimated>,
 ) -> Value {
     let mut warnings = solved.prepared.doubts(&case.problem);
@@ -33,6 +36,7 @@ pub fn result_json(
     let mut result = recorded_json(case, &solved.prepared, record);
     result["warnings"] = json!(warnings);
     result["motion"] = motion_json(case, solved);
+    result["contacts"] = json!(contacts_json(case, contacts));
     result["work_counters"] = json!(Work::of(solved));
     result["timings"]["solve_wall_s"] = json!(solved.solve_seconds);
     result["timings"]["solve_cpu_s"] = json!(solved.cpu_seconds);
@@ -235,6 +239,7 @@ pub fn summary_text(
     case: &Case,
     solved: &Solved,
     record: &Recording,
+    contacts: &[ContactResult],
     bars: Option<&Estimated>,
 ) -> String {
     let (d, s) = (&solved.prepared.discretisation, &solved.summary);
@@ -304,6 +309,7 @@ pub fn summary_text(
             ));
         }
     }
+    lines.extend(contacts_text(case, contacts));
     lines.extend(bars.into_iter().flat_map(|bars| error_bars_text(case, bars)));
     let work = Work::of(solved);
     lines.push(format!(

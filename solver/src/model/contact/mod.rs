@@ -2,7 +2,9 @@
 
 mod check;
 mod plan;
+mod report;
 
 pub(crate) use check::check_obstacles;
 pub use plan::{ContactForce, ContactPlan, ContactState, gap};
 pub(crate) use plan::{normal, onto_surface};
+pub use report::{ContactResult, ContactSurface};

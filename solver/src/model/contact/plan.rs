@@ -34,7 +34,8 @@ pub struct ContactState {
     anchors: Vec<(u32, u32, Vector3)>,
     /// Nodes in contact after the last step.
     pub touching: Vec<u32>,
-    /// What obstacles exert, where the method of solution says so.
+    /// What obstacles exert, to be multiplied by the force factor of the state: the values
+    /// are m Δu of the last step \[kg·m\], or of Newton's method forces \[N\].
     pub forces: Vec<ContactForce>,
 }
 
@@ -158,7 +159,7 @@ pub(crate) fn onto_surface(
 
 impl ContactState {
     /// Moves nodes that entered an obstacle back to its surface (method book, eq.
-    /// 16.2), on u(t+Δt) as in Horton 2007, section 2.7, and calls
+    /// 16.2), on u(t+Δt) as in Horton 2007, section 2.7, keeps their ways as forces, and calls
     /// `on_change(index, Δu)` for each changed entry of `u` \[component of node\]
     /// \[m\], of which none changed by more than `largest_increment` \[m\] before.
     pub fn enforce(
@@ -175,6 +176,7 @@ impl ContactState {
             self.search(plan, positions, u);
         }
         self.touching.clear();
+        self.forces.clear();
         for i in 0..self.candidates.len() {
             let (index, node) = self.candidates[i];
             let obstacle = &plan.obstacles[index as usize];
@@ -183,6 +185,7 @@ impl ContactState {
                 continue;
             };
             self.touching.push(node);
+            self.forces.push(ContactForce { obstacle: index, node, force: target - x });
             for k in 0..components {
                 let entry = components * node as usize + k;
                 u[entry] += target[k] - x[k];

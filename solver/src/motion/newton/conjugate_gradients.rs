@@ -14,6 +14,8 @@ use crate::motion::tangent::Tangent;
 const CHANGED: f64 = 0.1;
 /// The same for the shift, as a factor \[–\].
 const SHIFTED: f64 = 3.0;
+/// Bodies of fewer nodes, and those in a plane, take no more products with the diagonal alone.
+const LEAST_NODES: usize = 1000;
 /// Products after which the diagonal alone takes over for good: on a few irregular clouds the
 /// transform to nodal values is nearly singular.
 const PATIENCE: usize = 400;
@@ -52,7 +54,9 @@ pub(super) struct Solver {
 
 impl Solver {
     pub fn new(model: &Model) -> Solver {
-        Solver { preconditioner: Preconditioner::new(model), held: Vec::new(), shift: f64::NAN }
+        let large = model.components == 3 && model.positions.len() >= LEAST_NODES;
+        let preconditioner = large.then(|| Preconditioner::new(model)).flatten();
+        Solver { preconditioner, held: Vec::new(), shift: f64::NAN }
     }
 
     /// Makes the preconditioner anew where it would no longer serve.
@@ -105,7 +109,7 @@ impl Solver {
         let mut direction = descent.clone();
         let mut square = dot(&residual, &descent);
         let target = forcing * forcing * norm_squared(model, &residual);
-        let most = 2 * tangent_size(model, free);
+        let most = PATIENCE + 2 * tangent_size(model, free);
         let mut indefinite = false;
         for count in 0..most {
             let left = norm_squared(model, &residual);

@@ -1,0 +1,92 @@
+//! What obstacles do to the body, as JSON, as text and as fields at the nodes.
+#![allow(non_snake_case)]
+
+use super::prepare::Prepared;
+use super::record::Frame;
+use super::vtu::PointArray;
+use crate::scene::Case;
+use mtled::algebra::tensor::Vector3;
+use mtled::error::Error;
+use mtled::model::contact::{ContactResult, ContactSurface, gap};
+use mtled::motion::state::State;
+use mtled_checks::escape::printable;
+use mtled_checks::report::four_digits;
+use serde_json::{Value, json};
+
+/// What each obstacle does at the end of a run; nothing without obstacles.
+pub fn contact_results(
+    case: &Case,
+    prepared: &Prepared,
+    state: &State,
+) -> Result<Vec<ContactResult>, Error> {
+    let (discretisation, plan) = (&prepared.discretisation, &prepared.model.contact);
+    if plan.obstacles.is_empty() {
+        return Ok(Vec::new());
+    }
+    let surface = ContactSurface::new(&case.problem, discretisation)?;
+    surface.results(plan, discretisation, &state.contact_forces(), &state.displacement)
+}
+
+/// `contacts` of `result.json`.
+pub fn contacts_json(case: &Case, results: &[ContactResult]) -> Vec<Value> {
+    let obstacles = case.problem.obstacles.iter().zip(results);
+    obstacles
+        .map(|(obstacle, result)| {
+            let inside = result.depth > 0.0;
+            json!({
+                "obstacle": obstacle.name,
+                "nodes": result.nodes,
+                "force_n": <[f64; 3]>::from(result.force),
+                "normal_force_n": result.normal_force,
+                "area_m2": result.area,
+                "mean_pressure_pa": (result.area > 0.0).then(|| result.normal_force / result.area),
+                "largest_pressure_pa": result.largest_pressure,
+                "deepest_penetration_m": result.depth,
+                "deepest_at_m": inside.then(|| <[f64; 3]>::from(result.deepest)),
+            })
+        })
+        .collect()
+}
+
+/// A line for each obstacle.
+pub fn contacts_text(case: &Case, results: &[ContactResult]) -> Vec<String> {
+    let line = |(obstacle, result): (&mtled::problem::Obstacle, &ContactResult)| {
+        let name = printable(&obstacle.name);
+        if result.nodes == 0 {
+            return format!("  \"{name}\" touches nothing");
+        }
+        let [x, y, z] = <[f64; 3]>::from(result.force).map(four_digits);
+        format!(
+            "  \"{name}\" pushes {} nodes on {} m² with ({x}, {y}, {z}) N in sum, {} N along its normals, \
+             {} Pa at most; {} m deep at most between nodes",
+            result.nodes,
+            four_digits(result.area),
+            four_digits(result.normal_force),
+            four_digits(result.largest_pressure),
+            four_digits(result.depth)
+        )
+    };
+    case.problem.obstacles.iter().zip(results).map(line).collect()
+}
+
+/// The gap to the nearest obstacle \[m\] and the contact pressure \[Pa\] at the nodes, which are at
+/// `displacement` \[node\]\[x, y, z\] \[m\].
+pub fn contact_fields(
+    surface: &ContactSurface,
+    prepared: &Prepared,
+    frame: &Frame,
+    displacement: &[f64],
+) -> [PointArray; 2] {
+    let plan = &prepared.model.contact;
+    let positions = &prepared.discretisation.cloud.positions;
+    let normals = plan.normals(positions, &frame.contact, &frame.displacement);
+    let pressures = surface.pressures(&frame.contact, &normals);
+    let gaps = positions.iter().zip(displacement.as_chunks::<3>().0).map(|(X, u)| {
+        let x = X + Vector3::from(*u);
+        plan.obstacles.iter().map(|obstacle| gap(obstacle, &x)).fold(f64::INFINITY, f64::min)
+    });
+    [
+        PointArray::new("contact_gap", 1, gaps.collect()),
+        PointArray::new("contact_pressure", 1, pressures),
+    ]
+}
