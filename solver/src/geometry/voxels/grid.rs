@@ -1,8 +1,16 @@
 //! A scalar field on a regular grid, and distances on it.
 
 use crate::algebra::tensor::Vector3;
+use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+
+/// Distances up to this are measured to the level itself \[sample\].
+const NEAR: f64 = 4.0;
+/// Steps towards the nearest point of the level.
+const CLOSER: usize = 8;
+/// A point is on the level to this \[sample\].
+const ON_LEVEL: f64 = 0.01;
 
 /// Samples on a regular grid, first index fastest. Along an axis with one
 /// sample the field is constant.
@@ -73,9 +81,44 @@ impl ScalarGrid {
                 distance.is_finite().then_some(KnownDistance { at, distance, foot })
             })
             .collect();
-        let mut distance = self.propagate(&known, f64::INFINITY);
-        distance.values.iter_mut().enumerate().for_each(|(at, d)| *d *= sign(at));
-        distance
+        let (mut values, feet) = self.hand_on(&known, f64::INFINITY);
+        let near = NEAR * self.step.max();
+        values.par_iter_mut().zip(feet).enumerate().for_each(|(at, (d, foot))| {
+            if *d < near && known[foot as usize].at != at {
+                *d = self.distance_to_level(&self.local(at), known[foot as usize].foot, *d);
+            }
+            *d *= sign(at);
+        });
+        ScalarGrid { size: self.size, step: self.step, values }
+    }
+
+    /// Distance to the zero level of the field by the iteration of Chopp 2001 (method book,
+    /// section 4), from a `foot` near it and a distance that is too large.
+    fn distance_to_level(&self, here: &Vector3, mut foot: Vector3, too_large: f64) -> f64 {
+        let slope = |x: &Vector3| {
+            Vector3::from_fn(|axis, _| {
+                let aside = Vector3::ith(axis, 0.25 * self.step[axis]);
+                (self.sample(&(x + aside)) - self.sample(&(x - aside))) / (0.5 * self.step[axis])
+            })
+        };
+        let mut nearest = too_large;
+        for _ in 0..CLOSER {
+            let (value, g) = (self.sample(&foot), slope(&foot));
+            let square = g.norm_squared();
+            if square == 0.0 {
+                break;
+            }
+            // Onto the level, then along it.
+            foot -= g * (value / square);
+            let way = here - foot;
+            let level = self.sample(&foot).abs() / square.sqrt();
+            if level < ON_LEVEL * self.step.min() {
+                nearest = nearest.min(way.norm());
+            }
+            let along = way - g * (way.dot(&g) / square);
+            foot += along * (0.5 * self.step.min() / along.norm()).min(0.7);
+        }
+        nearest
     }
 
     /// Gradient by central differences, one-sided at the border.
@@ -119,10 +162,19 @@ impl ScalarGrid {
     /// Distance to the nearest foot, `reach` \[m\] at most; known distances stay. In the order of their distances, samples hand their feet to their neighbours
     /// (after Danielsson 1980).
     pub fn propagate(&self, known: &[KnownDistance], reach: f64) -> ScalarGrid {
+        let (mut values, _) = self.hand_on(known, reach);
+        // Values are interpolated, which infinite ones cannot be.
+        values.iter_mut().for_each(|d| *d = d.min(reach));
+        ScalarGrid { size: self.size, step: self.step, values }
+    }
+
+    /// The distance of each sample and the index of its foot; infinite beyond `reach` \[m\].
+    fn hand_on(&self, known: &[KnownDistance], reach: f64) -> (Vec<f64>, Vec<u32>) {
         let mut distance = vec![f64::INFINITY; self.size.iter().product()];
+        let mut feet = vec![0; distance.len()];
         let mut front = BinaryHeap::new();
         for (foot, KnownDistance { at, distance: own, .. }) in known.iter().enumerate() {
-            distance[*at] = *own;
+            (distance[*at], feet[*at]) = (*own, foot as u32);
             front.push(Front { distance: *own, at: *at as u32, foot: foot as u32 });
         }
         let strides = self.strides();
@@ -142,15 +194,13 @@ impl ScalarGrid {
                     }
                     let there = (self.local(next) - known[foot as usize].foot).norm();
                     if there < distance[next] && there <= reach && !is_known(known, next) {
-                        distance[next] = there;
+                        (distance[next], feet[next]) = (there, foot);
                         front.push(Front { distance: there, at: next as u32, foot });
                     }
                 }
             }
         }
-        // Values are interpolated, which infinite ones cannot be.
-        distance.iter_mut().for_each(|d| *d = d.min(reach));
-        ScalarGrid { size: self.size, step: self.step, values: distance }
+        (distance, feet)
     }
 }
 

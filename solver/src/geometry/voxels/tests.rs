@@ -54,19 +54,27 @@ fn a_ball_of_voxels_has_the_volume_and_area_of_a_sphere() {
 }
 
 #[test]
-fn the_surface_of_a_voxel_ball_is_smooth() {
-    let (ball, centre) = voxel_ball(turn(), Vector3::repeat(1e-3));
-    for n in 0..200 {
-        let (a, b) = (0.17 * n as f64, (0.005 * n as f64 - 0.5) * 2.0);
-        let direction =
-            Vector3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
-        for radius in [7e-3, 10e-3, 15e-3] {
-            let X = centre + radius * direction;
-            let error = ball.signed_distance(&X) - (radius - 10e-3);
-            assert!(error.abs() < 0.4e-3, "{radius}: {error}");
-            let cosine = ball.gradient(&X).dot(&direction);
-            let least = if radius == 10e-3 { 0.95 } else { 0.8 };
-            assert!(cosine > least, "{radius}: {cosine}");
+fn distances_to_a_voxel_ball_have_no_bias_and_its_normals_are_smooth() {
+    for (smoothing, scatter, least) in [(0.7, 0.1e-3, 0.89), (1.4, 0.075e-3, 0.96)] {
+        let (ball, centre) = voxel_ball(turn(), Vector3::repeat(1e-3));
+        let Shape::Labels(field) = &ball else { unreachable!("voxel_ball makes labels") };
+        let field = LabelField::new(field.map().clone(), &[7], smoothing).unwrap();
+        let ball = Shape::Labels(Arc::new(field));
+        for radius in [8e-3, 10e-3, 12e-3] {
+            let (mut mean, mut square) = (0.0, 0.0);
+            for n in 0..2000 {
+                let (a, b) = (0.17 * n as f64, (n as f64 + 0.5) / 1000.0 - 1.0);
+                let around = (1.0 - b * b).sqrt();
+                let direction = Vector3::new(a.cos() * around, a.sin() * around, b);
+                let X = centre + radius * direction;
+                let error = ball.signed_distance(&X) - (radius - 10e-3);
+                mean += error / 2000.0;
+                square += error * error / 2000.0;
+                let cosine = ball.gradient(&X).dot(&direction);
+                assert!(cosine > least, "{smoothing}, {radius}: {cosine}");
+            }
+            assert!(mean.abs() < 0.06e-3, "{smoothing}, {radius}: {mean}");
+            assert!(square.sqrt() < scatter, "{smoothing}, {radius}: {}", square.sqrt());
         }
     }
 }
