@@ -1,8 +1,8 @@
-"""Frictionless contact of the surface with the skull by a penalty method.
+"""Frictionless contact of the surface with the skull by an augmented Lagrangian method.
 
-Pressure p = ε·max(−g, 0) [Pa] per reference area at the quadrature points of the facets,
+Pressure p = max(λ − ε g, 0) [Pa] per reference area at the quadrature points of the facets,
 along the gradient of the gap g(x) = offset − d(x) [m], with the signed distance d of which
-the body is the level 0. Facets of a coarse mesh bulge over hollows by up to millimetres;
+the body is the level 0. The multipliers λ are zero at first, then the last pressures. Facets of a coarse mesh bulge over hollows by up to millimetres;
 so a point of a facet stands for the nearest point of the level, x = X* + u(X), and the gap
 at the start is the offset everywhere.
 """
@@ -51,6 +51,7 @@ class Wall:
         self.areas = (weights * area).ravel()
         on_facets = np.einsum("qa,fai->fqi", shape, corners, optimize=True).reshape(-1, 3)
         self.position = mesh.distance.projected(on_facets, 8)
+        self.multipliers = np.zeros(self.areas.size)
         self.moved = float(np.linalg.norm(self.position - on_facets, axis=1).max())
         rows = np.repeat(np.arange(self.areas.size), 6)
         columns = np.repeat(mesh.facets[:, None, :], len(weights), axis=1).ravel()
@@ -66,7 +67,11 @@ class Wall:
 
     def pressures(self, u: np.ndarray) -> np.ndarray:
         """Pressures [Pa] at the quadrature points."""
-        return self.penalty * np.maximum(-self.gap(u), 0.0)
+        return np.maximum(self.multipliers - self.penalty * self.gap(u), 0.0)
+
+    def augment(self, u: np.ndarray) -> None:
+        """Takes the pressures as the multipliers."""
+        self.multipliers = self.pressures(u)
 
     def force(self, u: np.ndarray) -> np.ndarray:
         """Forces of the skull on the nodes (3 n,) [N]."""
@@ -77,7 +82,7 @@ class Wall:
 
     def stiffness(self, u: np.ndarray) -> sp.csr_matrix:
         """−∂force/∂u [N/m], without the small curvature of the wall."""
-        closed = np.flatnonzero(self.gap(u) < 0.0)
+        closed = np.flatnonzero(self.pressures(u))
         slope = self.distance.gradient(self._places(u)[closed])
         values = self.values[closed]
         identity = np.eye(3)

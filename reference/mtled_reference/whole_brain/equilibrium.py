@@ -13,12 +13,14 @@ import scipy.sparse as sp
 from ..shared.errors import NotConverged
 from .contact import Wall
 
-RESIDUAL = 1e-8
+RESIDUAL = 1e-6
 """Largest norm of the residual at free unknowns over that of the acting forces [–]."""
 ITERATIONS = 40
 HALVINGS = 8
 SPRINGS = (3e6, 1e6, 3e5, 1e5, 3e4, 1e4, 3e3, 3e2)
 """Stiffnesses κ [N/m⁴] in turn; each is solved roughly."""
+AUGMENTATIONS = 2
+"""Number of times that the pressures become the multipliers."""
 ROUGH = 1e-2
 """Residual [–] at which a solution with springs is left."""
 STEPS = (0.4, 0.7, 1.0)
@@ -41,10 +43,23 @@ class Balance:
     progress: object
     iterations: int = 0
     load_steps: int = 0
+    last_change: float = 0.0
+    """Largest displacement [m] by the last augmentation."""
     log: list = field(default_factory=list)
 
     def solve(self, start: np.ndarray | None) -> np.ndarray:
         """The unknowns in equilibrium, from those of a solution nearby or from rest."""
+        u = self._first(start)
+        for _ in range(AUGMENTATIONS):
+            before = u
+            self.wall.augment(u[: self.loads.size])
+            u = self._newton(u, 1.0, 0.0, RESIDUAL)
+        change = (u - before)[: self.loads.size].reshape(-1, 3)
+        self.last_change = float(np.linalg.norm(change, axis=1).max())
+        return u
+
+    def _first(self, start: np.ndarray | None) -> np.ndarray:
+        """The equilibrium without multipliers."""
         u = self.elements.at_rest() if start is None else start.copy()
         if self.prescribed.size:
             for fraction in STEPS if start is None else (1.0,):

@@ -226,11 +226,21 @@ def quadratic(reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return values, np.concatenate([corners, middles], axis=1)
 
 
+def smallest_determinant(mesh: Tetrahedra, field: np.ndarray) -> float:
+    """Smallest det F at the corners and centres of the cells for displacements (n, 3) [m]."""
+    moved = _determinants(mesh.nodes + field, mesh.cells)
+    return float((moved / _determinants(mesh.nodes, mesh.cells)).min())
+
+
+def _determinants(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Jacobians (e, 5) of cells at their corners and centres."""
+    _, slopes = quadratic(np.vstack([np.zeros(3), np.eye(3), np.full(3, 0.25)]))
+    return np.linalg.det(np.einsum("qaj,eai->eqij", slopes, nodes[cells], optimize=True))
+
+
 def jacobian_ratio(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Smallest Jacobian of each cell at its corners and centre over that of its corners alone."""
-    at = np.vstack([np.zeros(3), np.eye(3), np.full(3, 0.25)])
-    _, slopes = quadratic(at)
-    curved = np.linalg.det(np.einsum("qaj,eai->eqij", slopes, nodes[cells], optimize=True))
+    curved = _determinants(nodes, cells)
     corner = nodes[cells[:, :4]]
     straight = np.linalg.det((corner[:, 1:] - corner[:, :1]).swapaxes(1, 2))
     return curved.min(axis=1) / straight

@@ -1,5 +1,8 @@
 """The run of a whole brain on one mesh and the values that are recorded, with either code."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..shared.case import Case
@@ -12,64 +15,80 @@ from .probes import Interpolation
 
 EDGES = (0.018, 0.0145, 0.0117)
 """Edges of the surface [m], by level."""
-PENALTY = 1e7
-"""Penalty ε of the contact [Pa/m]."""
+PENALTY = 3e7
+"""Parameter ε of the contact [Pa/m]."""
+METHOD = {
+    "mesh_family": "tetrahedra by TetGen inside a relaxed surface net; midpoints of the surface "
+    "on the level; edges halved along the ventricles and the tumour; same meshes for both codes",
+    "solver": "Newton, residual 1e-6 of the forces; contact by augmented Lagrangian, ε = 3e7 Pa/m and "
+    "two augmentations, at twelve points per facet",
+}
 
 
-def solved_mesh(case: Case, level: int, elements_of, progress) -> dict:
-    """Instants [s] and what is stored of the mesh of a level; the solutions on coarser meshes
-    are the starts. On the coarsest mesh, the largest change of the displacements with a third
-    of the penalty is stored as `penalty_effect_m`."""
-    start, iterations = None, 0
+@dataclass
+class Solved:
+    """The unknowns `u` in equilibrium on the mesh of a level, and the Newton iterations on it
+    and on coarser meshes."""
+
+    level: int
+    mesh: Tetrahedra
+    elements: object
+    balance: Balance
+    u: np.ndarray
+    iterations: int
+
+    def displacements(self, points: np.ndarray) -> np.ndarray:
+        """Displacements (n, 3) [m] at points (n, 3) [m] in the body."""
+        field = self.u[: self.mesh.nodes.size].reshape(-1, 3)
+        return Interpolation(self.mesh, points)(field)
+
+
+def solutions(case: Case, level: int, elements_of, progress) -> Iterator[Solved]:
+    """The solutions up to the mesh of a level, each of which starts from the one before."""
+    last = None
     for coarse in range(level + 1):
         mesh = tetrahedra(case, EDGES[coarse])
         elements = elements_of(case, mesh)
-        wall = Wall(case, mesh, PENALTY)
-        balance = balance_of(case, mesh, elements, wall, progress)
-        if start is not None:
-            start = elements.from_displacements(start(mesh.nodes))
+        balance = balance_of(case, mesh, elements, Wall(case, mesh, PENALTY), progress)
+        start = None
+        if last is not None:
+            start = elements.from_displacements(last.displacements(mesh.nodes))
         u = balance.solve(start)
-        iterations += balance.iterations
-        field = u[: mesh.nodes.size].reshape(-1, 3)
-        start = Field(mesh, field)
-    values = recorded(case, mesh, elements, wall, u, balance.loads)
+        before = last.iterations if last else 0
+        last = Solved(coarse, mesh, elements, balance, u, before + balance.iterations)
+        yield last
+
+
+def solved_mesh(case: Case, level: int, elements_of, progress) -> dict:
+    """Instants [s] and what is stored of the mesh of a level, with the solution method."""
+    *_, last = solutions(case, level, elements_of, progress)
+    return result_of(case, last)
+
+
+def result_of(case: Case, solved: Solved) -> dict:
+    """What is stored of a solution; `augmentation_effect_m` is the largest displacement by the
+    last augmentation of the contact."""
+    mesh, elements, u = solved.mesh, solved.elements, solved.u
+    wall, loads = solved.balance.wall, solved.balance.loads
+    values = recorded(case, mesh, elements, wall, u, loads)
     stored = {
-        "size_m": EDGES[level],
+        "size_m": mesh.edge,
         "elements": len(mesh.cells),
         "unknowns": int(u.size),
-        "load_steps": balance.load_steps,
-        "newton_iterations": iterations,
+        "load_steps": solved.balance.load_steps,
+        "newton_iterations": solved.iterations,
         "penalty_pa_per_m": PENALTY,
         "penetration_m": wall.penetration(u[: mesh.nodes.size]),
+        "augmentation_effect_m": float(f"{solved.balance.last_change:.3g}"),
         "smallest_J": elements.smallest_J(u),
-        "load_n": float(np.linalg.norm(balance.loads.reshape(-1, 3).sum(axis=0))),
+        "load_n": float(np.linalg.norm(loads.reshape(-1, 3).sum(axis=0))),
         "region_volumes_m3": [float(f"{v:.6g}") for v in elements.node_volumes.sum(axis=1)],
-    }
-    if level == 0:
-        wall.penalty = PENALTY / 3.0
-        softer = recorded(case, mesh, elements, wall, balance.solve(u), balance.loads)
-        stored["penalty_effect_m"] = largest_change(values, softer)
-    solution = {
-        "mesh_family": "tetrahedra by TetGen inside a relaxed surface net; midpoints of the surface "
-        "on the level; edges halved along the ventricles and the tumour; same meshes for both codes",
-        "solver": "Newton, residual 1e-8 of the forces; contact by penalty ε = 1e7 Pa/m at twelve "
-        "points per facet",
     }
     return {
         "times_s": [case.time.load_end],
         "mesh": stored | {"values": values},
-        "solution": solution,
+        "solution": dict(METHOD),
     }
-
-
-class Field:
-    """Displacements of a mesh, to be interpolated at the nodes of another."""
-
-    def __init__(self, mesh: Tetrahedra, field: np.ndarray):
-        self.mesh, self.field = mesh, field
-
-    def __call__(self, points: np.ndarray) -> np.ndarray:
-        return Interpolation(self.mesh, points)(self.field)
 
 
 def balance_of(case: Case, mesh: Tetrahedra, elements, wall: Wall, progress) -> Balance:
@@ -113,10 +132,3 @@ def recorded(case: Case, mesh: Tetrahedra, elements, wall: Wall, u, loads) -> di
     values.contact(wall.name, wall.resultant(u[:n]))
     values.strain_energy(elements.energy(u))
     return values.values
-
-
-def largest_change(values: dict, others: dict) -> float:
-    """Largest distance [m] between the displacements of two solutions."""
-    keys = [key for key in values if key.startswith("displacement/")]
-    changes = [np.array(values[key]) - np.array(others[key]) for key in keys]
-    return float(f"{max(np.linalg.norm(change, axis=1).max() for change in changes):.3g}")

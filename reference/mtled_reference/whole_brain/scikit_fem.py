@@ -1,5 +1,7 @@
 """The whole brain with scikit-fem: tetrahedra P2, constant p and θ."""
 
+from importlib import metadata
+
 import numpy as np
 import scipy.sparse as sp
 import skfem
@@ -95,14 +97,19 @@ class Elements:
         return self.factors.solve(right)
 
 
-def solve_mesh(case: Case, level: int, progress) -> dict:
-    """The result on the mesh of a level, as described in mtled_reference/solve.py."""
-    result = solved_mesh(case, level, Elements, progress)
-    result["solution"] |= {
+def provenance(method: dict) -> dict:
+    """How the case was solved; `method` is what both codes have in common."""
+    return {
         "version": skfem.__version__,
         "formulation": f"{THREE_FIELDS}; ventricles u alone",
         "element": "P2 / P0",
-        "packages": packages(),
+        "mesh_family": method["mesh_family"],
+        "solver": f"{method['solver']}, {Factorisation().name}",
+        "packages": packages() | {"tetgen": metadata.version("tetgen")},
     }
-    result["solution"]["solver"] += f", {Factorisation().name}"
-    return result
+
+
+def solve_mesh(case: Case, level: int, progress) -> dict:
+    """The result on the mesh of a level, as described in mtled_reference/solve.py."""
+    result = solved_mesh(case, level, Elements, progress)
+    return result | {"solution": provenance(result["solution"])}
