@@ -17,6 +17,8 @@ RESIDUAL = 1e-6
 """Largest norm of the residual at free unknowns over that of the acting forces [–]."""
 ITERATIONS = 40
 HALVINGS = 8
+GROWTH = 2.0
+"""A correction is halved, twice at most, where it makes the residual this many times as large."""
 SPRINGS = (3e6, 1e6, 3e5, 1e5, 3e4, 1e4, 3e3, 3e2)
 """Stiffnesses κ [N/m⁴] in turn; each is solved roughly."""
 AUGMENTATIONS = 2
@@ -111,7 +113,7 @@ class Balance:
         return change
 
     def _advance(self, u, change, held, kappa, norm, free):
-        """Adds the correction, halved while it inverts a cell or the residual grows."""
+        """Adds the correction, halved while it inverts a cell or the residual grows too much."""
         fraction, best = 1.0, None
         for _ in range(HALVINGS):
             trial = u + fraction * change
@@ -123,7 +125,7 @@ class Balance:
             size = np.linalg.norm(residual[free])
             if best is None or size < best[0]:
                 best = (size, trial, residual, scale)
-            if size < norm:
+            if size < GROWTH * norm:
                 break
             fraction *= 0.5
             if fraction < 0.2:

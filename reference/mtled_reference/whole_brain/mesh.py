@@ -16,6 +16,10 @@ INNER = 0.45
 """Edges along the ventricles and the tumour over those of the surface [–]."""
 REGION_SMOOTHING = 0.7
 """Standard deviation [voxel] for the surfaces of the ventricles and the tumour."""
+STRAIGHT = 0.5
+"""Smallest Jacobian of a cell with curved edges over that of the straight one [–]."""
+GOOD = 0.2
+"""Quality below which the free corners of a cell are moved [–]."""
 FILL = 0.12
 """Largest volume of a tetrahedron over the cube of the edge of the surface [–]."""
 
@@ -64,6 +68,7 @@ def tetrahedra(case: Case, edge: float) -> Tetrahedra:
             nodes = _warped(nodes, corners, border, fixed)
             middles = nodes[corners].mean(axis=1)
             region[border.at(middles) < 0.0] = index
+    nodes = _improved(nodes, corners, fixed)
     return _second_order(nodes, corners, region, distance, sphere, edge)
 
 
@@ -165,6 +170,35 @@ def _warped(nodes, corners, border: SignedDistance, fixed) -> np.ndarray:
     return nodes
 
 
+def qualities(nodes: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """6√2 V over the mean cube of the edges (e,): 1 of a regular tetrahedron, 0 of a flat one."""
+    edges = nodes[corners[:, EDGES[:, 0]]] - nodes[corners[:, EDGES[:, 1]]]
+    cubes = np.linalg.norm(edges, axis=2) ** 3
+    return 6.0 * np.sqrt(2.0) * volumes(nodes, corners) / cubes.mean(axis=1)
+
+
+def _improved(nodes, corners, fixed) -> np.ndarray:
+    """The corners of flat cells that are not fixed moved at random, by less and less, as long
+    as the worst cell around each becomes better."""
+    random = np.random.default_rng(5)
+    nodes, free = nodes.copy(), np.setdiff1d(np.arange(len(nodes)), fixed)
+    for _ in range(4):
+        flat = corners[qualities(nodes, corners) < GOOD]
+        for node in np.intersect1d(np.unique(flat), free):
+            around = corners[np.any(corners == node, axis=1)]
+            worst = qualities(nodes, around).min()
+            reach = np.linalg.norm(np.ptp(nodes[around[:, :4].ravel()], axis=0)) / 4.0
+            for trial in range(60):
+                last = nodes[node].copy()
+                nodes[node] = last + reach * 0.95**trial * random.uniform(-1.0, 1.0, 3)
+                better = qualities(nodes, around).min()
+                if better > worst:
+                    worst = better
+                else:
+                    nodes[node] = last
+    return nodes
+
+
 def _outer_facets(corners: np.ndarray) -> np.ndarray:
     """Faces (k, 3) that belong to one tetrahedron only, outward."""
     faces = corners[:, FACES].reshape(-1, 3)
@@ -202,10 +236,10 @@ def _second_order(nodes, corners, region, distance, sphere, edge) -> Tetrahedra:
 
 def _valid(nodes, cells, pairs) -> np.ndarray:
     """The nodes with midpoints moved back to the middle of straight edges in cells that
-    would have a Jacobian below 0.2 of their straight one at a corner or the centre."""
+    would have a Jacobian below STRAIGHT of their straight one at a corner or the centre."""
     first = len(nodes) - len(pairs)
     for fraction in (0.5, 0.5, 0.5, 1.0, 1.0, 1.0):
-        bad = jacobian_ratio(nodes, cells) < 0.2
+        bad = jacobian_ratio(nodes, cells) < STRAIGHT
         if not bad.any():
             break
         middle = np.unique(cells[bad][:, 4:])
