@@ -19,13 +19,15 @@ ITERATIONS = 40
 HALVINGS = 8
 GROWTH = 2.0
 """A correction is halved, twice at most, where it makes the residual this many times as large."""
-SPRINGS = (3e6, 1e6, 3e5, 1e5, 3e4, 1e4, 3e3, 3e2)
+SPRINGS = (1e6, 2e5, 4e4, 8e3, 1e3)
 """Stiffnesses κ [N/m⁴] in turn; each is solved roughly."""
 AUGMENTATIONS = 2
 """Number of times that the pressures become the multipliers."""
+INTERIM = 1e-4
+"""Residual [–] of all solutions but the last."""
 ROUGH = 1e-2
 """Residual [–] at which a solution with springs is left."""
-STEPS = (0.4, 0.7, 1.0)
+STEPS = (0.5, 1.0)
 """Fractions of the prescribed displacements in turn, without a solution to start from."""
 
 
@@ -52,10 +54,11 @@ class Balance:
     def solve(self, start: np.ndarray | None) -> np.ndarray:
         """The unknowns in equilibrium, from those of a solution nearby or from rest."""
         u = self._first(start)
-        for _ in range(AUGMENTATIONS):
+        for turn in range(AUGMENTATIONS):
             before = u
             self.wall.augment(u[: self.loads.size])
-            u = self._newton(u, 1.0, 0.0, RESIDUAL)
+            last = turn + 1 == AUGMENTATIONS
+            u = self._newton(u, 1.0, 0.0, RESIDUAL if last else INTERIM)
         change = (u - before)[: self.loads.size].reshape(-1, 3)
         self.last_change = float(np.linalg.norm(change, axis=1).max())
         return u
@@ -64,12 +67,12 @@ class Balance:
         """The equilibrium without multipliers."""
         u = self.elements.at_rest() if start is None else start.copy()
         if self.prescribed.size:
-            for fraction in STEPS if start is None else (1.0,):
-                u = self._newton(u, fraction, 0.0, RESIDUAL)
+            for fraction in STEPS:
+                u = self._newton(u, fraction, 0.0, INTERIM)
             return u
         for kappa in SPRINGS if start is None else SPRINGS[-3:]:
             u = self._newton(u, 1.0, kappa, ROUGH)
-        return self._newton(u, 1.0, 0.0, RESIDUAL)
+        return self._newton(u, 1.0, 0.0, INTERIM)
 
     def _residual(self, u, held, kappa):
         n = self.loads.size

@@ -9,11 +9,12 @@ from ..shared.case import Case
 from ..shared.measurements import Measurements, resultant
 from .contact import Wall
 from .equilibrium import Balance
+from .image import read_label_map
 from .loads import body_forces
 from .mesh import Tetrahedra, tetrahedra
 from .probes import Interpolation
 
-EDGES = (0.018, 0.0145, 0.0117)
+EDGES = (0.022, 0.0175, 0.014)
 """Edges of the surface [m], by level."""
 PENALTY = 3e7
 """Parameter ε of the contact [Pa/m]."""
@@ -51,15 +52,16 @@ def _cubics(points: np.ndarray) -> np.ndarray:
     return np.stack([np.prod((10.0 * points) ** power, axis=1) for power in powers], axis=1)
 
 
-def solutions(case: Case, level: int, elements_of, progress) -> Iterator[Solved]:
-    """The solutions up to the mesh of a level, each of which starts from the one before."""
+def solutions(case: Case, level: int, elements_of, progress, first=0) -> Iterator[Solved]:
+    """The solutions from a first mesh to that of a level. Without prescribed displacements,
+    which hold the body, each starts from the one before."""
     last = None
-    for coarse in range(level + 1):
+    for coarse in range(first, level + 1):
         mesh = tetrahedra(case, EDGES[coarse])
         elements = elements_of(case, mesh)
         balance = balance_of(case, mesh, elements, Wall(case, mesh, PENALTY), progress)
         start = None
-        if last is not None:
+        if last is not None and not case.prescriptions:
             start = elements.from_displacements(last.smooth_displacements(mesh.nodes))
         u = balance.solve(start)
         before = last.iterations if last else 0
@@ -69,7 +71,8 @@ def solutions(case: Case, level: int, elements_of, progress) -> Iterator[Solved]
 
 def solved_mesh(case: Case, level: int, elements_of, progress) -> dict:
     """Instants [s] and what is stored of the mesh of a level, with the solution method."""
-    *_, last = solutions(case, level, elements_of, progress)
+    first = level if case.prescriptions else 0
+    *_, last = solutions(case, level, elements_of, progress, first)
     return result_of(case, last)
 
 
@@ -128,10 +131,10 @@ def recorded(case: Case, mesh: Tetrahedra, elements, wall: Wall, u, loads) -> di
         if probe.centre_of_mass is None:
             values.displacement(probe.name, Interpolation(mesh, probe.positions)(field))
             continue
-        weights = elements.node_volumes[names.index(probe.centre_of_mass)]
-        weights = weights / weights.sum()
-        values.centre(probe.name, weights @ mesh.nodes)
-        values.displacement(probe.name, weights @ field)
+        index = names.index(probe.centre_of_mass)
+        centre, displacement = mean_over(case, mesh, elements.node_volumes[index], index, field)
+        values.centre(probe.name, centre)
+        values.displacement(probe.name, displacement)
     for prescription in case.prescriptions:
         reaction = elements.force(u)[:n] - wall.force(u[:n]) - loads
         reaction = np.where(np.repeat(mesh.constrained, 3), reaction, 0.0).reshape(-1, 3)
@@ -140,3 +143,17 @@ def recorded(case: Case, mesh: Tetrahedra, elements, wall: Wall, u, loads) -> di
     values.contact(wall.name, wall.resultant(u[:n]))
     values.strain_energy(elements.energy(u))
     return values.values
+
+
+def mean_over(case: Case, mesh: Tetrahedra, volumes, index: int, field: np.ndarray):
+    """Centre of mass (3,) [m] of a region and its displacement (3,) [m]: over the centres of
+    the voxels with its label, since cells follow the borders of the labels roughly only; over
+    the cells for the region of all the rest."""
+    selector = case.regions[index].selector
+    if selector == "all":
+        weights = volumes / volumes.sum()
+        return weights @ mesh.nodes, weights @ field
+    image = read_label_map(case.folder / case.shape["label_map"]["file"])
+    chosen = np.argwhere(image.labels == selector["label"]["value"])
+    points = image.corner + image.voxel * chosen
+    return points.mean(axis=0), Interpolation(mesh, points)(field).mean(axis=0)
