@@ -2,9 +2,10 @@
 
 Pressure p = max(λ − ε g, 0) [Pa] per reference area at the quadrature points of the facets,
 along the gradient of the gap g(x) = offset − d(x) [m], with the signed distance d of which
-the body is the level 0. The multipliers λ are zero at first, then the last pressures. Facets of a coarse mesh bulge over hollows by up to millimetres;
-so a point of a facet stands for the nearest point of the level, x = X* + u(X), and the gap
-at the start is the offset everywhere.
+the body is the level 0. The multipliers λ are zero at first, then the last pressures.
+
+Facets of a coarse mesh bulge over hollows by up to millimetres; so a point of a facet stands
+for the nearest point of the level, x = X* + u(X), and the gap is the offset at first.
 """
 
 import numpy as np
@@ -26,7 +27,9 @@ def triangle_rule() -> tuple[np.ndarray, np.ndarray]:
     points, weights = [], []
     for first, second, weight in RULE:
         triple = (first, second, 1.0 - first - second)
-        orders = {(triple[a], triple[b], triple[3 - a - b]) for a in range(3) for b in range(3) if a != b}
+        orders = {
+            (triple[a], triple[b], triple[3 - a - b]) for a in range(3) for b in range(3) if a != b
+        }
         points += sorted(orders)
         weights += [weight] * len(orders)
     return np.array(points), np.array(weights)

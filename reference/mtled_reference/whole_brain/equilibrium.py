@@ -28,7 +28,7 @@ INTERIM = 1e-4
 ROUGH = 1e-2
 """Residual [–] at which a solution with springs is left."""
 STEPS = (0.5, 1.0)
-"""Fractions of the prescribed displacements in turn, without a solution to start from."""
+"""Fractions of the prescribed displacements in turn."""
 
 
 @dataclass
@@ -51,9 +51,9 @@ class Balance:
     """Largest displacement [m] by the last augmentation."""
     log: list = field(default_factory=list)
 
-    def solve(self, start: np.ndarray | None) -> np.ndarray:
-        """The unknowns in equilibrium, from those of a solution nearby or from rest."""
-        u = self._first(start)
+    def solve(self) -> np.ndarray:
+        """The unknowns in equilibrium."""
+        u = self._first()
         for turn in range(AUGMENTATIONS):
             before = u
             self.wall.augment(u[: self.loads.size])
@@ -63,14 +63,14 @@ class Balance:
         self.last_change = float(np.linalg.norm(change, axis=1).max())
         return u
 
-    def _first(self, start: np.ndarray | None) -> np.ndarray:
+    def _first(self) -> np.ndarray:
         """The equilibrium without multipliers."""
-        u = self.elements.at_rest() if start is None else start.copy()
+        u = self.elements.at_rest()
         if self.prescribed.size:
             for fraction in STEPS:
                 u = self._newton(u, fraction, 0.0, INTERIM)
             return u
-        for kappa in SPRINGS if start is None else SPRINGS[-3:]:
+        for kappa in SPRINGS:
             u = self._newton(u, 1.0, kappa, ROUGH)
         return self._newton(u, 1.0, 0.0, INTERIM)
 
@@ -94,12 +94,16 @@ class Balance:
             norm = np.linalg.norm(residual[free])
             scale += np.linalg.norm(residual[self.prescribed])
             moved = np.abs(u[self.prescribed] - target).max(initial=0.0) < 1e-12
-            self.log.append((fraction, kappa, norm / max(scale, 1e-30), self.wall.penetration(u[:n])))
+            self.log.append(
+                (fraction, kappa, norm / max(scale, 1e-30), self.wall.penetration(u[:n]))
+            )
             self.progress(iteration, self.log[-1])
             if moved and iteration and norm <= tolerance * scale:
                 return u
             change = self._correction(u, residual, target, kappa, free)
-            u, residual, scale = self._advance(u, change, held, kappa, norm if moved else np.inf, free)
+            u, residual, scale = self._advance(
+                u, change, held, kappa, norm if moved else np.inf, free
+            )
             self.iterations += 1
         raise NotConverged(f"residual {norm / scale:.1e} after {ITERATIONS} iterations")
 

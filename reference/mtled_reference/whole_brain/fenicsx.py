@@ -34,7 +34,9 @@ class Elements:
     def __init__(self, case: Case, mesh: Tetrahedra):
         self.mesh, self.kinematics = mesh, Solid()
         self.domain = versions.create_mesh("tetrahedron", 2, mesh.nodes, mesh.cells[:, BASIX])
-        self.space = versions.function_space(self.domain, versions.vector_element("tetrahedron", 2, 3))
+        self.space = versions.function_space(
+            self.domain, versions.vector_element("tetrahedron", 2, 3)
+        )
         self.pressures = versions.function_space(self.domain, ("Lagrange", 1))
         self.u, self.p = fem.Function(self.space), fem.Function(self.pressures)
         nodes = cKDTree(mesh.nodes).query(self.space.tabulate_dof_coordinates())[1]
@@ -101,17 +103,6 @@ class Elements:
         """The unknowns without load."""
         return np.zeros(self.mesh.nodes.size + len(self.p.x.array))
 
-    def from_displacements(self, field: np.ndarray) -> np.ndarray:
-        """The unknowns for displacements (n, 3) [m], with the pressure that they cause."""
-        unknowns = self.at_rest()
-        unknowns[: field.size] = field.ravel()
-        self._set(unknowns)
-        n = field.size
-        factors = SymmetricFactors(-self._block("pp"))
-        unknowns[n:] = factors.solve(versions.assemble_vector(self.residuals[1]))
-        factors.release()
-        return unknowns
-
     def force(self, unknowns: np.ndarray) -> np.ndarray:
         """Internal forces [N] and, after them, the residuals of p [m³]."""
         self._set(unknowns)
@@ -157,7 +148,7 @@ def provenance(method: dict) -> dict:
     """How the case was solved; `method` is what both codes have in common."""
     return {
         "version": versions.version(),
-        "formulation": "two fields u, p: ψ of the isochoric part + p(J − 1) − p²/2K; ventricles u alone",
+        "formulation": "two fields u, p: ψ_iso(F) + p(J − 1) − p²/2K; ventricles u alone",
         "element": "P2 / P1 continuous",
         "mesh_family": method["mesh_family"],
         "solver": f"{method['solver']}, MUMPS",

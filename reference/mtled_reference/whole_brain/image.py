@@ -150,7 +150,9 @@ def _distance_to_level(values: np.ndarray) -> np.ndarray:
     )
     points, quads = surface_nets(values)
     near = np.nonzero(np.abs(distance) < BAND)
-    exact = distance_to_triangles(np.stack(near, 1).astype(float), points, triangles_of(points, quads))
+    exact = distance_to_triangles(
+        np.stack(near, 1).astype(float), points, triangles_of(points, quads)
+    )
     distance[near] = np.where(inside[near], -exact, exact)
     return distance
 

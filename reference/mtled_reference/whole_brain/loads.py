@@ -15,10 +15,19 @@ def parts_of_the_reference_cell(halvings: int) -> np.ndarray:
     corners = np.vstack([np.zeros(3), np.eye(3)])[None]
     for _ in range(halvings):
         a, b, c, d = (corners[:, k] for k in range(4))
-        ab, ac, ad, bc, bd, cd = (0.5 * (p + q) for p, q in
-                                  ((a, b), (a, c), (a, d), (b, c), (b, d), (c, d)))
-        parts = [(a, ab, ac, ad), (b, ab, bc, bd), (c, ac, bc, cd), (d, ad, bd, cd),
-                 (ab, ac, ad, bd), (ab, ac, bc, bd), (ac, ad, bd, cd), (ac, bc, bd, cd)]
+        ab, ac, ad, bc, bd, cd = (
+            0.5 * (p + q) for p, q in ((a, b), (a, c), (a, d), (b, c), (b, d), (c, d))
+        )
+        parts = [
+            (a, ab, ac, ad),
+            (b, ab, bc, bd),
+            (c, ac, bc, cd),
+            (d, ad, bd, cd),
+            (ab, ac, ad, bd),
+            (ab, ac, bc, bd),
+            (ac, ad, bd, cd),
+            (ac, bc, bd, cd),
+        ]
         corners = np.concatenate([np.stack(part, axis=1) for part in parts])
     return corners.mean(axis=1)
 

@@ -57,6 +57,7 @@ def _cells_around(edges: np.ndarray, axis: int) -> list[np.ndarray]:
 
 def triangles_of(points: np.ndarray, quads: np.ndarray) -> np.ndarray:
     """Two triangles (2 m, 3) for each quadrilateral, along its shorter diagonal."""
+
     def diagonal(a, b):
         return np.linalg.norm(points[quads[:, a]] - points[quads[:, b]], axis=1)
 
@@ -86,7 +87,9 @@ def _to_triangle(at: np.ndarray, corners: np.ndarray) -> np.ndarray:
         start, edge = corners[..., n, :], corners[..., (n + 1) % 3, :] - corners[..., n, :]
         length = np.maximum((edge**2).sum(-1), 1e-30)
         along = np.clip(((at - start) * edge).sum(-1) / length, 0.0, 1.0)
-        distance = np.minimum(distance, np.linalg.norm(at - start - along[..., None] * edge, axis=-1))
+        distance = np.minimum(
+            distance, np.linalg.norm(at - start - along[..., None] * edge, axis=-1)
+        )
     a, b, c = (corners[..., n, :] for n in range(3))
     normal = np.cross(b - a, c - a)
     square = np.maximum((normal**2).sum(-1), 1e-30)

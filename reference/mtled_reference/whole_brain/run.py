@@ -1,6 +1,5 @@
 """The run of a whole brain on one mesh and the values that are recorded, with either code."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,8 +18,8 @@ EDGES = (0.022, 0.0175, 0.014)
 PENALTY = 3e7
 """Parameter ε of the contact [Pa/m]."""
 METHOD = {
-    "mesh_family": "tetrahedra by TetGen inside a relaxed surface net; midpoints of the surface "
-    "on the level; edges halved along the ventricles and the tumour; same meshes for both codes",
+    "mesh_family": "tetrahedra by TetGen inside a relaxed surface net; midpoints of the surface on "
+    "the level; edges halved along the ventricles and the tumour; same meshes for both codes",
     "solver": "Newton, residual 1e-6 of the forces; contact by augmented Lagrangian, ε = 3e7 Pa/m and "
     "two augmentations, at twelve points per facet",
 }
@@ -28,52 +27,21 @@ METHOD = {
 
 @dataclass
 class Solved:
-    """The unknowns `u` in equilibrium on the mesh of a level, and the Newton iterations on it
-    and on coarser meshes."""
+    """The unknowns `u` in equilibrium on a mesh."""
 
-    level: int
     mesh: Tetrahedra
     elements: object
     balance: Balance
     u: np.ndarray
-    iterations: int
-
-    def smooth_displacements(self, points: np.ndarray) -> np.ndarray:
-        """Displacements (n, 3) [m] at points (n, 3) [m] by the cubic polynomial nearest to
-        those of all nodes: smooth enough to invert no cell of another mesh."""
-        field = self.u[: self.mesh.nodes.size].reshape(-1, 3)
-        fit = np.linalg.lstsq(_cubics(self.mesh.nodes), field, rcond=None)[0]
-        return _cubics(points) @ fit
-
-
-def _cubics(points: np.ndarray) -> np.ndarray:
-    """Products (n, 20) of at most three coordinates in units of 0.1 m."""
-    powers = [(a, b, c) for a, b, c in np.ndindex(4, 4, 4) if a + b + c <= 3]
-    return np.stack([np.prod((10.0 * points) ** power, axis=1) for power in powers], axis=1)
-
-
-def solutions(case: Case, level: int, elements_of, progress, first=0) -> Iterator[Solved]:
-    """The solutions from a first mesh to that of a level. Without prescribed displacements,
-    which hold the body, each starts from the one before."""
-    last = None
-    for coarse in range(first, level + 1):
-        mesh = tetrahedra(case, EDGES[coarse])
-        elements = elements_of(case, mesh)
-        balance = balance_of(case, mesh, elements, Wall(case, mesh, PENALTY), progress)
-        start = None
-        if last is not None and not case.prescriptions:
-            start = elements.from_displacements(last.smooth_displacements(mesh.nodes))
-        u = balance.solve(start)
-        before = last.iterations if last else 0
-        last = Solved(coarse, mesh, elements, balance, u, before + balance.iterations)
-        yield last
 
 
 def solved_mesh(case: Case, level: int, elements_of, progress) -> dict:
     """Instants [s] and what is stored of the mesh of a level, with the solution method."""
-    first = level if case.prescriptions else 0
-    *_, last = solutions(case, level, elements_of, progress, first)
-    return result_of(case, last)
+    mesh = tetrahedra(case, EDGES[level])
+    elements = elements_of(case, mesh)
+    balance = balance_of(case, mesh, elements, Wall(case, mesh, PENALTY), progress)
+    u = balance.solve()
+    return result_of(case, Solved(mesh, elements, balance, u))
 
 
 def result_of(case: Case, solved: Solved) -> dict:
@@ -87,19 +55,24 @@ def result_of(case: Case, solved: Solved) -> dict:
         "elements": len(mesh.cells),
         "unknowns": int(u.size),
         "load_steps": solved.balance.load_steps,
-        "newton_iterations": solved.iterations,
+        "newton_iterations": solved.balance.iterations,
         "penalty_pa_per_m": PENALTY,
-        "penetration_m": wall.penetration(u[: mesh.nodes.size]),
-        "augmentation_effect_m": float(f"{solved.balance.last_change:.3g}"),
-        "smallest_J": elements.smallest_J(u),
-        "load_n": float(np.linalg.norm(loads.reshape(-1, 3).sum(axis=0))),
-        "region_volumes_m3": [float(f"{v:.6g}") for v in elements.node_volumes.sum(axis=1)],
+        "penetration_m": short(wall.penetration(u[: mesh.nodes.size])),
+        "augmentation_effect_m": short(solved.balance.last_change),
+        "smallest_J": short(elements.smallest_J(u)),
+        "load_n": short(np.linalg.norm(loads.reshape(-1, 3).sum(axis=0))),
+        "region_volumes_m3": [short(v) for v in elements.node_volumes.sum(axis=1)],
     }
     return {
         "times_s": [case.time.load_end],
         "mesh": stored | {"values": values},
         "solution": dict(METHOD),
     }
+
+
+def short(number: float) -> float:
+    """The number rounded to four significant digits."""
+    return float(f"{number:.4g}")
 
 
 def balance_of(case: Case, mesh: Tetrahedra, elements, wall: Wall, progress) -> Balance:

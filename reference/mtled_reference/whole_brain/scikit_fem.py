@@ -50,10 +50,6 @@ class Elements:
         """The unknowns without load."""
         return np.zeros(self.mesh.nodes.size)
 
-    def from_displacements(self, field: np.ndarray) -> np.ndarray:
-        """The unknowns for displacements (n, 3) [m]."""
-        return field.ravel()
-
     def force(self, u: np.ndarray) -> np.ndarray:
         """Internal forces [N]."""
         force = np.zeros_like(self.mesh.nodes)

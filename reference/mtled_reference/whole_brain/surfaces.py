@@ -66,7 +66,9 @@ class Sphere:
 def with_rim(points, triangles, distance: SignedDistance, sphere: Sphere):
     """The surface with edges along the sphere: of each edge across it, the nearer end is
     moved onto it. Returns points and triangles."""
-    pairs = np.unique(np.sort(np.vstack([triangles[:, [a, (a + 1) % 3]] for a in range(3)])), axis=0)
+    pairs = np.unique(
+        np.sort(np.vstack([triangles[:, [a, (a + 1) % 3]] for a in range(3)])), axis=0
+    )
     pairs = pairs[pairs[:, 0] < pairs[:, 1]]
     reach = sphere.distance(points) - sphere.radius
     rim = np.zeros(len(points), bool)
