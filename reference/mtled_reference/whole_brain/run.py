@@ -18,9 +18,9 @@ EDGES = (0.022, 0.0175, 0.014)
 PENALTY = 3e7
 """Parameter ε of the contact [Pa/m]."""
 METHOD = {
-    "mesh_family": "tetrahedra by TetGen inside a relaxed surface net; midpoints of the surface on "
-    "the level; edges halved along the ventricles and the tumour; same meshes for both codes",
-    "solver": "Newton, residual 1e-6 of the forces; contact by augmented Lagrangian, ε = 3e7 Pa/m and "
+    "mesh_family": "tetrahedra by TetGen inside a relaxed surface net, midpoints of the surface on "
+    "the level, edges halved along ventricles and tumour; same meshes for both codes",
+    "solver": "Newton, residual 1e-6 of the forces; augmented Lagrangian contact, ε = 3e7 Pa/m and "
     "two augmentations, at twelve points per facet",
 }
 
