@@ -25,16 +25,17 @@ def direct_solver(matrix: PETSc.Mat, factorisation: str) -> PETSc.KSP:
     return solver
 
 
-class SymmetricFactors:
-    """Factors of a symmetric matrix (CSR of SciPy), which need not be definite."""
+class Factors:
+    """Factors of a matrix (CSR of SciPy): `lu`, or `cholesky` of a symmetric one, which need
+    not be definite."""
 
-    def __init__(self, matrix):
+    def __init__(self, matrix, factorisation: str):
         matrix.sort_indices()
         self.matrix = PETSc.Mat().createAIJ(
             matrix.shape, csr=(matrix.indptr, matrix.indices, matrix.data), comm=PETSc.COMM_SELF
         )
-        self.matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-        self.solver = direct_solver(self.matrix, "cholesky")
+        self.matrix.setOption(PETSc.Mat.Option.SYMMETRIC, factorisation == "cholesky")
+        self.solver = direct_solver(self.matrix, factorisation)
         self.solver.setUp()
 
     def solve(self, right: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from ..fenicsx import versions
 from ..fenicsx.kinematics import Solid, invariants
-from ..fenicsx.newton import SymmetricFactors
+from ..fenicsx.newton import Factors
 from ..shared.case import Case
 from ..shared.materials import strain_energy
 from .mesh import Tetrahedra, smallest_determinant
@@ -138,7 +138,7 @@ class Elements:
 
     def solved(self, matrix: sp.csr_matrix, right: np.ndarray) -> np.ndarray:
         """The solution of a symmetric system."""
-        factors = SymmetricFactors(matrix)
+        factors = Factors(matrix, "cholesky")
         answer = factors.solve(right)
         factors.release()
         return answer
