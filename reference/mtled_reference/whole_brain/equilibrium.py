@@ -5,7 +5,7 @@ springs to where the last solution was: R(u) + κ V (u − u_last) = 0 with the 
 the nodes and a stiffness κ [N/m⁴] that falls from one solution to the next, last to zero.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -35,8 +35,9 @@ STEPS = (0.5, 1.0)
 class Balance:
     """Elements, skull, loads (3 n,) [N] and prescribed unknowns with their values [m].
 
-    `elements` has force(u) and stiffness(u) (CSR), solver(matrix) that returns a function, and
-    may have more unknowns than the displacements, which come first.
+    `elements` has force(u), stiffness(u) (CSR) and solved(matrix, right), and may have more
+    unknowns than the displacements, which come first. `progress` is called with the iteration,
+    the fraction of the load, κ, the residual and the penetration [m].
     """
 
     elements: object
@@ -49,7 +50,6 @@ class Balance:
     load_steps: int = 0
     last_change: float = 0.0
     """Largest displacement [m] by the last augmentation."""
-    log: list = field(default_factory=list)
 
     def solve(self) -> np.ndarray:
         """The unknowns in equilibrium."""
@@ -94,10 +94,8 @@ class Balance:
             norm = np.linalg.norm(residual[free])
             scale += np.linalg.norm(residual[self.prescribed])
             moved = np.abs(u[self.prescribed] - target).max(initial=0.0) < 1e-12
-            self.log.append(
-                (fraction, kappa, norm / max(scale, 1e-30), self.wall.penetration(u[:n]))
-            )
-            self.progress(iteration, self.log[-1])
+            relative = norm / max(scale, 1e-30)
+            self.progress(iteration, fraction, kappa, relative, self.wall.penetration(u[:n]))
             if moved and iteration and norm <= tolerance * scale:
                 return u
             change = self._correction(u, residual, target, kappa, free)

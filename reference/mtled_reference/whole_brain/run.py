@@ -86,8 +86,7 @@ def balance_of(case: Case, mesh: Tetrahedra, elements, wall: Wall, progress) -> 
     prescribed = (3 * nodes[:, None] + np.arange(3)).ravel()
     loads = body_forces(case, mesh)
 
-    def report(iteration, entry):
-        fraction, kappa, residual, penetration = entry
+    def report(iteration, fraction, kappa, residual, penetration):
         message = f"{iteration}: load {fraction:g}, springs {kappa:g}, residual {residual:.1e}"
         progress(0.0, f"{message}, penetration {1e6 * penetration:.1f} um")
 
