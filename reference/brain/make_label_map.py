@@ -127,9 +127,9 @@ def choose_slice(brain, ventricles):
 
 
 def faces(mask, origin):
-    """Centres (mm, RAS x y) of the pixel edges between `mask` and its complement."""
+    """Centres (mm, RAS) of the faces between pixels of `mask` and its complement."""
     points = []
-    for axis in (0, 1):
+    for axis in range(mask.ndim):
         at = np.argwhere(np.diff(mask.astype(np.int8), axis=axis) != 0).astype(float)
         at[:, axis] += 0.5
         points.append(at)
@@ -142,7 +142,7 @@ def gap(a, b, origin):
 
 
 def centroid(mask, origin):
-    """Centroid (mm, RAS x y) of a 2-D mask."""
+    """Centroid (mm, RAS) of a mask."""
     return np.argwhere(mask).mean(axis=0) + origin
 
 
@@ -199,12 +199,13 @@ def deflate(data):
     return out.getvalue()
 
 
-def nrrd_bytes(volume, origin):
-    """NRRD of `volume` (x fastest, RAS order) whose first voxel is at RAS `origin` (mm)."""
+def nrrd_bytes(volume, origin, edge=1):
+    """NRRD of `volume` (x fastest, RAS order, voxels of `edge` mm) from RAS `origin` (mm)."""
     x, y, z = (-origin[0], -origin[1], origin[2])
     header = ["NRRD0005", f"# {NOTICE}", "type: unsigned char", "dimension: 3",
               "space: left-posterior-superior", "sizes: {} {} {}".format(*volume.shape),
-              "space directions: (-1,0,0) (0,-1,0) (0,0,1)", "kinds: domain domain domain",
+              f"space directions: (-{edge},0,0) (0,-{edge},0) (0,0,{edge})",
+              "kinds: domain domain domain",
               "encoding: gzip", f"space origin: ({x:g},{y:g},{z:g})", "", ""]
     return "\n".join(header).encode("ascii") + deflate(volume.tobytes(order="F"))
 
@@ -228,6 +229,14 @@ def both(vector):
     return {"ras": ras.tolist(), "lps": lps.tolist()}
 
 
+def provenance():
+    """Where the template comes from, as a JSON-ready dictionary."""
+    return {
+        "package": "nilearn", "version": NILEARN_VERSION,
+        "files": [{"name": MEMBER.format(k), "sha256": v} for k, v in INPUT_SHA256.items()],
+        "template": "ICBM 152 2009a nonlinear symmetric, 1 mm", "notice": NOTICE}
+
+
 def describe(labels, origin, centre, shift, z):
     """Provenance and measures (mm, mm^2) as a JSON-ready dictionary."""
     xy = origin[:2]
@@ -236,10 +245,7 @@ def describe(labels, origin, centre, shift, z):
     point, normal = craniotomy(outline, centroid(tumour, xy), xy)
     edge = faces(outline, xy)
     return {
-        "source": {
-            "package": "nilearn", "version": NILEARN_VERSION,
-            "files": [{"name": MEMBER.format(k), "sha256": v} for k, v in INPUT_SHA256.items()],
-            "template": "ICBM 152 2009a nonlinear symmetric, 1 mm", "notice": NOTICE},
+        "source": provenance(),
         "script_version": SCRIPT_VERSION,
         "z_index": z, "settings": SET,
         "labels": {"0": "outside", "1": "brain", "2": "ventricles", "3": "tumour"},
@@ -278,22 +284,23 @@ def build(wheel, folder):
     return info
 
 
-def main():
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def write_or_check(description, outputs, build):
+    """Command line of a script: `build(wheel, folder)` writes the files `outputs` and returns
+    their description, of which some entries are printed."""
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--wheel", type=Path, help="nilearn wheel (default: pip download)")
     parser.add_argument("--check", action="store_true", help="compare with the committed files")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         wheel = args.wheel or fetch_wheel(scratch)
         info = build(wheel, scratch if args.check else HERE)
-        differing = [n for n in OUTPUTS if args.check
+        differing = [n for n in outputs if args.check
                      and (Path(scratch) / n).read_bytes() != (HERE / n).read_bytes()]
-    for key in ("grid", "area_mm2", "centroid_mm", "tumour", "craniotomy"):
+    for key in [k for k in info if k not in ("source", "script_version", "settings", "labels")]:
         print(f"{key}: {json.dumps(info[key])}")
     if differing:
         sys.exit("differs from the committed files: " + ", ".join(differing))
 
 
 if __name__ == "__main__":
-    main()
+    write_or_check(__doc__.splitlines()[0], OUTPUTS, build)

@@ -24,6 +24,9 @@ from .shared.case import read_case
 from .shared.reference_file import reference, write
 from .shared.resources import peak_memory
 
+WHOLE_BRAIN = ("brain_shift", "brain_gravity")
+"""Cases of the package `whole_brain`."""
+
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS")
 
 
@@ -35,6 +38,11 @@ def solver(code: str, case_name: str) -> Callable:
             from .brain.fenicsx import solve_mesh
         else:
             from .brain.scikit_fem import solve_mesh
+    elif case_name in WHOLE_BRAIN:
+        if code == "fenicsx":
+            from .whole_brain.fenicsx import solve_mesh
+        else:
+            from .whole_brain.scikit_fem import solve_mesh
     elif code == "fenicsx":
         from .fenicsx.solve import solve_mesh
     else:

@@ -16,7 +16,8 @@ MAY_IMPORT = {
     "scikit_fem": {"shared"},
     "brain": {"shared", *CODES},
     "race": {"shared", *CODES},
-    "": {"shared", *CODES, "brain", "race"},
+    "whole_brain": {"shared", *CODES, "brain"},
+    "": {"shared", *CODES, "brain", "whole_brain", "race"},
 }
 """The folders from which the files of a folder may import, beside their own; the root of
 the package is ""."""

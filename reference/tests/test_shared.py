@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from mtled_reference.shared.case import Amplitude, Rotation, read_case
+from mtled_reference.shared.formula import evaluated
 from mtled_reference.shared.materials import material_from_table
 from mtled_reference.shared.measurements import Measurements, resultant, rounded
 from mtled_reference.shared.problem_hash import canonical_text, problem_hash
@@ -22,7 +23,7 @@ CASES = Path(__file__).parent.parent / "cases"
 def test_every_case_is_read(path):
     case = read_case(path)
     assert case.name == path.stem
-    assert case.probes and case.prescriptions
+    assert case.probes and (case.prescriptions or case.body_forces)
     assert case.is_static or case.time.end > 0.0
 
 
@@ -40,8 +41,19 @@ def test_what_no_reference_solves_is_refused(tmp_path):
         read_case(case)
     part = "{ sphere = { centre = [0.0, 0.0, 0.0], radius = 1.0 } }"
     case.write_text(text + f"[[body_force]]\nwhere = {part}\nacceleration = [0.0, 0.0, 1.0]\n")
-    with pytest.raises(ValueError, match="body_force on a part of the body is not solved"):
-        read_case(case)
+    with pytest.raises(ValueError, match="a body force on a part of the body is not solved"):
+        read_case(case).acceleration(1.0)
+
+
+def test_formulas_of_the_position():
+    at = np.array([[0.1, 0.2, 0.3], [1.0, 2.0, -3.0]])
+    x, y, z = at.T
+    assert evaluated("-0.5*(1-x^2/0.25)^2 + abs(z)*sin(PI*y)", at) == pytest.approx(
+        -0.5 * (1 - x**2 / 0.25) ** 2 + np.abs(z) * np.sin(np.pi * y)
+    )
+    assert evaluated("2", at) == pytest.approx([2.0, 2.0])
+    with pytest.raises(ValueError, match="not known"):
+        evaluated("x.real", at)
 
 
 def test_canonical_text():

@@ -8,12 +8,11 @@ import numpy as np
 import scipy.sparse as sp
 import ufl
 from dolfinx import fem
-from petsc4py import PETSc
 from scipy.spatial import cKDTree
 
 from ..fenicsx import versions
 from ..fenicsx.kinematics import PlaneStrain, invariants
-from ..fenicsx.newton import direct_solver
+from ..fenicsx.newton import Factors
 from ..shared.case import Case
 from ..shared.materials import strain_energy
 from .body import read_body
@@ -53,7 +52,7 @@ class Elements:
         self.region = triangles.region[cKDTree(middles).query(centres)[1]]
         self._make_forms(case)
         self._measure_regions(case)
-        self.factorisation = ()
+        self.factors = None
 
     def _make_forms(self, case: Case) -> None:
         """∫ Σ χ_r ψ_r dV over the regions r, with χ_r = 1 in the cells of r."""
@@ -115,26 +114,10 @@ class Elements:
 
     def factorised(self, matrix: sp.csr_matrix):
         """A function that solves with a matrix; that of the last matrix becomes invalid."""
-        for previous in self.factorisation:
-            previous.destroy()
-        matrix.sort_indices()
-        petsc = PETSc.Mat().createAIJ(
-            matrix.shape, csr=(matrix.indptr, matrix.indices, matrix.data), comm=PETSc.COMM_SELF
-        )
-        solver = direct_solver(petsc, "lu")
-        solver.setUp()
-        self.factorisation = (solver, petsc)
-
-        def solve(right):
-            b, x = petsc.createVecs()
-            b.array[:] = right
-            solver.solve(b, x)
-            answer = x.array.copy()
-            b.destroy()
-            x.destroy()
-            return answer
-
-        return solve
+        if self.factors:
+            self.factors.release()
+        self.factors = Factors(matrix, "lu")
+        return self.factors.solve
 
 
 def outline_of(triangles: Triangles, elements: Elements) -> Outline:

@@ -36,9 +36,9 @@ class Slice:
         )
 
 
-def read_slice(path: Path, z: float) -> Slice:
-    """The layer of voxels at height z [m] of an NRRD file of gzipped bytes, with
-    directions along the axes."""
+def read_voxels(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Labels[i, j, k] of an NRRD file of gzipped bytes with directions along the axes, the
+    centre (3,) [m] of the first voxel and the edges (3,) [m] of a voxel."""
     header, data = path.read_bytes().split(b"\n\n", 1)
     field = dict(line.split(": ", 1) for line in header.decode().splitlines()[1:] if ": " in line)
     if (field["type"], field["encoding"]) != ("unsigned char", "gzip"):
@@ -52,10 +52,15 @@ def read_slice(path: Path, z: float) -> Slice:
     edges = np.diag(step) * MILLIMETRE
     if np.any(step != np.diag(np.diag(step))) or np.any(edges <= 0.0) or edges[0] != edges[1]:
         raise ValueError(f"{path.name}: voxels must be square and aligned with the axes")
-    origin = origin * MILLIMETRE
-    layer = int(np.clip(round((z - origin[2]) / edges[2]), 0, sizes[2] - 1))
-    voxels = np.frombuffer(gzip.decompress(data), np.uint8).reshape(sizes[::-1])
-    labels = np.pad(voxels[layer].T, MARGIN)
+    labels = np.frombuffer(gzip.decompress(data), np.uint8).reshape(sizes[::-1]).T
+    return labels, origin * MILLIMETRE, edges
+
+
+def read_slice(path: Path, z: float) -> Slice:
+    """The layer of voxels at height z [m] of an NRRD file."""
+    voxels, origin, edges = read_voxels(path)
+    layer = int(np.clip(round((z - origin[2]) / edges[2]), 0, voxels.shape[2] - 1))
+    labels = np.pad(voxels[:, :, layer], MARGIN)
     return Slice(labels, origin[:2] - MARGIN * edges[0], edges[0])
 
 

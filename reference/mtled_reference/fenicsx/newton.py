@@ -25,6 +25,37 @@ def direct_solver(matrix: PETSc.Mat, factorisation: str) -> PETSc.KSP:
     return solver
 
 
+class Factors:
+    """Factors of a matrix (CSR of SciPy): `lu`, or `cholesky` of a symmetric one, which need
+    not be definite."""
+
+    def __init__(self, matrix, factorisation: str):
+        matrix.sort_indices()
+        self.matrix = PETSc.Mat().createAIJ(
+            matrix.shape, csr=(matrix.indptr, matrix.indices, matrix.data), comm=PETSc.COMM_SELF
+        )
+        self.matrix.setOption(PETSc.Mat.Option.SYMMETRIC, factorisation == "cholesky")
+        self.solver = direct_solver(self.matrix, factorisation)
+        self.solver.setUp()
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """The solution for a right-hand side (n,)."""
+        b, x = self.matrix.createVecs()
+        b.array[:] = right
+        self.solver.solve(b, x)
+        if self.solver.getConvergedReason() < 0:
+            raise NotConverged("the linear solver failed")
+        answer = x.array.copy()
+        b.destroy()
+        x.destroy()
+        return answer
+
+    def release(self) -> None:
+        """Frees the memory of the factors."""
+        self.solver.destroy()
+        self.matrix.destroy()
+
+
 class Newton:
     """Equilibrium of internal forces and loads with some unknowns prescribed."""
 

@@ -38,6 +38,11 @@ class Factorisation:
             return self._factors.solve(right)
         return self._call(33, right[:, None]).ravel()
 
+    def release(self) -> None:
+        """Frees the memory of the factors."""
+        if self._solver is not None and np.any(self._solver.pt):
+            self._solver.free_memory(everything=True)
+
     def _call(self, phase: int, right: np.ndarray) -> np.ndarray:
         self._solver.set_phase(phase)
         return self._solver._call_pardiso(self._matrix, np.asfortranarray(right))

@@ -1,11 +1,12 @@
 """A case file (TOML) read into plain records. SI units."""
 
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from .formula import evaluated
 from .materials import Material, material_from_table
 
 Triple = tuple[float, float, float]
@@ -52,7 +53,8 @@ class Rotation:
 
 @dataclass(frozen=True)
 class Prescription:
-    """A prescribed displacement [m] or rotation, until `release` [s]."""
+    """A prescribed displacement [m], rotation or formula of the position, until `release`
+    [s]. A formula is three texts and a factor."""
 
     name: str
     of: str
@@ -61,10 +63,11 @@ class Prescription:
     rotation: Rotation | None
     amplitude: Amplitude
     release: float
+    formula: tuple | None = field(default=None, kw_only=True)
 
     def components(self, dimension: int) -> list[int]:
         """Indices of the prescribed components."""
-        if self.rotation is not None:
+        if self.rotation is not None or self.formula is not None:
             return list(range(dimension))
         return [i for i in range(dimension) if self.displacement[i] is not None]
 
@@ -73,6 +76,9 @@ class Prescription:
         0 in components that are free."""
         if self.rotation is not None:
             return self.rotation.displacements(positions, factor)
+        if self.formula is not None:
+            *texts, scale = self.formula
+            return factor * scale * np.stack([evaluated(t, positions) for t in texts], axis=1)
         full = np.array([component or 0.0 for component in self.displacement])
         return np.tile(factor * full, (len(positions), 1))
 
@@ -88,10 +94,11 @@ class Region:
 
 @dataclass(frozen=True)
 class BodyForce:
-    """A force per mass [m/s²] on the whole body."""
+    """A force per mass [m/s²] on a part of the body."""
 
     acceleration: Triple
     amplitude: Amplitude
+    selector: object = field(default="all", kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -168,9 +175,11 @@ class Case:
         return np.concatenate([points, z], axis=-1)
 
     def acceleration(self, t: float) -> np.ndarray:
-        """Sum of the body forces per mass [m/s²] at time t [s]."""
+        """Sum of the body forces per mass [m/s²] at time t [s], which act on the whole body."""
         total = np.zeros(3)
         for force in self.body_forces:
+            if force.selector != "all":
+                raise ValueError("a body force on a part of the body is not solved here")
             total += force.amplitude(t) * np.asarray(force.acceleration)
         return total
 
@@ -183,8 +192,6 @@ def read_case(path: str | Path) -> Case:
     for key in NOT_SOLVED:
         if document.get(key):
             raise ValueError(f"{key} is not solved by the references")
-    if any(row.get("where", "all") != "all" for row in document.get("body_force", [])):
-        raise ValueError("body_force on a part of the body is not solved by the references")
     plane = document.get("plane", {})
     plane_strain = document.get("dimension", "3d") == "plane_strain"
     about = document.get("output", {}).get("moment_about", [0.0, 0.0, 0.0])
@@ -199,7 +206,7 @@ def read_case(path: str | Path) -> Case:
         regions=_regions(document),
         prescriptions=[_prescription(row) for row in document.get("prescribe", [])],
         body_forces=[
-            BodyForce(tuple(row["acceleration"]), _amplitude(row))
+            BodyForce(tuple(row["acceleration"]), _amplitude(row), selector=row.get("where", "all"))
             for row in document.get("body_force", [])
         ],
         tractions=[
@@ -235,9 +242,9 @@ def _amplitude(row: dict) -> Amplitude:
 
 
 def _prescription(row: dict) -> Prescription:
-    for key in ("formula", "data"):
-        if key in row:
-            raise ValueError(f"prescribe.{row['name']}: {key} is not solved by the references")
+    if "data" in row:
+        raise ValueError(f"prescribe.{row['name']}: data is not solved by the references")
+    formula = row.get("formula")
     displacement = row.get("displacement", {})
     rotation = row.get("rotation")
     return Prescription(
@@ -250,6 +257,9 @@ def _prescription(row: dict) -> Prescription:
         else None,
         amplitude=_amplitude(row),
         release=float(row.get("release", np.inf)),
+        formula=(*(formula.get(k, "0") for k in "xyz"), float(formula.get("factor", 1.0)))
+        if formula
+        else None,
     )
 
 

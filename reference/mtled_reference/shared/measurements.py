@@ -51,6 +51,10 @@ class Measurements:
         self._append(f"force/{condition}", in_space(force))
         self._append(f"moment/{condition}", in_space(moment))
 
+    def contact(self, obstacle: str, force: np.ndarray) -> None:
+        """Force [N] that an obstacle exerts on the body."""
+        self._append(f"contact/{obstacle}", in_space(force))
+
     def strain_energy(self, energy: float) -> None:
         """∫ ψ dV [J]."""
         self._append("strain_energy", energy)

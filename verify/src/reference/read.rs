@@ -193,7 +193,10 @@ fn check_mesh(
     required: &[Quantity],
 ) -> Result<(), ReferenceError> {
     let (case, code) = (case.name.clone(), code.to_string());
-    let known = |name: &str| required.iter().any(|quantity| quantity.name == name);
+    // Forces of obstacles are stored, but not compared.
+    let known = |name: &str| {
+        name.starts_with("contact/") || required.iter().any(|quantity| quantity.name == name)
+    };
     if let Some(name) = mesh.values.keys().find(|name| !known(name)) {
         let quantity = name.clone();
         return Err(ReferenceError::UnknownQuantity { case, code, mesh: index, quantity });

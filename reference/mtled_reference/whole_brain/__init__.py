@@ -1,0 +1,1 @@
+"""The cases of a whole brain with both codes: geometry, mesh, contact, equilibrium."""
