@@ -21,6 +21,8 @@ bundled! {
     "bonded_block"
     "brain_cube_compression"
     "brain_cube_shear"
+    "brain_gravity"
+    "brain_shift"
     "brain_slice"
     "cook_membrane"
     "cube_compression"
@@ -36,18 +38,33 @@ bundled! {
     "uniaxial_bar"
 }
 
-const SLICE: &[u8] = include_bytes!("../../reference/brain/slice.nrrd");
+/// Cases that take seconds rather than parts of one: studies that solve every case many times
+/// leave them out.
+pub const LARGE: [&str; 2] = ["brain_gravity", "brain_shift"];
 
-/// Writes the bundled cases to `dir/cases` and the label map to `dir/brain`,
-/// where the cases look for it; returns the folder of the cases.
+/// (file, bytes) of the label maps in `reference/brain`.
+const LABEL_MAPS: [(&str, &[u8]); 2] = [
+    ("brain.nrrd", include_bytes!("../../reference/brain/brain.nrrd")),
+    ("slice.nrrd", include_bytes!("../../reference/brain/slice.nrrd")),
+];
+
+/// Writes the bundled cases to `dir/cases` and the label maps to `dir/brain`,
+/// where the cases look for them; returns the folder of the cases.
 pub fn unpack(dir: &Path) -> anyhow::Result<PathBuf> {
     let cases = dir.join("cases");
     for (name, text) in CASES {
         write_atomically(&cases.join(format!("{name}.toml")), text.as_bytes())?;
     }
-    write_atomically(&dir.join("brain").join("slice.nrrd"), SLICE)
-        .context("cannot write the label map of the brain slice")?;
+    for (name, bytes) in LABEL_MAPS {
+        write_atomically(&dir.join("brain").join(name), bytes)
+            .with_context(|| format!("cannot write the label map {name}"))?;
+    }
     Ok(cases)
+}
+
+/// Names of the bundled cases that are quickly solved.
+pub fn small_cases() -> impl Iterator<Item = &'static str> {
+    CASES.iter().map(|(name, _)| *name).filter(|name| !LARGE.contains(name))
 }
 
 /// The bundled reference of a case.

@@ -2,7 +2,7 @@
 
 use super::args::ErrorArgs;
 use super::ranges::Ranges;
-use crate::bundled::CASES;
+use crate::bundled::small_cases;
 use crate::cli::common::{Common, command_line};
 use crate::cli::progress::ManyRuns;
 use crate::cli::publish::{publish, report_of, tables};
@@ -81,7 +81,7 @@ fn with_unit(text: &str, units: &[(&str, f64)]) -> Option<f64> {
 pub fn tune_cases(arguments: &TuneArgs, common: &Common) -> Result<u8> {
     let store = arguments.error.store.open()?;
     let names: Vec<String> = match arguments.all_cases {
-        true => CASES.iter().map(|(name, _)| name.to_string()).collect(),
+        true => small_cases().map(String::from).collect(),
         false => arguments.cases.clone(),
     };
     let requests = names.iter().map(|name| request(name, arguments, &store));

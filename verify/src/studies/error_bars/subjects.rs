@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::accuracy::ReferenceSolution;
-use crate::bundled::CASES;
+use crate::bundled::small_cases;
 use crate::exact::manufactured::{Family, FieldKind, Manufactured};
 use crate::reference::agreement::rms_of_points;
 use crate::reference::quantities;
@@ -111,7 +111,7 @@ pub fn plans(bench: &Workbench) -> Vec<Plan> {
     let clouds = bench.pick(1, 3);
     for cloud in 0..clouds {
         for &factor in bench.pick(&[1.0][..], &[1.0, 1.2]) {
-            plans.extend(CASES.iter().map(|&(name, _)| Plan::Bundled { name, cloud, factor }));
+            plans.extend(small_cases().map(|name| Plan::Bundled { name, cloud, factor }));
         }
         let [new, known] = bench.pick(FIRST_PLANE_BODY, [0, 0]);
         let bodies = (&KNOWN_BODIES[known..], &NEW_BODIES[new..]);
