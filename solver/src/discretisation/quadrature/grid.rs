@@ -20,7 +20,7 @@ const FRACTION_DEPTH_PLANE: usize = 5;
 /// fraction of its edge from that of a plane \[–\].
 const FLAT: f64 = 1e-9;
 /// The same for a boundary that is cut as a plane of the same mean distance \[–\].
-const NEARLY_FLAT: f64 = 0.02;
+const NEARLY_FLAT: f64 = 0.004;
 /// Parts of a cell smaller than this fraction of it are dropped \[–\].
 const SMALLEST_FRACTION: f64 = 1e-4;
 

@@ -15,6 +15,18 @@ type Groups = &'static [(Group, Option<f64>)];
 /// Cases with such groups, and the reason.
 const EXCEPTIONS: &[(&str, Groups, &str)] = &[
     (
+        "brain_gravity",
+        &[(Group::StrainEnergy, Some(0.05))],
+        "the energy has 0.9 mJ of 5.6 in soft ventricles and next to the skull, where 5 000 nodes are coarse: \
+         with 12 000 it is 2 % too low, with 25 000 within 1 %",
+    ),
+    (
+        "brain_shift",
+        &[(Group::Force, None), (Group::StrainEnergy, Some(0.05))],
+        "the brain all but floats in its skull: the force that holds it is 0.009 to 0.019 N in the references, \
+         and the place of the skull changes it by 0.02 N per 0.1 mm",
+    ),
+    (
         "brain_slice",
         &[(Group::Force, None), (Group::StrainEnergy, None), (Group::CentreOfMass, Some(0.025))],
         "voxel edges on the outline change how the brain slides along the skull: the finite-element centres \
