@@ -103,13 +103,25 @@ impl Chosen<'_> {
 /// already, to rounding, the same point.
 pub(crate) fn project(shape: &Shape, X: &Vector3) -> Vector3 {
     let tolerance = 1e-10 * shape.size();
-    let mut at = *X;
+    let (mut at, mut distance) = (*X, shape.signed_distance(X));
     for _ in 0..8 {
-        let distance = shape.signed_distance(&at);
         if distance.abs() <= tolerance {
             break;
         }
-        at -= distance * shape.gradient(&at);
+        // Along one direction by secants: between the samples of a label map the distance
+        // grows faster or slower than the way.
+        let direction = shape.gradient(&at);
+        let mut way = distance;
+        for _ in 0..6 {
+            at -= way * direction;
+            let left = shape.signed_distance(&at);
+            let slope = (distance - left) / way;
+            distance = left;
+            if left.abs() <= tolerance || !(0.3..3.0).contains(&slope) {
+                break;
+            }
+            way = left / slope;
+        }
     }
     at
 }

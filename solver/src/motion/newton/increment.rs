@@ -25,7 +25,9 @@ const MOST_ITERATIONS_IN_CONTACT: usize = 100;
 const MOST_HALVINGS: usize = 6;
 /// Bounds of the relative residual at which conjugate gradients end.
 const FORCING: (f64, f64) = (1e-4, 0.1);
-/// The same for the first correction, which is not followed by a line search.
+/// Part of the tolerance that the last correction aims at \[–\].
+const ENOUGH: f64 = 0.3;
+/// Bound for the first correction, which is not followed by a line search.
 const FIRST_FORCING: f64 = 0.01;
 /// A correction may not compress a point to less than this fraction of its volume.
 const SMALLEST_VOLUME: f64 = 0.1;
@@ -184,7 +186,11 @@ impl<'a> Solver<'a> {
             let fallen = now.imbalance.norm(model) / norm;
             forcing = match first {
                 true => FORCING.1,
-                false => (0.9 * fallen * fallen).clamp(FORCING.0, FORCING.1),
+                false => {
+                    // Not much beyond the tolerance (Kelley 1995, eq. 6.20).
+                    let enough = ENOUGH * tolerance / now.imbalance.relative(model);
+                    (0.9 * fallen * fallen).max(enough).clamp(FORCING.0, FORCING.1)
+                }
             };
             first = false;
         }
