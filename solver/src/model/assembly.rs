@@ -48,6 +48,8 @@ pub struct Model {
     pub initial_velocity: Vec<f64>,
     /// Per-point bound of the critical time step at rest, for the lumped masses \[s\].
     pub per_point_bound: f64,
+    /// The connected body of each node.
+    pub bodies: Vec<u32>,
     /// Diagonal of the box around all nodes \[m\].
     pub extent: f64,
     /// Reference positions of the quadrature points \[point\] \[m\].
@@ -85,11 +87,13 @@ impl Model {
         let contact = ContactPlan::new(problem, discretisation, &constraints)?;
         let (cloud, end) = (&discretisation.cloud, problem.motion.end());
         warnings.extend(check_obstacles(&contact, cloud, &constraints, components, end)?);
-        check_rank(discretisation, &constraints)?;
+        let bodies = connected_bodies(&discretisation.supports, cloud.positions.len());
+        check_rank(discretisation, &constraints, &bodies)?;
         let per_point_bound = per_point_bound(problem, discretisation, &lumped_mass);
         let (lower, upper) = bounding_box(&discretisation.cloud.positions);
         Ok(Model {
             components,
+            bodies,
             positions: discretisation.cloud.positions.clone(),
             sums: Sums::new(&blocks, lumped_mass.len()),
             blocks,
@@ -146,14 +150,17 @@ fn empty_regions(problem: &Problem, discretisation: &Discretisation) -> Vec<Warn
 /// Refuses a model with too few points. At rest a point has six strains, three in a
 /// plane; motions beyond all strains, the constrained components and the rigid motions
 /// of each body have no energy, whatever the supports (method book, eq. 22.2).
-fn check_rank(discretisation: &Discretisation, constraints: &Constraints) -> Result<(), Error> {
+fn check_rank(
+    discretisation: &Discretisation,
+    constraints: &Constraints,
+    bodies: &[u32],
+) -> Result<(), Error> {
     let (points, nodes) = (discretisation.supports.len(), discretisation.cloud.positions.len());
     let (d, strains, rigid) = match discretisation.dimension {
         Dimension::Three => (3, 6, 6),
         Dimension::PlaneStrain { .. } => (2, 3, 3),
     };
     let constrained: usize = constraints.active(0.0).iter().map(|set| set.rows.len()).sum();
-    let bodies = connected_bodies(&discretisation.supports, nodes);
     let bodies = bodies.iter().max().map_or(0, |&last| last as usize + 1);
     let modes = (d * nodes).saturating_sub(constrained + strains * points + rigid * bodies);
     match modes {

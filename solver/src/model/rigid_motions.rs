@@ -9,24 +9,29 @@ use nalgebra::{DMatrix, DVector};
 /// closed at displacements `u` \[component of node\] \[m\] leave free: the dimension of
 /// their kernel in the rigid motions. A closed contact counts as if it could not open.
 pub fn free_rigid_motions(model: &Model, t: f64, u: &[f64]) -> usize {
-    let mut rows = prescribed(model, t);
+    let mut rows = prescribed_places(model, t);
     rows.extend(model.contact.closed(&model.positions, u));
     kernel(model, &rows)
 }
 
 /// Number of rigid motions that the conditions at time `t` \[s\] leave to contact.
 pub fn rigid_motions_left_to_contact(model: &Model, t: f64) -> usize {
-    kernel(model, &prescribed(model, t))
+    kernel(model, &prescribed_places(model, t))
 }
 
-/// Places and directions of what the conditions prescribe.
-pub(crate) fn prescribed(model: &Model, t: f64) -> Vec<(Vector3, Vector3)> {
-    let mut rows: Vec<(Vector3, Vector3)> = Vec::new();
+/// Nodes and directions of what the conditions prescribe.
+pub(crate) fn prescribed(model: &Model, t: f64) -> Vec<(u32, Vector3)> {
+    let mut rows: Vec<(u32, Vector3)> = Vec::new();
     for set in model.constraints.active(t) {
         let along = Vector3::ith(set.component, 1.0);
-        rows.extend(set.rows.iter().map(|row| (model.positions[row.node as usize], along)));
+        rows.extend(set.rows.iter().map(|row| (row.node, along)));
     }
     rows
+}
+
+fn prescribed_places(model: &Model, t: f64) -> Vec<(Vector3, Vector3)> {
+    let place = |(node, along): (u32, Vector3)| (model.positions[node as usize], along);
+    prescribed(model, t).into_iter().map(place).collect()
 }
 
 /// Dimension of the rigid motions without a component along any of the rows (place,

@@ -14,7 +14,7 @@ const ALONG: f64 = 1e-8;
 /// nothing drives it \[–\].
 const DRIVEN: f64 = 1e-3;
 
-/// Rigid motions \[component of node\] that neither the conditions nor the closed contacts
+/// Rigid motions of single bodies \[component of node\] that neither the conditions nor the closed contacts
 /// hinder and that the unbalanced forces \[N\] do not drive, such as a ball that turns in a
 /// smooth hollow one. The loads say nothing about them; Newton's method stops them
 /// (method book, eq. 21.12).
@@ -28,18 +28,42 @@ pub(super) fn drifts(
     if contacts.is_empty() {
         return Vec::new();
     }
-    let mut rows = prescribed(model, t);
-    rows.extend(contacts.iter().map(|row| (place(model, row.node, u), row.along)));
-    let d = model.components;
-    let motions = rigid_motions_beside(model, &rows, ALONG).into_iter().map(|motion| {
-        let mut drift = Vec::with_capacity(model.size());
-        for (node, X) in model.positions.iter().enumerate() {
-            let velocity: Vector3 = motion(&(X + vector_at(u, node, d)));
-            drift.extend((0..d).map(|k| velocity[k]));
+    let bodies = model.bodies.iter().max().map_or(0, |&last| last + 1);
+    let prescribed = prescribed(model, t);
+    let mut drifts = Vec::new();
+    for body in 0..bodies {
+        let own = |node: u32| model.bodies[node as usize] == body;
+        let held = prescribed.iter().filter(|(node, _)| own(*node));
+        let held = held.map(|(node, along)| (model.positions[*node as usize], *along));
+        let touching = contacts.iter().filter(|row| own(row.node));
+        let touching = touching.map(|row| (place(model, row.node, u), row.along));
+        let rows: Vec<(Vector3, Vector3)> = held.chain(touching).collect();
+        if !rows.is_empty() {
+            let motions = rigid_motions_beside(model, &rows, ALONG);
+            drifts.extend(motions.iter().map(|motion| drift_of(model, body, u, motion)));
         }
-        drift
-    });
-    motions.filter(|drift| !is_driven(drift, force)).collect()
+    }
+    drifts.retain(|drift| !is_driven(drift, force));
+    drifts
+}
+
+/// A rigid motion of one body.
+fn drift_of(
+    model: &Model,
+    body: u32,
+    u: &[f64],
+    motion: &impl Fn(&Vector3) -> Vector3,
+) -> Vec<f64> {
+    let d = model.components;
+    let mut drift = Vec::with_capacity(model.size());
+    for (node, X) in model.positions.iter().enumerate() {
+        let velocity = match model.bodies[node] == body {
+            true => motion(&(X + vector_at(u, node, d))),
+            false => Vector3::zeros(),
+        };
+        drift.extend((0..d).map(|k| velocity[k]));
+    }
+    drift
 }
 
 fn is_driven(drift: &[f64], force: &[f64]) -> bool {
