@@ -32,18 +32,22 @@ pub fn contacts_json(case: &Case, results: &[ContactResult]) -> Vec<Value> {
     let obstacles = case.problem.obstacles.iter().zip(results);
     obstacles
         .map(|(obstacle, result)| {
-            let inside = result.depth > 0.0;
-            json!({
+            let mut contact = json!({
                 "obstacle": obstacle.name,
                 "nodes": result.nodes,
                 "force_n": <[f64; 3]>::from(result.force),
                 "normal_force_n": result.normal_force,
                 "area_m2": result.area,
-                "mean_pressure_pa": (result.area > 0.0).then(|| result.normal_force / result.area),
                 "largest_pressure_pa": result.largest_pressure,
                 "deepest_penetration_m": result.depth,
-                "deepest_at_m": inside.then(|| <[f64; 3]>::from(result.deepest)),
-            })
+            });
+            if result.area > 0.0 {
+                contact["mean_pressure_pa"] = json!(result.normal_force / result.area);
+            }
+            if result.depth > 0.0 {
+                contact["deepest_at_m"] = json!(<[f64; 3]>::from(result.deepest));
+            }
+            contact
         })
         .collect()
 }
