@@ -1,11 +1,13 @@
 """The label map of the brain slice as smooth signed distances.
 
 The body of the case is not made of voxels but has a smooth outline: the 0/1 image is
-smoothed by a Gaussian with a standard deviation of 0.7 voxels, and the distance to its
-level 1/2 is shifted so that the enclosed area is that of the voxels.
+smoothed by a Gaussian with a standard deviation of 0.7 voxels, after which no voxel is on
+another side, and the distance to its level 1/2 is shifted so that the enclosed area is
+that of the voxels.
 """
 
 import gzip
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +16,10 @@ from scipy.ndimage import correlate1d, distance_transform_edt
 from scipy.optimize import brentq
 
 SMOOTHING = 0.7
-"""Standard deviation of the Gaussian [voxel], which is truncated at three voxels."""
+"""Standard deviation of the Gaussian [voxel], which is truncated at three voxels; the largest
+of one pass where more smoothing is wanted."""
+SIDE = 0.01
+"""Distance of the values of voxels from 1/2 after a pass [–]."""
 MARGIN = 12
 """Empty space around the image, which contains the skull [voxel]."""
 MILLIMETRE = 1e-3
@@ -68,18 +73,30 @@ def signed_distance(image: Slice, labels: list[int]) -> np.ndarray:
     """Signed distance [m] of the voxel centres to the smooth outline of some labels,
     negative inside."""
     chosen = np.isin(image.labels, labels)
-    kernel = np.exp(-0.5 * (np.arange(-3, 4) / SMOOTHING) ** 2)
+    distance = _distance_to_level(0.5 - smoothed(chosen, SMOOTHING)) * image.voxel
+    return enclosing(distance, image.voxel, enclosed_area, chosen.sum() * image.voxel**2)
+
+
+def smoothed(chosen: np.ndarray, smoothing: float) -> np.ndarray:
+    """The 0/1 image smoothed with a standard deviation [voxel] without voxels changing sides."""
+    passes = int(np.ceil((smoothing / SMOOTHING) ** 2 - 1e-9))
+    kernel = np.exp(-0.5 * (np.arange(-3, 4) * np.sqrt(passes) / smoothing) ** 2)
     level = chosen.astype(float)
-    for axis in (0, 1):
-        level = correlate1d(level, kernel / kernel.sum(), axis=axis, mode="constant")
-    distance = _distance_to_level(0.5 - level) * image.voxel
-    area = chosen.sum() * image.voxel**2
-    shift = brentq(
-        lambda s: enclosed_area(distance - s, image.voxel) - area,
-        -image.voxel,
-        image.voxel,
-        xtol=1e-9,
-    )
+    for _ in range(passes):
+        for axis in range(chosen.ndim):
+            level = correlate1d(level, kernel / kernel.sum(), axis=axis, mode="constant")
+        level = np.where(chosen, np.maximum(level, 0.5 + SIDE), np.minimum(level, 0.5 - SIDE))
+    return level
+
+
+def enclosing(
+    distance: np.ndarray,
+    voxel: float,
+    enclosed: Callable[[np.ndarray, float], float],
+    size: float,
+) -> np.ndarray:
+    """The distance [m] shifted by a constant, so that it encloses an area or a volume."""
+    shift = brentq(lambda s: enclosed(distance - s, voxel) - size, -voxel, voxel, xtol=1e-9)
     return distance - shift
 
 

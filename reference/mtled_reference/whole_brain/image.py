@@ -11,18 +11,13 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from scipy.ndimage import correlate1d, distance_transform_edt, map_coordinates, spline_filter
-from scipy.optimize import brentq
+from scipy.ndimage import distance_transform_edt, map_coordinates, spline_filter
 
-from ..brain.image import read_voxels
+from ..brain.image import enclosing, read_voxels, smoothed
 from .nets import distance_to_triangles, surface_nets, triangles_of
 
 MARGIN = 10
 """Empty voxels around the image, which contain the skull."""
-PASS = 0.7
-"""Largest standard deviation of one pass [voxel]; a pass is truncated at three voxels."""
-SIDE = 0.01
-"""Distance of the values of voxels from 1/2 after a pass [–]."""
 BAND = 5.0
 """Distance [voxel] up to which distances are measured to the surface; farther voxels count
 the voxels to the other side, since only their sign matters."""
@@ -43,18 +38,6 @@ def read_label_map(path: Path) -> LabelMap:
     if not np.allclose(edges, edges[0]):
         raise ValueError(f"{path.name}: voxels must be cubes")
     return LabelMap(np.pad(labels, MARGIN), origin - MARGIN * edges[0], float(edges[0]))
-
-
-def smoothed(chosen: np.ndarray, smoothing: float) -> np.ndarray:
-    """The 0/1 image smoothed with a standard deviation [voxel] without voxels changing sides."""
-    passes = int(np.ceil((smoothing / PASS) ** 2 - 1e-9))
-    kernel = np.exp(-0.5 * (np.arange(-3, 4) * np.sqrt(passes) / smoothing) ** 2)
-    level = chosen.astype(float)
-    for _ in range(passes):
-        for axis in range(3):
-            level = correlate1d(level, kernel / kernel.sum(), axis=axis, mode="constant")
-        level = np.where(chosen, np.maximum(level, 0.5 + SIDE), np.minimum(level, 0.5 - SIDE))
-    return level
 
 
 @dataclass(frozen=True)
@@ -133,13 +116,8 @@ def signed_distance(image: LabelMap, labels: list[int], smoothing: float) -> Sig
     values = 0.5 - smoothed(chosen, smoothing)
     distance = _distance_to_level(values) * image.voxel
     volume = chosen.sum() * image.voxel**3
-    shift = brentq(
-        lambda s: enclosed_volume(distance - s, image.voxel) - volume,
-        -image.voxel,
-        image.voxel,
-        xtol=1e-9,
-    )
-    return SignedDistance(distance - shift, image.corner, image.voxel)
+    samples = enclosing(distance, image.voxel, enclosed_volume, volume)
+    return SignedDistance(samples, image.corner, image.voxel)
 
 
 def _distance_to_level(values: np.ndarray) -> np.ndarray:

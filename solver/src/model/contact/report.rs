@@ -132,7 +132,8 @@ impl ContactSurface {
 }
 
 impl ContactPlan {
-    /// Normals of the obstacles towards the body where they exert forces.
+    /// Normals of the obstacles towards the body where they exert forces, at nodal
+    /// parameters `u` \[component of node\] \[m\].
     pub fn normals(
         &self,
         positions: &[Vector3],
@@ -140,11 +141,19 @@ impl ContactPlan {
         u: &[f64],
     ) -> Vec<Vector3> {
         let components = u.len() / positions.len();
-        let at = |force: &ContactForce| {
-            let node = force.node as usize;
-            let x = positions[node] + vector_at(u, node, components);
-            normal(&self.obstacles[force.obstacle as usize], &x, components)
-        };
-        forces.iter().map(at).collect()
+        let place = |node| positions[node as usize] + vector_at(u, node as usize, components);
+        self.normals_at(forces, components, place).collect()
+    }
+
+    /// The same with nodes at current places \[m\].
+    pub(crate) fn normals_at(
+        &self,
+        forces: &[ContactForce],
+        components: usize,
+        place: impl Fn(u32) -> Vector3,
+    ) -> impl Iterator<Item = Vector3> {
+        forces.iter().map(move |force| {
+            normal(&self.obstacles[force.obstacle as usize], &place(force.node), components)
+        })
     }
 }

@@ -171,12 +171,9 @@ impl ActiveContacts {
 
     /// The parts of forces along the normals, positive where the obstacle pushes \[N\].
     pub fn normal_forces(&self, model: &Model, u: &[f64], forces: &[ContactForce]) -> Vec<f64> {
-        let d = model.components;
-        let along_normal = |force: &ContactForce| {
-            let x = place(model, force.node, u);
-            normal(&model.contact.obstacles[force.obstacle as usize], &x, d).dot(&force.force)
-        };
-        forces.iter().map(along_normal).collect()
+        let at = |node| place(model, node, u);
+        let normals = model.contact.normals_at(forces, model.components, at);
+        normals.zip(forces).map(|(normal, force)| normal.dot(&force.force)).collect()
     }
 }
 
