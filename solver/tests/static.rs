@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::statics::*;
 use common::*;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Discretisation;
@@ -12,45 +13,7 @@ use mtled::model::Model;
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
-use mtled::motion::summary::Summary;
 use mtled::problem::*;
-
-const TOLERANCE: f64 = 1e-5;
-
-fn relaxation(tolerance: f64) -> Motion {
-    Motion::Static(Relaxation {
-        load_end: 1.0,
-        load_steps: 200,
-        tolerance,
-        max_steps: 50_000,
-        step: StepControl::default(),
-        mass: RelaxationMass::default(),
-    })
-}
-
-struct Solved {
-    discretisation: Discretisation,
-    model: Model,
-    state: State,
-    recorder: Recorder,
-    summary: Summary,
-}
-
-fn solve(problem: &Problem) -> Solved {
-    solve_to(problem, TOLERANCE)
-}
-
-fn solve_to(problem: &Problem, tolerance: f64) -> Solved {
-    solve_by(problem, relaxation(tolerance))
-}
-
-fn solve_by(problem: &Problem, motion: Motion) -> Solved {
-    let problem = Problem { motion, ..problem.clone() };
-    let (discretisation, model) = build(&problem);
-    let (mut state, mut recorder) = (State::new(&model), Recorder::default());
-    let summary = simulate(&model, &problem.motion, &mut state, &mut recorder).unwrap();
-    Solved { discretisation, model, state, recorder, summary }
-}
 
 /// A cube on rollers, stretched along x by a fifth.
 fn bar() -> Problem {
@@ -62,20 +25,6 @@ fn bar() -> Problem {
         condition("pull", face(0, EDGE), [Some(0.2 * EDGE), None, None]),
     ];
     problem.conditions[3].amplitude = Amplitude::Smooth { duration: 1.0 };
-    problem
-}
-
-/// Clamped at its base, its top displaced sideways, under its own weight.
-fn leaning(problem: Problem) -> Problem {
-    let mut problem = problem;
-    let up = problem.dimension.components() - 1;
-    problem.conditions.push(condition("base", face(up, 0.0), [Some(0.0); 3]));
-    let mut top = condition("top", face(up, EDGE), [Some(0.15 * EDGE), Some(0.05 * EDGE), None]);
-    top.amplitude = Amplitude::Linear { duration: 1.0 };
-    problem.conditions.push(top);
-    let mut down = Vector3::zeros();
-    down[up] = -2.0;
-    gravity(&mut problem, down);
     problem
 }
 
@@ -264,90 +213,6 @@ fn a_body_force_field_is_weighted_with_the_mass_where_it_acts() {
     assert!((total - expected).norm() < 1e-12, "{total}");
 }
 
-fn newton() -> Motion {
-    Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-10 })
-}
-
-/// Largest difference over the largest displacement.
-fn difference(u: &[f64], v: &[f64]) -> f64 {
-    u.iter().zip(v).fold(0.0f64, |a, (u, v)| a.max((u - v).abs())) / largest(v)
-}
-
-#[test]
-fn newton_reaches_the_solution_of_relaxation_with_its_reactions() {
-    let nearly_incompressible = |problem| {
-        let mut problem = with_law(leaning(problem), neo_hookean(3000.0, 0.49));
-        problem.recipe.volumetric_projection = VolumetricProjection::Patches;
-        problem
-    };
-    for problem in [
-        leaning(jittered(cube(4), 0.2, 1)),
-        collocated(leaning(jittered(cube(4), 0.2, 1))),
-        collocated(nearly_incompressible(jittered(square(6), 0.2, 1))),
-    ] {
-        let exact = solve_by(&problem, newton());
-        let counts = exact.summary.newton.unwrap();
-        assert!(counts.residual <= 1e-10, "{counts:?}");
-        let relaxed = solve_to(&problem, 1e-7);
-        let error = difference(&relaxed.state.displacement, &exact.state.displacement);
-        assert!(error <= 1e-7, "{error:e}");
-        for (a, b) in relaxed.recorder.reactions.iter().zip(&exact.recorder.reactions) {
-            let error = (a.force - b.force).norm() / b.force.norm();
-            assert!(
-                error < 1e-5 && (a.moment - b.moment).norm() < 1e-5 * b.moment.norm(),
-                "{error:e}"
-            );
-        }
-    }
-}
-
-#[test]
-fn from_a_relaxed_state_newton_needs_one_increment() {
-    let mut solved = solve(&collocated(leaning(jittered(cube(4), 0.2, 1))));
-    let before = solved.state.displacement.clone();
-    let summary = simulate(&solved.model, &newton(), &mut solved.state, &mut Unobserved).unwrap();
-    let counts = summary.newton.unwrap();
-    assert!(counts.increments == 1 && counts.iterations <= 4, "{counts:?}");
-    assert!(difference(&before, &solved.state.displacement) <= TOLERANCE);
-}
-
-#[test]
-fn the_works_of_newton_sum_to_the_strain_energy_of_the_solution() {
-    let solved = solve_by(&collocated(leaning(jittered(cube(4), 0.2, 1))), newton());
-    let last = solved.recorder.energies.last().unwrap();
-    assert!(last.strain > 0.0 && last.kinetic == 0.0);
-    assert!(last.balance().abs() < 1e-12 * last.strain, "{last:?}");
-}
-
-#[test]
-fn newton_converges_for_a_rotation_that_needs_no_force() {
-    let mut problem = collocated(cube(3));
-    let mut turned = condition("boundary", Selector::All, [None; 3]);
-    let axis = Vector3::new(1.0, 2.0, 2.0) / 3.0;
-    turned.prescribed = Prescribed::Rotation { point: Vector3::zeros(), axis, angle: 1.0 };
-    turned.amplitude = Amplitude::Linear { duration: 1.0 };
-    problem.conditions = vec![turned];
-    let solved = solve_by(&problem, newton());
-    let u = &solved.state.displacement;
-    let f = forces(&solved.model, u);
-    assert!(largest(&f) < 1e-11 * largest(&solved.model.stiffness) * largest(u));
-}
-
-#[test]
-fn a_load_without_equilibrium_ends_in_an_error_with_the_load_reached() {
-    let mut problem = square(3);
-    problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
-    gravity(&mut problem, Vector3::new(0.0, -1e5, 0.0));
-    // A law that softens in compression.
-    problem = with_law(problem, objective_laws()[3]);
-    problem.motion = newton();
-    let (_, model) = build(&problem);
-    let mut state = State::new(&model);
-    let run = simulate(&model, &problem.motion, &mut state, &mut Unobserved);
-    let Err(Error::NoEquilibrium { reached, iterations, .. }) = run else { panic!("{run:?}") };
-    assert!(reached < 1.0 && iterations > 0);
-}
-
 #[test]
 fn static_solutions_do_not_depend_on_the_mass_of_the_relaxation() {
     let problem = collocated(leaning(jittered(square(6), 0.3, 3)));
@@ -405,46 +270,6 @@ fn a_body_that_only_shifts_converges_without_stress_to_compare_with() {
     let solved = solve_by(&shifted(), newton());
     let residual = solved.summary.newton.unwrap().residual;
     assert!(residual < 1e-6, "{residual:e}");
-}
-
-/// A strip of soft tissue that stands on its lower edge, six times as high as wide.
-fn standing(young_modulus: f64) -> Problem {
-    let law = neo_hookean(young_modulus, 0.3);
-    let mut problem = with_law(jittered(square(5), 0.3, 2), law);
-    problem.body = mtled::geometry::Shape::Box {
-        min: Vector3::zeros(),
-        max: Vector3::new(EDGE, 6.0 * EDGE, EDGE),
-    };
-    problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
-    gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
-    problem
-}
-
-/// Young's modulus \[Pa\] below which the strip buckles under its weight, E' I q h³ = 7.84
-/// (Greenhill 1881), with E' = E/(1 − ν²) in plane strain.
-fn greenhill_modulus() -> f64 {
-    let (height, square_of_gyration) = (6.0 * EDGE, EDGE * EDGE / 12.0);
-    9.81 * 1000.0 * height.powi(3) / (7.8373 * square_of_gyration) * (1.0 - 0.3 * 0.3)
-}
-
-#[test]
-fn a_strip_that_buckles_under_its_weight_is_called_unstable_and_a_stiffer_one_is_not() {
-    let run = |young_modulus: f64| {
-        let problem = Problem { motion: relaxation(1e-4), ..standing(young_modulus) };
-        let (_, model) = build(&problem);
-        simulate(&model, &problem.motion, &mut State::new(&model), &mut Unobserved)
-    };
-    for stable in [1.5, 4.0] {
-        assert_eq!(run(stable * greenhill_modulus()).unwrap().instability, None, "{stable}");
-    }
-    for unstable in [0.8, 0.5] {
-        let instability = match run(unstable * greenhill_modulus()) {
-            Ok(summary) => summary.instability.expect("the strip has buckled without a word"),
-            Err(Error::Unstable { instability, .. }) => instability,
-            Err(other) => panic!("{other}"),
-        };
-        assert!(instability.position.y > 5.0 * EDGE, "{unstable}: {instability}");
-    }
 }
 
 #[test]

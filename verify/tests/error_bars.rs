@@ -112,7 +112,7 @@ fn error_bars_and_their_field_are_the_same_on_any_number_of_threads() {
     let run = |threads: &str| {
         let dir = TempDir::new().unwrap();
         solved_in(dir.path(), BLOCK, &["--threads", threads]);
-        let frame = std::fs::read(dir.path().join("out/nodes_0002.vtu")).unwrap();
+        let frame = std::fs::read(dir.path().join("out/nodes_0001.vtu")).unwrap();
         (result(dir.path())["error_bars"].clone(), frame)
     };
     let (bars, frame) = run("1");

@@ -32,7 +32,7 @@ fn case(load: f64, frames: usize) -> String {
     let block = block.replace("[0.0, 0.0, 1.0]\n\n", &format!("[0.0, 0.0, {load:?}]\n\n"));
     let probe = "[[probe]]\nname = \"top\"\npoint = [0.05, 0.05, 0.1]\n";
     format!(
-        "{block}[time]\nmethod = \"static\"\ntolerance = 1e-3\n{probe}[output]\nframes = {frames}\n"
+        "{block}[time]\nmethod = \"static\"\nsolver = \"relaxation\"\ntolerance = 1e-3\n{probe}[output]\nframes = {frames}\n"
     )
 }
 

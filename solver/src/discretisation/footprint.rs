@@ -130,7 +130,7 @@ impl Footprint {
             + self.panels * (PER_PANEL + PER_PANEL_ENTRY * self.neighbours)
             + problem.loads.pressures.len() as f64 * self.panels * PER_ROW_ENTRY * self.neighbours
             + match problem.motion {
-                Motion::Equilibrium(_) => {
+                Motion::Automatic(_) | Motion::Equilibrium(_) => {
                     self.nodes * (PER_NEWTON_NODE + PER_NEWTON_ENTRY * self.neighbours)
                 }
                 _ => 0.0,

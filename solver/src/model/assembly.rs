@@ -75,10 +75,13 @@ impl Model {
         let stiffness = stiffness_diagonal(&blocks, components, lumped_mass.len());
         let inertia = match problem.motion {
             Motion::Dynamic { .. }
+            | Motion::Automatic(Relaxation { mass: RelaxationMass::Lumped, .. })
             | Motion::Static(Relaxation { mass: RelaxationMass::Lumped, .. }) => {
                 lumped_mass.clone()
             }
-            Motion::Static(_) | Motion::Equilibrium(_) => fictitious_mass(&stiffness, &lumped_mass),
+            Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => {
+                fictitious_mass(&stiffness, &lumped_mass)
+            }
         };
         let mut warnings = empty_regions(problem, discretisation);
         warnings.extend(check_shared_nodes(problem, discretisation)?);
@@ -108,7 +111,7 @@ impl Model {
             extent: (upper - lower).norm(),
             lumped_mass,
             nodal_rows: match problem.motion {
-                Motion::Equilibrium(_) => {
+                Motion::Automatic(_) | Motion::Equilibrium(_) => {
                     Some(discretisation.rows_at(&discretisation.cloud.positions)?)
                 }
                 _ => None,

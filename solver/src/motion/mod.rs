@@ -10,6 +10,7 @@ pub mod newton;
 pub mod observe;
 pub mod relaxation;
 pub mod simulate;
+pub(crate) mod stability;
 pub mod state;
 pub mod step;
 pub mod step_control;

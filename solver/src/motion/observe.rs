@@ -48,6 +48,15 @@ pub trait Observer {
     /// Called once before the first step and after every step.
     fn observe(&mut self, view: &mut View) -> Continue;
 
+    /// Called within an iteration whose states are no solutions yet, with the completed
+    /// fraction of the run \[–\] and the number of corrections.
+    fn iterate(&mut self, _progress: f64, _corrections: usize) -> Continue {
+        Continue::Yes
+    }
+
+    /// Called where a run begins again from its first state by another method.
+    fn restart(&mut self) {}
+
     /// Whether the run accumulates work, for an energy balance.
     fn tracks_work(&self) -> bool {
         false

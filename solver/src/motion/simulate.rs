@@ -9,8 +9,8 @@ use crate::motion::relaxation::relax;
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, Scheme, StepReport, add_pressures, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};
-use crate::motion::summary::Summary;
-use crate::problem::{Motion, StepControl};
+use crate::motion::summary::{NewtonFailure, Summary};
+use crate::problem::{Motion, Relaxation, StepControl, sticks};
 
 /// Runs the motion of a problem from `state`, and notifies `observer` after every step.
 /// After an error the state is the last one reached, and the observer keeps its records.
@@ -30,6 +30,10 @@ pub fn simulate(
             }
             integrate(model, *end, *step, *damping, state, observer)
         }
+        Motion::Automatic(settings) => {
+            refuse_unheld(model, settings.load_end)?;
+            solve_static(model, settings, state, observer)
+        }
         Motion::Static(settings) => {
             refuse_unheld(model, settings.load_end)?;
             relax(model, settings, state, observer)
@@ -38,6 +42,29 @@ pub fn simulate(
             refuse_unheld(model, settings.load_end)?;
             equilibrate(model, settings, state, observer)
         }
+    }
+}
+
+/// Newton's method, and relaxation from the start where that fails or is not the way: a body
+/// that sticks to obstacles depends on how the load comes.
+fn solve_static(
+    model: &Model,
+    settings: &Relaxation,
+    state: &mut State,
+    observer: &mut dyn Observer,
+) -> Result<Summary, Error> {
+    if sticks(&model.contact.obstacles) {
+        return relax(model, settings, state, observer);
+    }
+    let start = state.copy();
+    match equilibrate(model, &settings.newton(), state, observer) {
+        Err(Error::NoEquilibrium { reached, iterations, .. }) => {
+            *state = start;
+            observer.restart();
+            let summary = relax(model, settings, state, observer)?;
+            Ok(Summary { newton_failed: Some(NewtonFailure { reached, iterations }), ..summary })
+        }
+        solved => solved,
     }
 }
 

@@ -57,6 +57,18 @@ impl State {
         }
     }
 
+    /// A copy but for the multipliers, which the next step finds again.
+    pub(crate) fn copy(&self) -> State {
+        State {
+            displacement: self.displacement.clone(),
+            velocity: self.velocity.clone(),
+            constraint_forces: ConstraintForces::default(),
+            residual_scratch: ConstraintForces::default(),
+            contact: self.contact.clone(),
+            ..*self
+        }
+    }
+
     /// Force \[N\] and moment about `about` \[m\] that each condition exerts on the body, in
     /// the order of the problem's conditions.
     pub fn reactions(&self, model: &Model, about: &Vector3) -> Vec<Reaction> {

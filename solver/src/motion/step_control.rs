@@ -108,6 +108,7 @@ impl StepController {
                 relaxation: None,
                 newton: None,
                 stopped: false,
+                newton_failed: None,
                 instability: None,
                 stability_products: 0,
             },

@@ -27,6 +27,8 @@ pub struct Summary {
     pub relaxation: Option<Convergence>,
     /// Cost of Newton's method, which has no time steps: they are 0.
     pub newton: Option<NewtonCounts>,
+    /// Newton's method where it failed before relaxation.
+    pub newton_failed: Option<NewtonFailure>,
     /// Whether the observer ended the run early: a static solution has not converged.
     pub stopped: bool,
     /// Products with the tangent that looked for it, not counted elsewhere.
@@ -97,6 +99,15 @@ pub struct NewtonCounts {
     pub evaluations: usize,
     /// Largest unbalanced nodal force over the largest nodal force \[–\].
     pub residual: f64,
+}
+
+/// How far Newton's method came where relaxation took its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonFailure {
+    /// Fraction of the load \[–\].
+    pub reached: f64,
+    /// Corrections.
+    pub iterations: usize,
 }
 
 /// How well dynamic relaxation has converged.

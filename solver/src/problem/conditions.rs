@@ -150,3 +150,8 @@ pub enum Friction {
     /// Nodes that touch do not slide while they touch.
     NoSlip,
 }
+
+/// Whether a body sticks to one of these obstacles.
+pub fn sticks(obstacles: &[Obstacle]) -> bool {
+    obstacles.iter().any(|obstacle| obstacle.friction == Friction::NoSlip)
+}

@@ -10,7 +10,7 @@ pub use crate::geometry::{Dimension, Field};
 pub use amplitude::Amplitude;
 pub use conditions::{
     BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed, Pressure,
-    Traction,
+    Traction, sticks,
 };
 pub use motion::{Motion, Newton, Relaxation, RelaxationMass, StepControl};
 pub use recipe::{
@@ -56,7 +56,7 @@ impl Problem {
             conditions: Vec::new(),
             loads: Loads::default(),
             obstacles: Vec::new(),
-            motion: Motion::Static(Relaxation::default()),
+            motion: Motion::Automatic(Relaxation::default()),
         }
     }
 }

@@ -12,6 +12,10 @@ pub enum Motion {
         /// Mass-proportional damping: f_damp = −`damping` M v \[1/s\].
         damping: f64,
     },
+    /// To a static solution by what suits the scene: Newton's method, unless a body sticks to
+    /// obstacles, where the way to the solution matters; relaxation with these settings there
+    /// and where Newton's method fails.
+    Automatic(Relaxation),
     /// Dynamic relaxation to a static solution.
     Static(Relaxation),
     /// Newton's method to a static solution.
@@ -23,8 +27,25 @@ impl Motion {
     pub fn end(&self) -> f64 {
         match self {
             Motion::Dynamic { end, .. } => *end,
-            Motion::Static(Relaxation { load_end, .. })
+            Motion::Automatic(Relaxation { load_end, .. })
+            | Motion::Static(Relaxation { load_end, .. })
             | Motion::Equilibrium(Newton { load_end, .. }) => *load_end,
+        }
+    }
+
+    /// Settings of relaxation, where it may be what solves a static problem.
+    pub fn relaxation(&self) -> Option<&Relaxation> {
+        match self {
+            Motion::Automatic(relaxation) | Motion::Static(relaxation) => Some(relaxation),
+            Motion::Dynamic { .. } | Motion::Equilibrium(_) => None,
+        }
+    }
+
+    /// As [`Motion::relaxation`], to be changed.
+    pub fn relaxation_mut(&mut self) -> Option<&mut Relaxation> {
+        match self {
+            Motion::Automatic(relaxation) | Motion::Static(relaxation) => Some(relaxation),
+            Motion::Dynamic { .. } | Motion::Equilibrium(_) => None,
         }
     }
 
@@ -96,6 +117,17 @@ impl Default for Relaxation {
             step: StepControl::default(),
             mass: RelaxationMass::default(),
         }
+    }
+}
+
+/// Unbalanced nodal force over the largest one with which Newton's method meets a tolerance of
+/// displacements, over that tolerance \[–\].
+const RESIDUAL_OF_TOLERANCE: f64 = 0.01;
+
+impl Relaxation {
+    /// Newton's method to the same load, with displacements at least as close to the solution.
+    pub fn newton(&self) -> Newton {
+        Newton { load_end: self.load_end, tolerance: RESIDUAL_OF_TOLERANCE * self.tolerance }
     }
 }
 

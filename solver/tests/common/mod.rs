@@ -14,6 +14,8 @@ use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::*;
 use nalgebra::DMatrix;
 
+pub mod statics;
+
 /// Edge of the cube and of the square \[m\].
 pub const EDGE: f64 = 0.1;
 /// Thickness of the square \[m\].

@@ -10,6 +10,7 @@ const MAY_BE_NULL: &[&str] = &[
     "relaxation",
     "instability",
     "newton",
+    "newton_failed",
     "smallest_time_step_s",
     "largest_time_step_s",
     "critical_time_step_s",

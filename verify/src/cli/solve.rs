@@ -51,10 +51,8 @@ fn solve_to(
     }
     let bar = progress_bar(common);
     let show = |progress: f64, step: usize| {
-        if step.is_multiple_of(16) {
-            bar.set_position((1000.0 * progress) as u64);
-            bar.set_message(format!("step {step}"));
-        }
+        bar.set_position((1000.0 * progress) as u64);
+        bar.set_message(format!("step {step}"));
     };
     let mut recorder = Recorder::new(case, &prepared, case.outputs.frames)?.with_progress(&show);
     let solution = integrate_prepared(&case.problem, &prepared, &mut recorder);

@@ -3,7 +3,7 @@
 use super::format::{Mesh, ReferenceFile, SCHEMA_VERSION, Solution, Values};
 use super::quantity::{Quantity, is_dynamic, quantities};
 use crate::scene::Case;
-use mtled::problem::{Motion, Newton, Relaxation};
+use mtled::problem::Motion;
 use thiserror::Error;
 
 /// Codes that references come from; a case needs both.
@@ -96,9 +96,9 @@ fn check(case: &Case, file: &ReferenceFile) -> Result<(), ReferenceError> {
 fn check_times(case: &Case, times: &[f64]) -> Result<(), ReferenceError> {
     let refuse = |reason: String| Err(ReferenceError::Times { case: case.name.clone(), reason });
     match &case.problem.motion {
-        Motion::Static(Relaxation { load_end, .. })
-        | Motion::Equilibrium(Newton { load_end, .. }) => {
-            if times != [*load_end] {
+        Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => {
+            let load_end = case.problem.motion.end();
+            if times != [load_end] {
                 return refuse(format!("must be [{load_end}], the end of loading"));
             }
         }

@@ -118,7 +118,7 @@ fn lists_frames(collection: &Path) -> bool {
 fn order(motion: &Motion) -> Order {
     match motion {
         Motion::Dynamic { .. } => Order::Time,
-        Motion::Static(_) | Motion::Equilibrium(_) => Order::Number,
+        Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => Order::Number,
     }
 }
 
@@ -168,12 +168,11 @@ fn write_frames(
 
 /// Time of a frame \[s\], or how far a static run had come.
 fn numbers(motion: &Motion, frame: &Frame) -> Vec<(&'static str, f64)> {
-    let static_run =
-        |load_end: f64| vec![("step", frame.step as f64), ("load_fraction", frame.time / load_end)];
-    match motion {
-        Motion::Dynamic { .. } => vec![("TimeValue", frame.time)],
-        Motion::Static(settings) => static_run(settings.load_end),
-        Motion::Equilibrium(settings) => static_run(settings.load_end),
+    match order(motion) {
+        Order::Time => vec![("TimeValue", frame.time)],
+        Order::Number => {
+            vec![("step", frame.step as f64), ("load_fraction", frame.time / motion.end())]
+        }
     }
 }
 

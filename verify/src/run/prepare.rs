@@ -32,12 +32,10 @@ impl Prepared {
 
     /// What leaves a static problem without a single solution.
     fn not_held(&self, problem: &Problem) -> Option<String> {
-        let load_end = match &problem.motion {
-            Motion::Dynamic { .. } => return None,
-            Motion::Static(settings) => settings.load_end,
-            Motion::Equilibrium(settings) => settings.load_end,
-        };
-        let model = &self.model;
+        if matches!(problem.motion, Motion::Dynamic { .. }) {
+            return None;
+        }
+        let (model, load_end) = (&self.model, problem.motion.end());
         let free = match free_rigid_motions(model, load_end, &vec![0.0; model.size()]) {
             0 => return None,
             1 => "a rigid motion".to_string(),

@@ -215,6 +215,18 @@ impl Observer for Recorder<'_> {
         if stop { Continue::Stop } else { Continue::Yes }
     }
 
+    fn iterate(&mut self, progress: f64, corrections: usize) -> Continue {
+        if let Some(report) = self.progress {
+            report(progress, corrections);
+        }
+        if interrupted() { Continue::Stop } else { Continue::Yes }
+    }
+
+    fn restart(&mut self) {
+        self.samples = Series::new(self.samples.parts);
+        self.frames = Series::new(self.frames.parts);
+    }
+
     fn tracks_work(&self) -> bool {
         true
     }

@@ -138,7 +138,7 @@ impl Outcome {
 fn method(case: &Case) -> &'static str {
     match case.problem.motion {
         Motion::Dynamic { .. } => "dynamic",
-        Motion::Static(_) | Motion::Equilibrium(_) => "static",
+        Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => "static",
     }
 }
 
@@ -158,6 +158,9 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
             "relative_residual": counts.residual,
         })
     });
+    let newton_failed = summary
+        .newton_failed
+        .map(|failure| json!({ "reached": failure.reached, "iterations": failure.iterations }));
     let moves = newton.is_none();
     let dynamic = matches!(case.problem.motion, Motion::Dynamic { .. });
     let unstable = summary.instability.as_ref().map(|instability| {
@@ -182,6 +185,7 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
         "instability": unstable,
         "relaxation": relaxation,
         "newton": newton,
+        "newton_failed": newton_failed,
     })
 }
 
@@ -234,6 +238,11 @@ fn energies_json(record: &Recording) -> Value {
     })
 }
 
+/// How a static run ended.
+fn ending(summary: &Summary) -> &'static str {
+    if summary.stopped { "stopped before convergence" } else { "converged" }
+}
+
 /// The main results, a line each, with their error bars.
 pub fn summary_text(
     case: &Case,
@@ -254,8 +263,9 @@ pub fn summary_text(
         ),
         match s.newton {
             Some(newton) => format!(
-                "  {} corrections in {} parts of the load, {} products with the tangent, smallest J {}, \
+                "  {}: {} corrections in {} parts of the load, {} products with the tangent, smallest J {}, \
                  residual {} of the largest nodal force",
+                ending(s),
                 newton.iterations,
                 newton.increments,
                 newton.products,
@@ -276,10 +286,16 @@ pub fn summary_text(
         let fraction = model.added_mass / model.lumped_mass.iter().sum::<f64>();
         lines.push(format!("  mass scaling adds {} % of the mass", four_digits(100.0 * fraction)));
     }
+    if let Some(failure) = s.newton_failed {
+        lines.push(format!(
+            "  Newton's method reached {:.0} % of the load in {} corrections; by relaxation from the start:",
+            100.0 * failure.reached, failure.iterations
+        ));
+    }
     if let Some(convergence) = s.relaxation {
         lines.push(format!(
             "  {}: estimated error {} m, residual {} of the largest nodal force",
-            if s.stopped { "stopped before it converged" } else { "converged" },
+            ending(s),
             four_digits(convergence.estimated_error),
             four_digits(convergence.residual)
         ));

@@ -15,7 +15,7 @@ const CHANGED: f64 = 0.1;
 /// The same for the shift, as a factor \[–\].
 const SHIFTED: f64 = 3.0;
 /// Bodies of fewer nodes, and those in a plane, take no more products with the diagonal alone.
-const LEAST_NODES: usize = 1000;
+const LEAST_NODES: usize = 200;
 /// Products after which the diagonal alone takes over for good: on a few irregular clouds the
 /// transform to nodal values is nearly singular.
 const PATIENCE: usize = 400;
@@ -27,6 +27,8 @@ pub(super) struct Correction {
     pub indefinite: bool,
     /// Products with K.
     pub products: usize,
+    /// Whether the observer ended the run.
+    pub stopped: bool,
 }
 
 /// The system of a correction.
@@ -85,8 +87,14 @@ impl Solver {
         (self.held, self.shift) = (held, shift);
     }
 
-    /// Conjugate gradients within the free displacements.
-    pub fn solve(&mut self, model: &Model, free: &mut FreeSpace, system: System) -> Correction {
+    /// Conjugate gradients within the free displacements, while `go_on` says so.
+    pub fn solve(
+        &mut self,
+        model: &Model,
+        free: &mut FreeSpace,
+        system: System,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Correction {
         let System { mut tangent, mut residual, mut change, forcing, sliding, shift } = system;
         self.prepare(model, free, shift);
         let d = model.components;
@@ -110,10 +118,11 @@ impl Solver {
         let mut square = dot(&residual, &descent);
         let target = forcing * forcing * norm_squared(model, &residual);
         let most = PATIENCE + 2 * tangent_size(model, free);
-        let mut indefinite = false;
+        let (mut indefinite, mut stopped) = (false, false);
         for count in 0..most {
             let left = norm_squared(model, &residual);
-            if square.is_nan() || left <= target {
+            stopped = !go_on();
+            if stopped || square.is_nan() || left <= target {
                 break;
             }
             let product = product_with(&direction);
@@ -138,7 +147,7 @@ impl Solver {
                 *p = z + square / before * *p;
             }
         }
-        Correction { change, indefinite, products }
+        Correction { change, indefinite, products, stopped }
     }
 
     /// z = Π B r; r becomes M Π M⁻¹ r, without the forces of what is held, whose round-off

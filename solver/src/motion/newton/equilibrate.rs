@@ -1,11 +1,12 @@
 //! Newton's method towards a static solution, the load in as few parts as it takes.
 
-use super::increment::{Equilibrium, Solver};
+use super::increment::{Equilibrium, Solver, Unsolved};
 use crate::algebra::packed::dot;
-use crate::error::Error;
+use crate::error::{Error, Instability};
 use crate::model::Model;
 use crate::motion::internal_force::strain_energy;
 use crate::motion::observe::{Continue, Observer, notify};
+use crate::motion::stability::Stability;
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, add_pressures, external_force};
 use crate::motion::summary::Summary;
@@ -35,7 +36,7 @@ pub(crate) fn equilibrate(
         let fraction = if reached + 1.5 * increment > 1.0 { 1.0 } else { reached + increment };
         let last = fraction == 1.0;
         let tolerance = if last { settings.tolerance } else { PASSING_TOLERANCE };
-        match solver.solve(&state.displacement, fraction, tolerance, &mut buffers) {
+        match solver.solve(&state.displacement, fraction, tolerance, &mut buffers, observer) {
             Ok(equilibrium) => {
                 let jacobian = equilibrium.imbalance.smallest_jacobian.jacobian;
                 solver.accept(equilibrium, fraction, state, &mut buffers);
@@ -44,20 +45,31 @@ pub(crate) fn equilibrate(
                 let stop = notify(model, state, &mut buffers, jacobian, reached, observer);
                 stopped = stop == Continue::Stop;
             }
-            Err(failed) => {
+            Err(Unsolved::Stopped(here)) => {
+                let jacobian = here.imbalance.smallest_jacobian.jacobian;
+                solver.accept(*here, fraction, state, &mut buffers);
+                notify(model, state, &mut buffers, jacobian, reached, observer);
+                stopped = true;
+            }
+            Err(Unsolved::Failed { residual, indefinite }) => {
                 increment = 0.5 * (fraction - reached);
                 if increment < SMALLEST_INCREMENT {
                     return Err(Error::NoEquilibrium {
                         reached,
                         iterations: solver.counts.iterations,
-                        residual: failed.residual,
-                        indefinite: failed.indefinite,
+                        residual,
+                        indefinite,
                     });
                 }
             }
         }
     }
-    Ok(solver.summary(state, stopped))
+    let mut stability = Stability::default();
+    let products = match stopped {
+        true => 0,
+        false => stability.search(model, state, &mut buffers.workspace),
+    };
+    Ok(solver.summary(state, stopped, stability.found, products))
 }
 
 impl Solver<'_> {
@@ -101,7 +113,13 @@ impl Solver<'_> {
         state.force_factor = 1.0;
     }
 
-    pub(super) fn summary(&self, state: &State, stopped: bool) -> Summary {
+    fn summary(
+        &self,
+        state: &State,
+        stopped: bool,
+        instability: Option<Instability>,
+        stability_products: usize,
+    ) -> Summary {
         Summary {
             steps: self.counts.iterations,
             time: state.time,
@@ -112,9 +130,10 @@ impl Solver<'_> {
             smallest_jacobian: self.smallest_jacobian,
             relaxation: None,
             newton: Some(self.counts),
+            newton_failed: None,
             stopped,
-            instability: None,
-            stability_products: 0,
+            instability,
+            stability_products,
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::model::contact::ContactForce;
 use crate::model::rigid_motions::rigid_motions_left_to_contact;
 use crate::motion::balance::Imbalance;
 use crate::motion::internal_force::SmallestJacobian;
+use crate::motion::observe::{Continue, Observer};
 use crate::motion::state::State;
 use crate::motion::step::Buffers;
 use crate::motion::summary::NewtonCounts;
@@ -65,10 +66,14 @@ pub(super) struct Equilibrium {
     pub imbalance: Imbalance,
 }
 
-/// Why an increment failed.
-pub(super) struct FailedIncrement {
-    pub residual: f64,
-    pub indefinite: bool,
+/// Why an increment has no equilibrium.
+pub(super) enum Unsolved {
+    Failed {
+        residual: f64,
+        indefinite: bool,
+    },
+    /// The observer ended the run here.
+    Stopped(Box<Equilibrium>),
 }
 
 /// How a correction is taken.
@@ -102,7 +107,9 @@ impl<'a> Solver<'a> {
         // Before anything fades: the conditions and forces at the start.
         let forces = &mut solver.free.forces;
         solver.path.gap = solver.path.jump(model, 0.0, &state.displacement, forces);
-        solver.path.force = solver.imbalance(&state.displacement, 0.0, buffers).force;
+        let imbalance = solver.imbalance(&state.displacement, 0.0, buffers);
+        solver.path.force = imbalance.force;
+        solver.smallest_jacobian = imbalance.smallest_jacobian;
         solver
     }
 
@@ -122,10 +129,11 @@ impl<'a> Solver<'a> {
         fraction: f64,
         tolerance: f64,
         buffers: &mut Buffers,
-    ) -> Result<Equilibrium, FailedIncrement> {
+        observer: &mut dyn Observer,
+    ) -> Result<Equilibrium, Unsolved> {
         let contacts = self.contacts.clone();
-        let solved = self.iterate(start, fraction, tolerance, buffers);
-        if solved.is_err() {
+        let solved = self.iterate(start, fraction, tolerance, buffers, observer);
+        if matches!(solved, Err(Unsolved::Failed { .. })) {
             self.contacts = contacts;
         }
         solved
@@ -137,7 +145,8 @@ impl<'a> Solver<'a> {
         fraction: f64,
         tolerance: f64,
         buffers: &mut Buffers,
-    ) -> Result<Equilibrium, FailedIncrement> {
+        observer: &mut dyn Observer,
+    ) -> Result<Equilibrium, Unsolved> {
         let model = self.model;
         self.free.t = self.path.time(fraction);
         self.contacts.begin();
@@ -153,7 +162,7 @@ impl<'a> Solver<'a> {
         for _ in 0..=most {
             let changes = self.settle(start, &mut now);
             let residual = now.imbalance.relative(model);
-            let failed = FailedIncrement { residual, indefinite };
+            let failed = Unsolved::Failed { residual, indefinite };
             if residual.is_nan() {
                 return Err(failed);
             }
@@ -164,7 +173,13 @@ impl<'a> Solver<'a> {
             }
             self.free.close_contacts(&mut jump);
             let change = std::mem::take(&mut jump);
-            let correction = self.correction(&now, change, forcing, indefinite, buffers);
+            let (progress, count) = (progress(residual, tolerance), self.counts.iterations);
+            let mut go_on = || observer.iterate(fraction * progress, count) == Continue::Yes;
+            let correction =
+                self.correction(&now, change, forcing, indefinite, buffers, &mut go_on);
+            if correction.stopped {
+                return Err(Unsolved::Stopped(Box::new(now)));
+            }
             indefinite = correction.indefinite;
             let searched = !first && settled;
             let norm = now.imbalance.norm(model);
@@ -194,7 +209,7 @@ impl<'a> Solver<'a> {
             };
             first = false;
         }
-        Err(FailedIncrement { residual: now.imbalance.relative(model), indefinite })
+        Err(Unsolved::Failed { residual: now.imbalance.relative(model), indefinite })
     }
 
     fn is_balanced(&self, now: &Equilibrium, tolerance: f64) -> bool {
@@ -277,6 +292,7 @@ impl<'a> Solver<'a> {
         forcing: f64,
         only_resisting: bool,
         buffers: &mut Buffers,
+        go_on: &mut dyn FnMut() -> bool,
     ) -> Correction {
         let model = self.model;
         let forces = self.contact_forces(&now.imbalance);
@@ -284,7 +300,7 @@ impl<'a> Solver<'a> {
         let tangent = Tangent::new(model, &now.u, self.free.t, &mut buffers.workspace);
         let residual = now.imbalance.free(model);
         let system = System { tangent, residual, change, forcing, sliding, shift: self.shift };
-        let correction = self.linear.solve(model, &mut self.free, system);
+        let correction = self.linear.solve(model, &mut self.free, system, go_on);
         self.counts.iterations += 1;
         self.counts.products += correction.products;
         self.counts.evaluations += correction.products;
@@ -344,6 +360,11 @@ impl<'a> Solver<'a> {
             (valid && closer).then_some(Equilibrium { u, imbalance })
         })
     }
+}
+
+/// How far a residual has fallen to its tolerance, in orders of magnitude \[–\].
+fn progress(residual: f64, tolerance: f64) -> f64 {
+    (residual.ln() / tolerance.ln()).clamp(0.0, 1.0)
 }
 
 /// Factor of the shift after a correction, by the part of the contacts that changed \[–\]

@@ -1,7 +1,7 @@
 //! The damping factor of dynamic relaxation.
 
 use crate::model::Model;
-use crate::motion::relaxation::stability::Curvature;
+use crate::motion::stability::Curvature;
 use crate::motion::state::State;
 use crate::motion::step::Buffers;
 use crate::problem::Relaxation;

@@ -1,7 +1,6 @@
-//! Dynamic relaxation: its loop, its damping, and the stability of what it finds.
+//! Dynamic relaxation: its loop and its damping.
 
 mod damping;
 mod relax;
-mod stability;
 
 pub(crate) use relax::relax;

@@ -7,7 +7,7 @@ use crate::model::rigid_motions::free_rigid_motions;
 use crate::motion::balance::Imbalance;
 use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::relaxation::damping::Damping;
-use crate::motion::relaxation::stability::{Stability, fastest_node};
+use crate::motion::stability::{Stability, fastest_node};
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, Scheme, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};

@@ -163,7 +163,7 @@ pub fn advice(inspection: &Inspection) -> Vec<String> {
                     .into(),
             );
         }
-        if modes.rigid > 0 && matches!(problem.motion, Motion::Static(_)) {
+        if modes.rigid > 0 && !matches!(problem.motion, Motion::Dynamic { .. }) {
             advice.push(format!(
                 "{} rigid motions are not constrained: a static solution exists only if the loads balance; \
                  constrain the body, or use time.method = \"dynamic\".",

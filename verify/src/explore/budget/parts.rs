@@ -1,7 +1,7 @@
 //! The parts of an error, and the run that shows each.
 
 use crate::scene::{Case, Knob, Setting};
-use mtled::problem::{Basis, Motion, VolumetricProjection};
+use mtled::problem::{Basis, Motion, VolumetricProjection, sticks};
 
 /// One part of the error.
 #[derive(Debug, Clone)]
@@ -97,7 +97,11 @@ fn time(case: &Case) -> Part {
             "the equilibrium of the same discretisation by Newton's method".into(),
             vec![Setting::word(Knob::Solver, "newton")],
         ),
-        Motion::Static(relaxation) => {
+        Motion::Automatic(settings) if !sticks(&case.problem.obstacles) => {
+            let (old, new) = (settings.tolerance, 1e-4 * settings.tolerance);
+            part("time", format!("solved to {new:.0e} instead of {old:.0e}"), tolerance(new))
+        }
+        Motion::Automatic(relaxation) | Motion::Static(relaxation) => {
             let (old, new) = (relaxation.tolerance, 0.1 * relaxation.tolerance);
             part("time", format!("relaxed to {new:.0e} instead of {old:.0e}"), tolerance(new))
         }

@@ -120,7 +120,7 @@ pub fn solvers(case: &Case) -> Vec<Candidate> {
             .iter()
             .map(|&factor| Candidate::single(vec![Setting::number(Knob::SafetyFactor, factor)]))
             .collect(),
-        Motion::Static(_) | Motion::Equilibrium(_) => SOLVERS
+        Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => SOLVERS
             .iter()
             .map(|&(solver, tolerance)| {
                 Candidate::single(vec![

@@ -10,7 +10,7 @@ use crate::scene::Case;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
 use mtled::model::zero_energy::{refuse_zero_energy_modes, tested_points};
-use mtled::problem::{Motion, Newton, Problem};
+use mtled::problem::{Motion, Newton, Problem, sticks};
 
 /// Spacings over that of the run, where Newton's method takes the place of relaxation: a few
 /// times cheaper: three clouds are affordable in space, and two in a plane, where work falls
@@ -20,7 +20,7 @@ const BY_NEWTON_IN_A_PLANE: [f64; 2] = [1.7, 2.4];
 /// Spacings over that of the run, where the coarser clouds are solved as the run was \[–\].
 const AS_THE_RUN: [f64; 2] = [2.0, 2.8];
 /// Residual of Newton's method on coarser clouds \[–\].
-const TOLERANCE: f64 = 1e-4;
+const TOLERANCE: f64 = 1e-3;
 /// A lattice that leaves a part of the body with few points is made this much coarser once,
 /// which costs less than the test for zero-energy modes \[–\].
 const OTHER_FIT: f64 = 1.06;
@@ -56,17 +56,17 @@ pub fn ratios(problem: &Problem) -> &'static [f64] {
     }
 }
 
-/// Newton's method in place of a relaxation without contact.
+/// Newton's method, where it is what solves the run or takes the place of a relaxation without
+/// contact.
 fn by_newton(problem: &Problem) -> Option<Motion> {
-    match &problem.motion {
-        Motion::Static(relaxation) if problem.obstacles.is_empty() => {
-            Some(Motion::Equilibrium(Newton {
-                load_end: relaxation.load_end,
-                tolerance: TOLERANCE,
-            }))
-        }
-        _ => None,
-    }
+    let serves = match &problem.motion {
+        Motion::Dynamic { .. } => false,
+        Motion::Automatic(_) => !sticks(&problem.obstacles),
+        Motion::Static(_) => problem.obstacles.is_empty(),
+        Motion::Equilibrium(_) => true,
+    };
+    let load_end = problem.motion.end();
+    serves.then_some(Motion::Equilibrium(Newton { load_end, tolerance: TOLERANCE }))
 }
 
 /// Solves a case with every length of its recipe multiplied by `ratio`; nothing of its

@@ -45,7 +45,10 @@ impl Builder<'_> {
                 self.at_least_one("time.load_steps", relaxation.load_steps);
                 self.at_least_one("time.max_steps", relaxation.max_steps);
                 self.tolerance_of_time(relaxation.tolerance);
-                Motion::Static(relaxation)
+                match format.solver {
+                    Some(SolverFormat::Relaxation) => Motion::Static(relaxation),
+                    _ => Motion::Automatic(relaxation),
+                }
             }
         }
     }

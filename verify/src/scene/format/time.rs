@@ -7,12 +7,12 @@ use serde::Deserialize;
 
 /// How the body moves. `end`, `damping` and `mass_scaling` belong to method "dynamic";
 /// `solver`, `load_end`, `load_steps`, `tolerance` and `max_steps` to "static".
-/// Newton's method takes `load_end` and `tolerance` only.
+/// Solver "newton" takes `load_end` and `tolerance` only.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeFormat {
     pub method: MethodFormat,
-    /// How a static solution is found; by relaxation if left out.
+    /// How a static solution is found; "auto" if left out.
     pub solver: Option<SolverFormat>,
     /// Simulated time of a dynamic run [s].
     pub end: Option<f64>,
@@ -30,13 +30,13 @@ pub struct TimeFormat {
     pub fixed_step: Option<f64>,
     /// Amplitudes run up to this time [s] in a static run; 1 if left out.
     pub load_end: Option<f64>,
-    /// Steps over which the load is applied.
+    /// Steps over which relaxation applies the load.
     pub load_steps: Option<usize>,
     /// Requested relative error of the largest displacement [–], 1e-4 if left
     /// out; of solver "newton" the largest unbalanced nodal force over the
     /// largest nodal force, 1e-10 if left out.
     pub tolerance: Option<f64>,
-    /// A static run that needs more steps has failed.
+    /// A relaxation that needs more steps has failed.
     pub max_steps: Option<usize>,
 }
 
@@ -51,9 +51,12 @@ choice! {
 choice! {
     /// The way to a static solution.
     SolverFormat {
-        /// Damped explicit motion until it rests; with contact too.
+        /// Newton's method, and relaxation where that fails, or where the body sticks to an
+        /// obstacle, since the way to the solution matters then.
+        "auto" Auto,
+        /// Damped explicit motion until it rests.
         "relaxation" Relaxation,
-        /// Newton's method with conjugate gradients, to round-off; no contact.
+        /// Newton's method with conjugate gradients.
         "newton" Newton,
     }
 }

@@ -90,9 +90,9 @@ impl Family {
             recipe.mass = MassRule::EvenSplit;
         }
         recipe.dilation = self.dilation.unwrap_or(recipe.dilation);
-        let Motion::Static(preset) = problem.motion else { return };
+        let Some(&preset) = problem.motion.relaxation() else { return };
         problem.motion = match self.solver {
-            Solver::Default => Motion::Static(preset),
+            Solver::Default => return,
             Solver::Relaxation { tolerance, load_steps } => {
                 Motion::Static(Relaxation { tolerance, load_steps, ..preset })
             }

@@ -271,7 +271,7 @@ fn made_up(bench: &Workbench, (name, text): (&str, &str), set: Set, cloud: u64) 
     let finer = |factor: f64| -> Result<Recording> {
         let mut finer = case.clone();
         finer.problem.recipe.scale_lengths(factor);
-        if let Motion::Static(relaxation) = &finer.problem.motion {
+        if let Some(relaxation) = finer.problem.motion.relaxation() {
             let load_end = relaxation.load_end;
             finer.problem.motion = Motion::Equilibrium(Newton { load_end, tolerance: 1e-6 });
         }

@@ -96,7 +96,7 @@ pub fn bonded(height: f64, by: f64) -> Vec<EssentialCondition> {
 /// Dynamic relaxation to a tolerance \[–\], the load in `load_steps` steps.
 pub fn relax(tolerance: f64, load_steps: usize) -> Motion {
     let mut motion = relaxation(load_steps, tolerance);
-    if let Motion::Static(settings) = &mut motion {
+    if let Some(settings) = motion.relaxation_mut() {
         settings.max_steps = 50_000;
     }
     motion

@@ -6,7 +6,7 @@ use crate::studies::hard::case::{Expected, HardCase, Limit, case, rolled};
 use anyhow::Result;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
-use mtled::problem::{BackgroundGrid, Dimension, Motion, Problem};
+use mtled::problem::{BackgroundGrid, Dimension, Problem};
 
 /// Adds the cases to the list.
 pub fn thin(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
@@ -23,7 +23,7 @@ pub fn thin(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     });
     let (mut problem, expected) = slice(2.0, spacing)?;
     problem.recipe.grid = BackgroundGrid::with_cell(2.0 * spacing);
-    if let Motion::Static(settings) = &mut problem.motion {
+    if let Some(settings) = problem.motion.relaxation_mut() {
         settings.max_steps = 3000;
     }
     list.push(HardCase {

@@ -10,7 +10,7 @@ use anyhow::{Context, Result, bail};
 use mtled::algebra::tensor::Vector3;
 use mtled::motion::internal_force::{Workspace, stiffness_times};
 use mtled::motion::observe::{Continue, Observer, Unobserved, View};
-use mtled::problem::{Cloud, Motion, Newton, Problem, RelaxationMass};
+use mtled::problem::{Cloud, Motion, Newton, Problem, Relaxation, RelaxationMass};
 use mtled_checks::study::{Cell, Figure, Plot, Study, Table, axis, line, number, text};
 use rayon::prelude::*;
 
@@ -25,6 +25,8 @@ const CASES: [(&str, &str); 6] = [
 ];
 /// Requested relative error of relaxation \[–\].
 const TOLERANCE: f64 = 1e-5;
+/// The same of the default solver: what a case file that leaves it out gets \[–\].
+const PRESET: f64 = 1e-4;
 /// Requested relative residual of Newton's method \[–\].
 const RESIDUAL: f64 = 1e-10;
 /// Asymmetry of the tangent by round-off \[–\].
@@ -53,11 +55,13 @@ impl Observer for Trace<'_> {
     }
 }
 
-/// One case solved three times.
+/// One case solved four times.
 struct Compared {
     name: &'static str,
     label: &'static str,
     newton: Solved,
+    /// As a case file that names no solver.
+    automatic: Solved,
     /// With masses proportional to the stiffness.
     relaxed: Relaxed,
     lumped: Relaxed,
@@ -112,10 +116,13 @@ fn jittered(bench: &Workbench, mut case: Case) -> Case {
 }
 
 fn compare(case: &Case, name: &'static str, label: &'static str) -> Result<Compared> {
-    let Motion::Static(settings) = case.problem.motion else { bail!("the case is not static") };
+    let Some(&settings) = case.problem.motion.relaxation() else { bail!("the case is not static") };
     let motion = Motion::Equilibrium(Newton { load_end: settings.load_end, tolerance: RESIDUAL });
     let problem = Problem { motion, ..case.problem.clone() };
     let newton = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
+    let preset = Motion::Automatic(Relaxation { tolerance: PRESET, ..settings });
+    let problem = Problem { motion: preset, ..case.problem.clone() };
+    let automatic = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
     let relax = |mass| -> Result<Relaxed> {
         let mut settings = settings;
         settings.tolerance = TOLERANCE;
@@ -127,7 +134,7 @@ fn compare(case: &Case, name: &'static str, label: &'static str) -> Result<Compa
         Ok(Relaxed { solved, history: trace.history })
     };
     let (relaxed, lumped) = (relax(RelaxationMass::Stiffness)?, relax(RelaxationMass::Lumped)?);
-    Ok(Compared { name, label, newton, relaxed, lumped })
+    Ok(Compared { name, label, newton, automatic, relaxed, lumped })
 }
 
 /// Largest difference over the largest entry of `v`.
@@ -171,12 +178,14 @@ fn asymmetry(solved: &Solved) -> f64 {
 fn add_checks(study: &mut Study, one: &Compared) {
     let u = &one.newton.state.displacement;
     let error = |relaxed: &Relaxed| difference(&relaxed.solved.state.displacement, u);
+    let automatic = difference(&one.automatic.state.displacement, u);
     let residual = one.newton.summary.newton.map_or(f64::NAN, |counts| counts.residual);
     let relaxed = one.relaxed.solved.summary.relaxation;
     let tolerance = "the requested tolerance";
     for (quantity, label, value, bound, source) in [
         ("residual", "residual of Newton's method", residual, RESIDUAL, tolerance),
         ("error", "error of relaxation", error(&one.relaxed), TOLERANCE, tolerance),
+        ("automatic_error", "error of the default solver", automatic, PRESET, tolerance),
         (
             "lumped_error",
             "error of relaxation with lumped masses",
@@ -264,6 +273,7 @@ fn newton_table(compared: &[Compared]) -> Table {
             Cell::Number(counts.iterations as f64),
             Cell::Number(counts.products as f64),
             Cell::Number(counts.evaluations as f64 / relaxed),
+            Cell::Number(Work::of(&one.automatic).force_evaluations as f64 / relaxed),
             Cell::Number(counts.residual),
             Cell::Number(reaction_difference(&one.relaxed.solved, &one.newton)),
         ]
@@ -277,6 +287,7 @@ fn newton_table(compared: &[Compared]) -> Table {
             number("corrections", "1"),
             number("products", "1"),
             number("internal forces over relaxation", "1"),
+            number("the same by default", "1"),
             number("residual", "1"),
             number("difference of reactions", "1"),
         ],

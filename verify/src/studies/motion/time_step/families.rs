@@ -8,8 +8,8 @@ use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
 use mtled::material::{ElasticConstants, Law, NeoHookeanLogJ};
 use mtled::problem::{
-    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, Gradients, MassRule, Motion, Problem,
-    Refinement, Region, RelaxationMass,
+    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, Gradients, MassRule, Problem, Refinement,
+    Region, RelaxationMass,
 };
 
 /// A family of bodies: what its members have in common, and how one is made from random numbers.
@@ -100,7 +100,7 @@ impl Family {
         let mut problem = free_body(self.dimension, block_shape(), tissue(poisson_ratio)?, recipe);
         (self.change)(&mut problem, &mut random, spacing);
         // The time step of motion, with the masses of the body.
-        if let Motion::Static(relaxation) = &mut problem.motion {
+        if let Some(relaxation) = problem.motion.relaxation_mut() {
             relaxation.mass = RelaxationMass::Lumped;
         }
         Ok(problem)

@@ -7,7 +7,7 @@ use crate::studies::workbench::Workbench;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
 use mtled::problem::{
-    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, MassRule, Motion, Problem, Refinement,
+    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, MassRule, Problem, Refinement,
     RelaxationMass,
 };
 
@@ -36,7 +36,7 @@ fn specimen(
 ) -> Specimen {
     change(&mut problem);
     // The time step of motion, with the masses of the body.
-    if let Motion::Static(relaxation) = &mut problem.motion {
+    if let Some(relaxation) = problem.motion.relaxation_mut() {
         relaxation.mass = RelaxationMass::Lumped;
     }
     Specimen { id: id.into(), label: label.into(), problem, deformed: false }
