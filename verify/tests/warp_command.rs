@@ -1,4 +1,5 @@
 //! `mtled warp` from the outside: files, exit codes, refusals.
+#![allow(non_snake_case)]
 
 #[path = "warp/image.rs"]
 mod image;
@@ -6,6 +7,7 @@ mod image;
 use assert_cmd::Command;
 use image::{Kind, around, nifti};
 use mtled::algebra::tensor::Vector3;
+use mtled_verify::files::{LengthUnit, stl};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -175,4 +177,43 @@ fn a_damaged_field_is_refused() {
         assert!(code == 2 && err.contains("displacement_field.json"), "{err}");
         assert!(err.contains(expected), "{err}");
     }
+}
+
+/// Volume that a surface file in mm along L, P and S encloses \[m³\], and its highest point \[m\].
+fn enclosed(path: &Path) -> (f64, f64) {
+    assert!(std::fs::read(path).unwrap().starts_with(b"SPACE=LPS"), "{}", path.display());
+    let surface = stl::read(path, LengthUnit::Millimetre).unwrap();
+    let volume = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|n| surface.vertices[n as usize]);
+        a.cross(&b).dot(&c) / 6.0
+    };
+    let top = surface.vertices.iter().map(|X| X.z).fold(f64::NEG_INFINITY, f64::max);
+    (surface.triangles.iter().map(volume).sum(), top)
+}
+
+#[test]
+fn surfaces_of_the_body_and_its_regions_are_closed_and_move_with_it() {
+    let folder = TempDir::new().unwrap();
+    let regions = "[[region]]\nname = \"core/1\"\nmaterial = \"tissue\"\nwhere = { sphere = { centre = \
+                   [0.05, 0.05, 0.1], radius = 0.03 } }\n\n[[region]]\nname = \"rest\"\nwhere = \"all\"\n\
+                   material = \"tissue\"\n\n[[prescribe]]";
+    let case = CASE.replacen("[[prescribe]]", regions, 1);
+    std::fs::write(folder.path().join("case.toml"), &case).unwrap();
+    let (code, _, err) =
+        run(folder.path(), &["solve", "case.toml", "--out", "run", "--no-error-bar", "-q"]);
+    assert_eq!(code, 0, "{err}");
+    let (code, out, err) = run(folder.path(), &["warp", "run", "--surfaces", "stl", "-q"]);
+    assert_eq!(code, 0, "{out}{err}");
+    let names: Vec<String> = listing(&folder.path().join("stl"));
+    assert_eq!(names.len(), 6, "{names:?}");
+    let of = |name: &str| enclosed(&folder.path().join(format!("stl/{name}.stl")));
+    let (body, core, rest) = (of("body"), of("region_core-1"), of("region_rest"));
+    // Half of the ball lies in the block; edges are cut off by less than a cube.
+    let half_ball = 2.0 / 3.0 * std::f64::consts::PI * 0.03f64.powi(3);
+    assert!((core.0 / half_ball - 1.0).abs() < 0.05, "{core:?}");
+    assert!((body.0 / 1e-3 - 1.0).abs() < 0.02 && (body.1 - 0.1).abs() < 1e-6, "{body:?}");
+    assert!(((core.0 + rest.0) / body.0 - 1.0).abs() < 0.02, "{core:?} {rest:?}");
+    // Pulled upwards, it is higher and larger.
+    let after = of("body_deformed");
+    assert!(after.1 > body.1 + 1e-4 && after.0 > body.0, "{body:?} {after:?}");
 }

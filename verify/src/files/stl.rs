@@ -1,4 +1,4 @@
-//! Triangulated surfaces from STL files, ASCII or binary.
+//! Triangulated surfaces in STL files: read from ASCII or binary ones, written as binary ones.
 
 use super::bytes::{bytes_of, start_of};
 use super::error::{FileError, Mistake};
@@ -42,6 +42,29 @@ fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
     }
     let triangles = mesh.faces.iter().map(|face| face.vertices.map(|n| n as u32)).collect();
     Ok(Triangles { vertices, triangles })
+}
+
+/// Space of the coordinates of a file, in the words of 3D Slicer; padded to the header.
+const SPACE: &[u8] = b"SPACE=LPS";
+
+/// A binary file in mm along L, P and S of triangles in RAS, as 3D Slicer reads and writes it.
+pub fn to_stl(surface: &Triangles) -> Vec<u8> {
+    let place = |n: u32| {
+        let at = surface.vertices[n as usize] * 1e3;
+        stl_io::Vertex::new([-at.x as f32, -at.y as f32, at.z as f32])
+    };
+    let triangle = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|n| surface.vertices[n as usize]);
+        let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+        let normal = stl_io::Normal::new([-normal.x as f32, -normal.y as f32, normal.z as f32]);
+        stl_io::Triangle { normal, vertices: corners.map(place) }
+    };
+    let triangles: Vec<stl_io::Triangle> = surface.triangles.iter().map(triangle).collect();
+    let mut bytes = Vec::with_capacity(START + TRIANGLE * triangles.len());
+    let written = stl_io::write_stl(&mut bytes, triangles.iter());
+    written.expect("memory takes all bytes");
+    bytes[..SPACE.len()].copy_from_slice(SPACE);
+    bytes
 }
 
 /// Header of a binary file and its number of triangles \[byte\].

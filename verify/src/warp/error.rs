@@ -17,6 +17,8 @@ pub enum WarpError {
     NamedTwice { path: PathBuf },
     #[error("the body of the case has no such cross-section: {0}")]
     Body(#[from] GeometryError),
+    #[error("a body in plane strain has no surfaces to write: leave out --surfaces")]
+    NoSurfaces,
     #[error("no shape functions can be built at node {node}, at ({}) mm", numbers(position))]
     UncoveredNode { node: usize, position: Vector3 },
 }

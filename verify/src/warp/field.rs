@@ -87,6 +87,12 @@ impl DisplacementField {
         &self.approximation.nodes
     }
 
+    /// Smallest influence radius of a node over the dilation \[m\].
+    pub fn smallest_spacing(&self, dilation: f64) -> f64 {
+        let radii = self.approximation.influence_radius.iter();
+        radii.fold(f64::INFINITY, |least, radius| least.min(*radius)) / dilation
+    }
+
     /// Corners of the box around the nodes \[m\].
     pub fn node_bounds(&self) -> (Vector3, Vector3) {
         corners(self.nodes())

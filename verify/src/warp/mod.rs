@@ -1,13 +1,15 @@
-//! Images and landmarks moved by the displacement field of a run.
+//! Images, landmarks and surfaces moved by the displacement field of a run.
 
 mod deform;
 mod error;
 mod field;
 mod inverse;
 mod landmarks;
+mod surfaces;
 
 pub use deform::{Deformed, deform, forward_field, nodes_inside};
 pub use error::WarpError;
 pub use field::DisplacementField;
 pub use inverse::{MOST_ITERATIONS, Source, TOLERANCE, source_of};
 pub use landmarks::{MovedLandmark, move_landmarks, to_csv};
+pub use surfaces::{RegionSurface, region_surfaces};

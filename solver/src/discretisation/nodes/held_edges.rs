@@ -120,8 +120,11 @@ impl<'a> HeldParts<'a> {
                 {
                     return;
                 }
-                let X = self.end_between(condition, panel.centre, far.centre);
-                if !hash.any_within(&X, 0.2 * self.size) {
+                let ends = (panel.centre, far.centre);
+                let X = self.end_between(condition, ends, |X, within| {
+                    hash.any_within(X, 0.2 * self.size - within)
+                });
+                if let Some(X) = X {
                     hash.insert(X);
                     points.push(X);
                 }
@@ -130,18 +133,23 @@ impl<'a> HeldParts<'a> {
         chains(points, 1.5 * self.size)
     }
 
-    /// Where the held part ends between two places, on the held side.
+    /// Where the held part ends between two places, the first of them held; `None` as soon as
+    /// it is `known` that every place within some way \[m\] of a held one is.
     fn end_between(
         &self,
         condition: &EssentialCondition,
-        mut held: Vector3,
-        mut free: Vector3,
-    ) -> Vector3 {
+        (mut held, mut free): (Vector3, Vector3),
+        known: impl Fn(&Vector3, f64) -> bool,
+    ) -> Option<Vector3> {
         for _ in 0..40 {
+            let within = (free - held).norm();
+            if within < 0.15 * self.size && known(&held, within) {
+                return None;
+            }
             let middle = project(self.body, &(0.5 * (held + free)));
             if condition.part.contains(&middle) { held = middle } else { free = middle }
         }
-        held
+        (!known(&held, 0.0)).then_some(held)
     }
 
     /// The place of a node at the point `X` of an edge.

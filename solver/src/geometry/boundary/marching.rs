@@ -158,6 +158,12 @@ fn cross_tetrahedron(
 }
 
 impl Shape {
+    /// Triangles around the solid \[m\], anticlockwise seen from outside, from cubes of `size`
+    /// \[m\]; for drawings.
+    pub fn triangles(&self, size: f64) -> Result<Vec<[Vector3; 3]>, GeometryError> {
+        isosurface(self, size)
+    }
+
     /// Closed polylines \[m\] around the cross-section at height z \[m\], the
     /// solid to their left, from pixels of `size` \[m\]; for drawings. Empty
     /// where there is no section.

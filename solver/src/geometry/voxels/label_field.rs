@@ -151,7 +151,7 @@ impl LabelField {
     }
 
     /// Smallest edge of a voxel \[m\].
-    pub(crate) fn voxel(&self) -> f64 {
+    pub fn voxel(&self) -> f64 {
         self.distance.step.min()
     }
 

@@ -167,7 +167,7 @@ impl<'a> Solver<'a> {
                 return Err(failed);
             }
             let open = self.free.contacts.iter().fold(0.0f64, |a, row| a.max(row.way.abs()));
-            let settled = changes == 0 && open <= CLOSED * model.contact.skin;
+            let settled = changes == 0 && open <= CLOSED.max(tolerance) * model.contact.skin;
             if !first && settled && !indefinite && self.is_balanced(&now, tolerance) {
                 return Ok(now);
             }

@@ -21,7 +21,7 @@ pub struct WarpArgs {
     /// Folder that `mtled solve --out` wrote.
     pub result: PathBuf,
     /// Image or label map of the space of the case.
-    #[arg(long, value_name = "FILE", required_unless_present = "points")]
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["points", "surfaces"])]
     pub image: Option<PathBuf>,
     /// Deformed image [default: RESULT/deformed_<name of the image>].
     #[arg(long, value_name = "FILE", requires = "image")]
@@ -47,6 +47,10 @@ pub struct WarpArgs {
     /// Landmarks after the deformation, with registration errors [default: RESULT/landmarks.csv].
     #[arg(long, value_name = "FILE.csv", requires = "points")]
     pub points_out: Option<PathBuf>,
+    /// Folder for the surfaces of the body and of its regions before and after, NAME.stl and
+    /// NAME_deformed.stl, in mm along L, P and S as 3D Slicer reads them.
+    #[arg(long, value_name = "FOLDER")]
+    pub surfaces: Option<PathBuf>,
     /// Distance outside of the body over which the displacement decays to zero; 0 ends it at the
     /// boundary [default: three times the largest displacement, so that nothing folds].
     #[arg(long, value_name = "MM", value_parser = not_negative, allow_hyphen_values = true)]

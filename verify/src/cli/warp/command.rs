@@ -8,12 +8,16 @@ use crate::cli::load::load;
 use crate::files::LengthUnit;
 use crate::files::image::{Image, Interpolation, field_bytes, image_bytes, read_image};
 use crate::files::points::read_landmarks;
+use crate::files::stl::to_stl;
 use crate::run::StoredField;
 use crate::scene::Case;
 use crate::warp::{
-    DisplacementField, WarpError, deform, forward_field, move_landmarks, nodes_inside, to_csv,
+    DisplacementField, RegionSurface, WarpError, deform, forward_field, move_landmarks,
+    nodes_inside, region_surfaces, to_csv,
 };
 use anyhow::{Context, Result};
+use mtled::problem::Problem;
+use mtled_checks::escape::file_name;
 use std::path::{Path, PathBuf};
 
 pub fn warp(arguments: &WarpArgs, common: &Common) -> Result<u8> {
@@ -49,11 +53,37 @@ pub fn warp(arguments: &WarpArgs, common: &Common) -> Result<u8> {
         summary.landmarks = move_landmarks(&field, landmarks);
         files.push((path.clone(), to_csv(&summary.landmarks)?.into_bytes()));
     }
+    if let Some(folder) = &outputs.surfaces {
+        files.extend(surfaces(&case.problem, &field, folder, common)?);
+    }
     write_all(&files)?;
     summary.files = files.into_iter().map(|(path, _)| path).collect();
     summary.warn(common);
     common.print_summary(&|| summary.json(), &|| summary.text())?;
     Ok(0)
+}
+
+/// The surfaces of the body and of its regions before and after, as bytes of files.
+fn surfaces(
+    problem: &Problem,
+    field: &DisplacementField,
+    folder: &Path,
+    common: &Common,
+) -> Result<Vec<(PathBuf, Vec<u8>)>> {
+    let (surfaces, left_out) = region_surfaces(problem, field)?;
+    for region in left_out {
+        common.warn(format!(
+            "region \"{region}\" has no surface of its own: its selection is no solid"
+        ));
+    }
+    let files = |surface: &RegionSurface| {
+        let name = file_name(&surface.name);
+        [
+            (folder.join(format!("{name}.stl")), to_stl(&surface.before)),
+            (folder.join(format!("{name}_deformed.stl")), to_stl(&surface.after)),
+        ]
+    };
+    Ok(surfaces.iter().flat_map(files).collect())
 }
 
 /// The case that was solved.

@@ -16,6 +16,8 @@ pub struct Outputs {
     pub field: Option<ImageFile>,
     pub inverse_field: Option<ImageFile>,
     pub landmarks: Option<PathBuf>,
+    /// A folder.
+    pub surfaces: Option<PathBuf>,
 }
 
 impl Outputs {
@@ -42,6 +44,7 @@ impl Outputs {
             field: arguments.field.clone().map(with_format).transpose()?,
             inverse_field: arguments.inverse_field.clone().map(with_format).transpose()?,
             landmarks,
+            surfaces: arguments.surfaces.clone(),
         };
         outputs.refuse_twice([&arguments.image, &arguments.points])?;
         Ok(outputs)
@@ -66,7 +69,8 @@ impl Outputs {
 
     /// Tries all folders before the work begins.
     pub fn ensure_writable(&self) -> Result<()> {
-        self.paths().into_iter().try_for_each(|path| ensure_writable(folder(path)))
+        let folders = self.paths().into_iter().map(|path| folder(path));
+        folders.chain(self.surfaces.as_deref()).try_for_each(ensure_writable)
     }
 }
 

@@ -1,0 +1,118 @@
+//! Surfaces of a body and of its regions, before and after the deformation.
+#![allow(non_snake_case)]
+
+use super::error::WarpError;
+use super::field::DisplacementField;
+use crate::files::stl::Triangles;
+use mtled::algebra::tensor::Vector3;
+use mtled::geometry::{LabelField, Selector, Shape};
+use mtled::problem::{Dimension, Problem};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Edge of the cubes that a surface is made from: at most this part of the smallest nodal spacing
+/// and of the least extent of the solid, and a voxel \[–\].
+const OF_SPACING: f64 = 0.5;
+const OF_EXTENT: f64 = 0.04;
+
+/// The surface of the body or of one of its regions.
+#[derive(Debug, Clone)]
+pub struct RegionSurface {
+    /// "body", or "region_" and the name of the region.
+    pub name: String,
+    /// Before the deformation.
+    pub before: Triangles,
+    /// After it, the same triangles.
+    pub after: Triangles,
+}
+
+/// Surfaces of the body and, where it has several, of its regions; and the names of regions
+/// whose selection is no solid.
+pub fn region_surfaces(
+    problem: &Problem,
+    field: &DisplacementField,
+) -> Result<(Vec<RegionSurface>, Vec<String>), WarpError> {
+    if problem.dimension != Dimension::Three {
+        return Err(WarpError::NoSurfaces);
+    }
+    let mut shapes = vec![("body".to_string(), problem.body.clone())];
+    let (mut earlier, mut left_out) = (Vec::new(), Vec::new());
+    let regions = if problem.regions.len() > 1 { &problem.regions[..] } else { &[] };
+    for region in regions {
+        match solid(&region.part, &problem.body) {
+            Some(shape) => {
+                let own = match earlier.is_empty() {
+                    true => shape.clone(),
+                    false => without(&shape, Shape::Union(earlier.clone())),
+                };
+                shapes.push((format!("region_{}", region.name), own));
+                earlier.push(shape);
+            }
+            None => left_out.push(region.name.clone()),
+        }
+    }
+    let spacing = field.smallest_spacing(problem.recipe.dilation);
+    let most = voxel(&problem.body).min(OF_SPACING * spacing);
+    let drawn = shapes.into_iter().map(|(name, shape)| {
+        let extent = shape.bounding_box().map_or(f64::INFINITY, |(low, high)| (high - low).min());
+        let before = indexed(&shape.triangles(most.min(OF_EXTENT * extent))?);
+        let vertices = before.vertices.par_iter().map(|X| X + field.at(X)).collect();
+        let after = Triangles { vertices, triangles: before.triangles.clone() };
+        Ok(RegionSurface { name, before, after })
+    });
+    Ok((drawn.collect::<Result<_, WarpError>>()?, left_out))
+}
+
+/// What a selection takes of a body.
+fn solid(part: &Selector, body: &Shape) -> Option<Shape> {
+    let selected = match part {
+        Selector::All => return Some(body.clone()),
+        Selector::Inside { shape, .. } => shape.clone(),
+        Selector::Label { map, label } => {
+            let smoothing = match body {
+                Shape::Labels(field) => field.smoothing(),
+                _ => LabelField::SMOOTHING,
+            };
+            Shape::Labels(LabelField::new(map.clone(), &[*label], smoothing).ok()?.into())
+        }
+        Selector::Union(parts) => {
+            let parts = parts.iter().map(|part| solid(part, body));
+            Shape::Union(parts.collect::<Option<_>>()?)
+        }
+        Selector::Plane { .. } | Selector::Intersection(_) | Selector::Not(_) => return None,
+    };
+    // What both have: one without what is left of it without the other. The first bounds it.
+    let (first, second) = match selected.bounding_box() {
+        Some(_) => (&selected, body),
+        None => (body, &selected),
+    };
+    Some(without(first, without(first, second.clone())))
+}
+
+fn without(shape: &Shape, hole: Shape) -> Shape {
+    Shape::Difference(Box::new(shape.clone()), Box::new(hole))
+}
+
+/// Edge of a voxel of the label map that a body is made of \[m\].
+fn voxel(body: &Shape) -> f64 {
+    match body {
+        Shape::Labels(field) => field.voxel(),
+        _ => f64::INFINITY,
+    }
+}
+
+/// Triangles with the vertices that they share.
+fn indexed(triangles: &[[Vector3; 3]]) -> Triangles {
+    let mut numbers: HashMap<[u64; 3], u32> = HashMap::new();
+    let mut vertices = Vec::new();
+    let mut number = |X: &Vector3| {
+        let bits = [X.x.to_bits(), X.y.to_bits(), X.z.to_bits()];
+        *numbers.entry(bits).or_insert_with(|| {
+            vertices.push(*X);
+            vertices.len() as u32 - 1
+        })
+    };
+    let triangles =
+        triangles.iter().map(|corners| [0, 1, 2].map(|k| number(&corners[k]))).collect();
+    Triangles { vertices, triangles }
+}
