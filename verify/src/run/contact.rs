@@ -83,10 +83,14 @@ pub fn contact_fields(
 ) -> [PointArray; 2] {
     let plan = &prepared.model.contact;
     let positions = &prepared.discretisation.cloud.positions;
-    let normals = plan.normals(positions, &frame.contact, &frame.displacement);
-    let pressures = surface.pressures(&frame.contact, &normals);
-    let gaps = positions.iter().zip(displacement.as_chunks::<3>().0).map(|(X, u)| {
-        let x = X + Vector3::from(*u);
+    let u = displacement.as_chunks::<3>().0;
+    let place = |node: usize| positions[node] + Vector3::from(u[node]);
+    let components = prepared.model.components;
+    let places = frame.contact.iter().map(|force| place(force.node as usize));
+    let normals = plan.normals(&frame.contact, places, components);
+    let pressures = surface.pressures(&frame.contact, &normals.collect::<Vec<_>>());
+    let gaps = (0..positions.len()).map(|node| {
+        let x = place(node);
         plan.obstacles.iter().map(|obstacle| gap(obstacle, &x)).fold(f64::INFINITY, f64::min)
     });
     [

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::plan::{ContactForce, ContactPlan, gap, normal};
-use crate::algebra::tensor::{Vector3, vector_at};
+use crate::algebra::tensor::Vector3;
 use crate::discretisation::{Discretisation, Rows};
 use crate::error::Error;
 use crate::geometry::PointHash;
@@ -84,7 +84,7 @@ impl ContactSurface {
         u: &[f64],
     ) -> Result<Vec<ContactResult>, Error> {
         let mut results = vec![ContactResult::default(); plan.obstacles.len()];
-        let normals = plan.normals(&discretisation.cloud.positions, forces, u);
+        let normals = normals(plan, discretisation, forces, u)?;
         for (force, normal) in forces.iter().zip(&normals) {
             let result = &mut results[force.obstacle as usize];
             let along = force.force.dot(normal);
@@ -131,29 +131,32 @@ impl ContactSurface {
     }
 }
 
+/// Normals where the nodes that touch are, by the values of the displacement.
+fn normals(
+    plan: &ContactPlan,
+    discretisation: &Discretisation,
+    forces: &[ContactForce],
+    u: &[f64],
+) -> Result<Vec<Vector3>, Error> {
+    let positions = &discretisation.cloud.positions;
+    let components = u.len() / positions.len();
+    let touching: Vec<Vector3> =
+        forces.iter().map(|force| positions[force.node as usize]).collect();
+    let rows = discretisation.rows_at(&touching)?;
+    let places = touching.iter().enumerate().map(|(i, X)| X + rows.interpolate(i, u, components));
+    Ok(plan.normals(forces, places, components).collect())
+}
+
 impl ContactPlan {
-    /// Normals of the obstacles towards the body where they exert forces, at nodal
-    /// parameters `u` \[component of node\] \[m\].
+    /// Normals of the obstacles towards the body at the current places \[m\] of the nodes on
+    /// which they exert forces.
     pub fn normals(
         &self,
-        positions: &[Vector3],
         forces: &[ContactForce],
-        u: &[f64],
-    ) -> Vec<Vector3> {
-        let components = u.len() / positions.len();
-        let place = |node| positions[node as usize] + vector_at(u, node as usize, components);
-        self.normals_at(forces, components, place).collect()
-    }
-
-    /// The same with nodes at current places \[m\].
-    pub(crate) fn normals_at(
-        &self,
-        forces: &[ContactForce],
+        places: impl Iterator<Item = Vector3>,
         components: usize,
-        place: impl Fn(u32) -> Vector3,
     ) -> impl Iterator<Item = Vector3> {
-        forces.iter().map(move |force| {
-            normal(&self.obstacles[force.obstacle as usize], &place(force.node), components)
-        })
+        let obstacle = |force: &ContactForce| &self.obstacles[force.obstacle as usize];
+        forces.iter().zip(places).map(move |(force, x)| normal(obstacle(force), &x, components))
     }
 }

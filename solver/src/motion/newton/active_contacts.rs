@@ -171,8 +171,8 @@ impl ActiveContacts {
 
     /// The parts of forces along the normals, positive where the obstacle pushes \[N\].
     pub fn normal_forces(&self, model: &Model, u: &[f64], forces: &[ContactForce]) -> Vec<f64> {
-        let at = |node| place(model, node, u);
-        let normals = model.contact.normals_at(forces, model.components, at);
+        let places = forces.iter().map(|force| place(model, force.node, u));
+        let normals = model.contact.normals(forces, places, model.components);
         normals.zip(forces).map(|(normal, force)| normal.dot(&force.force)).collect()
     }
 }

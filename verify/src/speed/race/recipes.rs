@@ -24,7 +24,7 @@ pub struct Family {
 /// How the static solution is computed.
 #[derive(Debug, Clone, Copy)]
 pub enum Solver {
-    /// Dynamic relaxation with the defaults of case files.
+    /// What a case file gets that names none.
     Default,
     /// Dynamic relaxation to `tolerance`, the load applied in `load_steps`.
     Relaxation { tolerance: f64, load_steps: usize },
