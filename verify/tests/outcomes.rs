@@ -144,6 +144,14 @@ impl Run {
         self.output.status.code().unwrap()
     }
 
+    /// result.json of a run that ended like this.
+    fn ended(&self, code: i32, outcome: &str) -> Value {
+        assert_eq!(self.code(), code, "{}", self.said());
+        let result = self.result();
+        assert_eq!(result["motion"]["outcome"], outcome);
+        result
+    }
+
     fn said(&self) -> String {
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         text(&self.output.stdout) + &text(&self.output.stderr)
@@ -180,9 +188,7 @@ fn relaxed(settings: &str) -> String {
 #[test]
 fn a_graded_head_in_a_frictionless_skull_is_solved_by_newton_where_no_solver_is_named() {
     let run = Run::of(HEAD);
-    assert_eq!(run.code(), 0, "{}", run.said());
-    let result = run.result();
-    assert_eq!(result["motion"]["outcome"], "converged");
+    let result = run.ended(0, "converged");
     assert!(result["motion"]["newton_failed"].is_null(), "{}", result["motion"]);
     let residual = number(&result["motion"]["newton"]["relative_residual"]);
     assert!(residual <= 1e-6, "{residual:e}");
@@ -196,9 +202,7 @@ fn a_graded_head_in_a_frictionless_skull_is_solved_by_newton_where_no_solver_is_
 #[test]
 fn a_graded_head_in_a_frictionless_skull_converges_to_its_tolerance() {
     let run = Run::of(&relaxed(""));
-    assert_eq!(run.code(), 0, "{}", run.said());
-    let result = run.result();
-    assert_eq!(result["motion"]["outcome"], "converged");
+    let result = run.ended(0, "converged");
     assert!(result["motion"]["steps"].as_u64().unwrap() < 5000, "{}", result["motion"]);
     let error = number(&result["motion"]["relaxation"]["estimated_error_m"]);
     assert!(error < 1e-6, "{error:e} m");
@@ -222,9 +226,7 @@ fn refined_nodes_whose_cells_are_refined_elsewhere_are_refused_with_their_place(
 #[test]
 fn a_run_that_does_not_converge_keeps_its_last_state_and_never_says_converged() {
     let run = Run::of(&relaxed("max_steps = 600"));
-    assert_eq!(run.code(), 2, "{}", run.said());
-    let result = run.result();
-    assert_eq!(result["motion"]["outcome"], "not_converged");
+    let result = run.ended(2, "not_converged");
     assert_eq!(result["motion"]["complete"], false);
     assert_eq!(result["motion"]["steps"], 600);
     assert!(number(&result["probes"][0]["displacement_m"][0][1]) < -0.001);

@@ -9,7 +9,7 @@ use crate::discretisation::nodes::{RequestedSizes, SizeField};
 use crate::discretisation::quadrature::followed_edge;
 use crate::discretisation::shape_memory::ShapeMemory;
 use crate::geometry::{GeometryError, POINTS, Selector, Shape};
-use crate::problem::{Cloud, Dimension, InsideRule, Motion, Problem, Refinement};
+use crate::problem::{Cloud, Dimension, InsideRule, Problem, Refinement};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -129,11 +129,9 @@ impl Footprint {
             + PER_BATCH_ENTRY * self.points.min(BATCH) * self.neighbours
             + self.panels * (PER_PANEL + PER_PANEL_ENTRY * self.neighbours)
             + problem.loads.pressures.len() as f64 * self.panels * PER_ROW_ENTRY * self.neighbours
-            + match problem.motion {
-                Motion::Automatic(_) | Motion::Equilibrium(_) => {
-                    self.nodes * (PER_NEWTON_NODE + PER_NEWTON_ENTRY * self.neighbours)
-                }
-                _ => 0.0,
+            + match problem.by_newton() {
+                true => self.nodes * (PER_NEWTON_NODE + PER_NEWTON_ENTRY * self.neighbours),
+                false => 0.0,
             }
             + shapes.kept;
         let choosing = shapes.kept + size_field_bytes(problem);

@@ -4,11 +4,11 @@
 use crate::algebra::tensor::Vector3;
 use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::{closed_chains, polygon_area};
-use crate::geometry::triangles::{Triangle, area_vector};
+use crate::geometry::triangles::{Triangle, area_vector, merged};
 use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// A closed surface of triangles that run anticlockwise seen from outside.
 #[derive(Debug, Clone)]
@@ -136,17 +136,7 @@ fn parry(v: &Vector3) -> ParryVector {
 type Mesh = (Vec<Vector3>, Vec<[u32; 3]>);
 
 fn merge(vertices: Vec<Vector3>, triangles: Vec<[u32; 3]>) -> Result<Mesh, GeometryError> {
-    let mut first = HashMap::new();
-    let mut merged: Vec<Vector3> = Vec::new();
-    let mut number = Vec::with_capacity(vertices.len());
-    for v in &vertices {
-        // Adding zero turns −0 into 0.
-        let key = [v.x + 0.0, v.y + 0.0, v.z + 0.0].map(f64::to_bits);
-        number.push(*first.entry(key).or_insert_with(|| {
-            merged.push(*v);
-            merged.len() as u32 - 1
-        }));
-    }
+    let (merged, number) = merged(vertices.iter());
     let mut kept = Vec::with_capacity(triangles.len());
     for (triangle, t) in triangles.iter().enumerate() {
         if let Some(&vertex) = t.iter().find(|&&v| v as usize >= vertices.len()) {

@@ -1,6 +1,7 @@
 //! Triangles in space.
 
 use crate::algebra::tensor::Vector3;
+use std::collections::HashMap;
 
 /// Corners of a triangle \[m\], anticlockwise seen from outside the solid.
 pub(super) type Triangle = [Vector3; 3];
@@ -25,4 +26,20 @@ pub(super) fn subdivide(triangle: Triangle, size: f64, keep: &mut impl FnMut(Tri
         stack.push([a, middle, c]);
         stack.push([middle, b, c]);
     }
+}
+
+/// Points without those of equal coordinates, and the number among them of each.
+pub(super) fn merged<'a>(points: impl Iterator<Item = &'a Vector3>) -> (Vec<Vector3>, Vec<u32>) {
+    let mut first = HashMap::new();
+    let mut merged: Vec<Vector3> = Vec::new();
+    let mut numbers = Vec::new();
+    for v in points {
+        // Adding zero turns −0 into 0.
+        let key = [v.x + 0.0, v.y + 0.0, v.z + 0.0].map(f64::to_bits);
+        numbers.push(*first.entry(key).or_insert_with(|| {
+            merged.push(*v);
+            merged.len() as u32 - 1
+        }));
+    }
+    (merged, numbers)
 }

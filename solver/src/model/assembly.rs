@@ -13,7 +13,7 @@ use crate::model::mass::{fictitious_mass, lumped_mass};
 use crate::model::pressure::{PressureLoad, pressure_loads};
 use crate::model::stiffness::stiffness_diagonal;
 use crate::model::time_step_bound::per_point_bound;
-use crate::problem::{Dimension, Motion, Problem, Region, Relaxation, RelaxationMass};
+use crate::problem::{Dimension, Motion, Problem, Region, RelaxationMass};
 
 /// A discretised body with its materials, conditions and loads.
 #[derive(Debug, Clone)]
@@ -73,15 +73,12 @@ impl Model {
         let components = problem.dimension.components();
         let blocks = blocks(problem, discretisation);
         let stiffness = stiffness_diagonal(&blocks, components, lumped_mass.len());
-        let inertia = match problem.motion {
-            Motion::Dynamic { .. }
-            | Motion::Automatic(Relaxation { mass: RelaxationMass::Lumped, .. })
-            | Motion::Static(Relaxation { mass: RelaxationMass::Lumped, .. }) => {
-                lumped_mass.clone()
-            }
-            Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => {
-                fictitious_mass(&stiffness, &lumped_mass)
-            }
+        let relaxation = problem.motion.relaxation();
+        let lumped = matches!(problem.motion, Motion::Dynamic { .. })
+            || relaxation.is_some_and(|settings| settings.mass == RelaxationMass::Lumped);
+        let inertia = match lumped {
+            true => lumped_mass.clone(),
+            false => fictitious_mass(&stiffness, &lumped_mass),
         };
         let mut warnings = empty_regions(problem, discretisation);
         warnings.extend(check_shared_nodes(problem, discretisation)?);
@@ -110,11 +107,9 @@ impl Model {
             point_positions: quadrature.positions.clone(),
             extent: (upper - lower).norm(),
             lumped_mass,
-            nodal_rows: match problem.motion {
-                Motion::Automatic(_) | Motion::Equilibrium(_) => {
-                    Some(discretisation.rows_at(&discretisation.cloud.positions)?)
-                }
-                _ => None,
+            nodal_rows: match problem.by_newton() {
+                true => Some(discretisation.rows_at(&discretisation.cloud.positions)?),
+                false => None,
             },
             constraints,
             per_point_bound,

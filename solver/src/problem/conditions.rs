@@ -152,6 +152,6 @@ pub enum Friction {
 }
 
 /// Whether a body sticks to one of these obstacles.
-pub fn sticks(obstacles: &[Obstacle]) -> bool {
+pub(crate) fn sticks(obstacles: &[Obstacle]) -> bool {
     obstacles.iter().any(|obstacle| obstacle.friction == Friction::NoSlip)
 }

@@ -8,9 +8,10 @@ mod recipe;
 
 pub use crate::geometry::{Dimension, Field};
 pub use amplitude::Amplitude;
+pub(crate) use conditions::sticks;
 pub use conditions::{
     BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed, Pressure,
-    Traction, sticks,
+    Traction,
 };
 pub use motion::{Motion, Newton, Relaxation, RelaxationMass, StepControl};
 pub use recipe::{
@@ -57,6 +58,15 @@ impl Problem {
             loads: Loads::default(),
             obstacles: Vec::new(),
             motion: Motion::Automatic(Relaxation::default()),
+        }
+    }
+
+    /// Whether Newton's method is what is tried at first.
+    pub fn by_newton(&self) -> bool {
+        match self.motion {
+            Motion::Automatic(_) => !sticks(&self.obstacles),
+            Motion::Equilibrium(_) => true,
+            Motion::Static(_) | Motion::Dynamic { .. } => false,
         }
     }
 }

@@ -51,8 +51,11 @@ fn solve_to(
     }
     let bar = progress_bar(common);
     let show = |progress: f64, step: usize| {
-        bar.set_position((1000.0 * progress) as u64);
-        bar.set_message(format!("step {step}"));
+        let position = (1000.0 * progress) as u64;
+        if position != bar.position() {
+            bar.set_position(position);
+            bar.set_message(format!("step {step}"));
+        }
     };
     let mut recorder = Recorder::new(case, &prepared, case.outputs.frames)?.with_progress(&show);
     let solution = integrate_prepared(&case.problem, &prepared, &mut recorder);

@@ -4,11 +4,9 @@
 use super::error::WarpError;
 use super::field::DisplacementField;
 use crate::files::stl::Triangles;
-use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{LabelField, Selector, Shape};
 use mtled::problem::{Dimension, Problem};
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// Edge of the cubes that a surface is made from: at most this part of the smallest nodal spacing
 /// and of the least extent of the solid, and a voxel \[–\].
@@ -55,10 +53,10 @@ pub fn region_surfaces(
     let most = voxel(&problem.body).min(OF_SPACING * spacing);
     let drawn = shapes.into_iter().map(|(name, shape)| {
         let extent = shape.bounding_box().map_or(f64::INFINITY, |(low, high)| (high - low).min());
-        let before = indexed(&shape.triangles(most.min(OF_EXTENT * extent))?);
-        let vertices = before.vertices.par_iter().map(|X| X + field.at(X)).collect();
-        let after = Triangles { vertices, triangles: before.triangles.clone() };
-        Ok(RegionSurface { name, before, after })
+        let (vertices, triangles) = shape.triangles(most.min(OF_EXTENT * extent))?;
+        let moved = vertices.par_iter().map(|X| X + field.at(X)).collect();
+        let after = Triangles { vertices: moved, triangles: triangles.clone() };
+        Ok(RegionSurface { name, before: Triangles { vertices, triangles }, after })
     });
     Ok((drawn.collect::<Result<_, WarpError>>()?, left_out))
 }
@@ -99,20 +97,4 @@ fn voxel(body: &Shape) -> f64 {
         Shape::Labels(field) => field.voxel(),
         _ => f64::INFINITY,
     }
-}
-
-/// Triangles with the vertices that they share.
-fn indexed(triangles: &[[Vector3; 3]]) -> Triangles {
-    let mut numbers: HashMap<[u64; 3], u32> = HashMap::new();
-    let mut vertices = Vec::new();
-    let mut number = |X: &Vector3| {
-        let bits = [X.x.to_bits(), X.y.to_bits(), X.z.to_bits()];
-        *numbers.entry(bits).or_insert_with(|| {
-            vertices.push(*X);
-            vertices.len() as u32 - 1
-        })
-    };
-    let triangles =
-        triangles.iter().map(|corners| [0, 1, 2].map(|k| number(&corners[k]))).collect();
-    Triangles { vertices, triangles }
 }

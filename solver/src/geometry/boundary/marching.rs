@@ -6,7 +6,7 @@ use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::closed_chains;
 use crate::geometry::shape::Shape;
 use crate::geometry::size_limit::DISTANCE_SAMPLES;
-use crate::geometry::triangles::{Triangle, area_vector};
+use crate::geometry::triangles::{Triangle, area_vector, merged};
 use crate::geometry::voxels::ScalarGrid;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -158,10 +158,11 @@ fn cross_tetrahedron(
 }
 
 impl Shape {
-    /// Triangles around the solid \[m\], anticlockwise seen from outside, from cubes of `size`
-    /// \[m\]; for drawings.
-    pub fn triangles(&self, size: f64) -> Result<Vec<[Vector3; 3]>, GeometryError> {
-        isosurface(self, size)
+    /// Vertices of triangles around the solid \[m\] and the corners of each, anticlockwise seen
+    /// from outside, from cubes of `size` \[m\]; for drawings.
+    pub fn triangles(&self, size: f64) -> Result<(Vec<Vector3>, Vec<[u32; 3]>), GeometryError> {
+        let (vertices, corners) = merged(isosurface(self, size)?.as_flattened().iter());
+        Ok((vertices, corners.as_chunks().0.to_vec()))
     }
 
     /// Closed polylines \[m\] around the cross-section at height z \[m\], the

@@ -1,7 +1,7 @@
 //! The parts of an error, and the run that shows each.
 
 use crate::scene::{Case, Knob, Setting};
-use mtled::problem::{Basis, Motion, VolumetricProjection, sticks};
+use mtled::problem::{Basis, Motion, VolumetricProjection};
 
 /// One part of the error.
 #[derive(Debug, Clone)]
@@ -97,7 +97,7 @@ fn time(case: &Case) -> Part {
             "the equilibrium of the same discretisation by Newton's method".into(),
             vec![Setting::word(Knob::Solver, "newton")],
         ),
-        Motion::Automatic(settings) if !sticks(&case.problem.obstacles) => {
+        Motion::Automatic(settings) if case.problem.by_newton() => {
             let (old, new) = (settings.tolerance, 1e-4 * settings.tolerance);
             part("time", format!("solved to {new:.0e} instead of {old:.0e}"), tolerance(new))
         }

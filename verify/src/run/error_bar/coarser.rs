@@ -10,7 +10,7 @@ use crate::scene::Case;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
 use mtled::model::zero_energy::{refuse_zero_energy_modes, tested_points};
-use mtled::problem::{Motion, Newton, Problem, sticks};
+use mtled::problem::{Motion, Newton, Problem};
 
 /// Spacings over that of the run, where Newton's method takes the place of relaxation: a few
 /// times cheaper: three clouds are affordable in space, and two in a plane, where work falls
@@ -59,12 +59,8 @@ pub fn ratios(problem: &Problem) -> &'static [f64] {
 /// Newton's method, where it is what solves the run or takes the place of a relaxation without
 /// contact.
 fn by_newton(problem: &Problem) -> Option<Motion> {
-    let serves = match &problem.motion {
-        Motion::Dynamic { .. } => false,
-        Motion::Automatic(_) => !sticks(&problem.obstacles),
-        Motion::Static(_) => problem.obstacles.is_empty(),
-        Motion::Equilibrium(_) => true,
-    };
+    let relaxed = matches!(problem.motion, Motion::Static(_)) && problem.obstacles.is_empty();
+    let serves = problem.by_newton() || relaxed;
     let load_end = problem.motion.end();
     serves.then_some(Motion::Equilibrium(Newton { load_end, tolerance: TOLERANCE }))
 }
