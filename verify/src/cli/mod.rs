@@ -129,8 +129,8 @@ fn without_a_command(answer: &clap::Error) -> u8 {
     let common = Common { threads: None, quiet: false, format: requested_format() };
     if answer.use_stderr() {
         match common.format {
-            Format::Human => drop(answer.print()),
             Format::Json => common.complain(answer.render().to_string().trim_end()),
+            _ => drop(answer.print()),
         }
         return COULD_NOT_RUN;
     }

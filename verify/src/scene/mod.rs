@@ -10,6 +10,7 @@ mod edit;
 mod format;
 mod knob;
 mod migrate;
+mod nearest;
 mod problem_hash;
 mod read;
 
@@ -18,5 +19,6 @@ pub use diagnostic::{Diagnostic, Location, Mistakes, one_error};
 pub use edit::{EditError, edited, with_absolute_paths};
 pub use knob::{Knob, Level, Levels, Setting};
 pub use migrate::migrated;
+pub use nearest::nearest;
 pub use problem_hash::problem_hash;
 pub use read::{parse_case, read_case, read_text, schema};

@@ -29,8 +29,8 @@ pub fn inspect(arguments: &InspectArgs, common: &Common) -> anyhow::Result<u8> {
         examine(&case, &prepared, arguments.modes).map_err(|error| located(&case, &error))?;
     match common.format {
         Format::Json => print_json(&format!("{}\n", to_json(&inspection)))?,
-        Format::Human if common.quiet => print_text(&(advice(&inspection).join("\n") + "\n"))?,
-        Format::Human => print_text(&to_text(&inspection))?,
+        _ if common.quiet => print_text(&(advice(&inspection).join("\n") + "\n"))?,
+        _ => print_text(&to_text(&inspection))?,
     }
     Ok(0)
 }

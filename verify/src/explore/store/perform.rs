@@ -7,7 +7,7 @@ use super::record::{Figures, RunOutcome, RunRecord, SCHEMA_VERSION, Stage, Timin
 use super::task::{Job, Task, solver_identity};
 use crate::accuracy::{SAMPLES, values};
 use crate::machine::provenance;
-use crate::reference::is_dynamic;
+use crate::reference::{is_dynamic, quantities};
 use crate::run::{
     Prepared, Recorder, Solved, Work, estimated_memory, integrate, prepare_to_run,
     refuse_beyond_memory,
@@ -83,7 +83,8 @@ fn run_job(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOut
             let mut figures = discretisation_figures(case, &prepared);
             figures.append(&mut more);
             let warnings = prepared.doubts(&case.problem);
-            RunOutcome::Done { figures, values: Vec::new(), work: None, warnings }
+            let (quantities, values) = (Vec::new(), Vec::new());
+            RunOutcome::Done { figures, quantities, values, work: None, warnings }
         }
     }))
 }
@@ -110,6 +111,7 @@ fn solve(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOutco
     warnings.extend(solved.doubts());
     Ok(Some(RunOutcome::Done {
         figures,
+        quantities: quantities(case),
         values: values(case, &record, &task.times)?,
         work: Some(Work::of(&solved)),
         warnings,

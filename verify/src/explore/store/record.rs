@@ -1,6 +1,7 @@
 //! What is stored of a run.
 
 use super::task::Job;
+use crate::reference::Quantity;
 use crate::run::Work;
 use crate::scene::{Knob, Setting};
 use serde::{Deserialize, Serialize};
@@ -43,6 +44,9 @@ pub enum RunOutcome {
     Done {
         /// Single numbers.
         figures: Figures,
+        /// Names and kinds of the values; a record of an earlier version has none.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        quantities: Vec<Quantity>,
         /// \[quantity of the case\]\[instant and component\].
         values: Vec<Vec<f64>>,
         /// Operation counts of a simulation.

@@ -12,8 +12,11 @@ use std::sync::Arc;
 pub(super) const KEY_DIGITS: usize = 32;
 
 /// Kind of run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, clap::ValueEnum,
+)]
 #[serde(rename_all = "snake_case")]
+#[value(rename_all = "snake_case")]
 pub enum Job {
     /// A simulation to its end.
     Solve,
@@ -34,6 +37,18 @@ pub struct Source {
     pub file: PathBuf,
     /// Its content.
     pub case: Case,
+}
+
+impl Job {
+    /// As it is written on the command line and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Job::Solve => "solve",
+            Job::Consistency => "consistency",
+            Job::Patch => "patch",
+            Job::TimeStep => "time_step",
+        }
+    }
 }
 
 impl Source {
