@@ -27,7 +27,7 @@ def main():
     file = pyarrow.parquet.ParquetFile(parquet)
     assert file.metadata.num_rows == len(table) > 0
     for read in (f"read_csv('{csv}')", f"'{parquet}'"):
-        count, total = duckdb.sql(f"select count(*), sum(value) from {read}").fetchone()
+        [(count, total)] = duckdb.sql(f"select count(*), sum(value) from {read}").fetchall()
         assert count == len(table) and abs(total / table["value"].sum() - 1) < 1e-12, read
 
     records = json.loads((folder / "runs.json").read_text())

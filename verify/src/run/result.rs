@@ -71,7 +71,12 @@ fn recorded_json(case: &Case, prepared: &Prepared, record: &Recording) -> Value 
     let quadrature = &discretisation.quadrature;
     json!({
         "schema_version": SCHEMA_VERSION,
-        "case": { "name": case.name, "title": case.title, "hash": case.hash },
+        "case": {
+            "name": case.name,
+            "title": case.title,
+            "hash": case.hash,
+            "overrides": case.overrides(),
+        },
         "version": env!("CARGO_PKG_VERSION"),
         "discretisation": {
             "nodes": discretisation.cloud.positions.len(),
@@ -253,8 +258,9 @@ pub fn summary_text(
 ) -> String {
     let (d, s) = (&solved.prepared.discretisation, &solved.summary);
     let model = &solved.prepared.model;
-    let mut lines = vec![
-        format!("{}: {}", printable(&case.name), printable(&case.title)),
+    let mut lines = vec![format!("{}: {}", printable(&case.name), printable(&case.title))];
+    lines.extend(case.overrides().iter().map(|set| printable(&format!("  with {set}"))));
+    lines.extend([
         format!(
             "  {} nodes, {} quadrature points, {:.1} nodes per support",
             d.cloud.positions.len(),
@@ -281,7 +287,7 @@ pub fn summary_text(
                 four_digits(s.smallest_jacobian.jacobian)
             ),
         },
-    ];
+    ]);
     if model.added_mass > 0.0 {
         let fraction = model.added_mass / model.lumped_mass.iter().sum::<f64>();
         lines.push(format!("  mass scaling adds {} % of the mass", four_digits(100.0 * fraction)));

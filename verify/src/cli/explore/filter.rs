@@ -2,9 +2,8 @@
 
 use super::args::StoreArgs;
 use crate::cli::common::{COULD_NOT_RUN, Common};
-use crate::explore::records::{FilterError, RunFilter};
+use crate::explore::records::{FilterError, RunFilter, Wanted};
 use crate::explore::store::{Contents, Corrupt, Job, RunRecord, Store};
-use crate::explore::sweep::Axis;
 use anyhow::Result;
 use clap::Args;
 use std::collections::BTreeSet;
@@ -21,17 +20,17 @@ pub struct FilterArgs {
     /// Runs of this day and later only, such as 2026-01-31.
     #[arg(long, value_name = "DAY", value_parser = RunFilter::day, help_heading = "Filters")]
     since: Option<String>,
-    /// Runs with this setting only, such as dilation=1.8, dilation=1.4..2.2:0.2,
-    /// basis=linear,quadratic or spacing=x0.8. May be repeated. What a run leaves as it is in
-    /// its case is not on record as a setting, but for the spacing.
+    /// Runs with this setting only: dilation=1.8, dilation=1.4..2.2:0.2, basis=linear,quadratic,
+    /// spacing=x0.8, or a key as it was given to --set. May be repeated. What a run leaves as it
+    /// is in its case is not on record as a setting, but for the spacing.
     #[arg(long = "where", value_name = "SETTING=VALUE", value_parser = setting,
         help_heading = "Filters")]
-    settings: Vec<Axis>,
+    settings: Vec<Wanted>,
     #[command(flatten)]
     pub store: StoreArgs,
 }
 
-fn setting(text: &str) -> Result<Axis, FilterError> {
+fn setting(text: &str) -> Result<Wanted, FilterError> {
     RunFilter::setting(text)
 }
 

@@ -74,7 +74,9 @@ fn table(records: &[RunRecord]) -> Table {
     table.load_style(presets::NOTHING);
     table.set_header(["key", "run", "case", "settings", "CPU s", "outcome", "solver"]);
     for record in records {
-        let settings: Vec<String> = record.settings.iter().map(|s| s.to_string()).collect();
+        let overrides = record.overrides.iter().map(ToString::to_string);
+        let settings = overrides.chain(record.settings.iter().map(ToString::to_string));
+        let settings: Vec<String> = settings.collect();
         let outcome = match &record.outcome {
             RunOutcome::Done { .. } => "done".to_string(),
             RunOutcome::Failed { reason, .. } => printable(reason).chars().take(60).collect(),

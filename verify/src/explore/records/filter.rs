@@ -2,7 +2,7 @@
 
 use crate::explore::store::{Job, RunRecord};
 use crate::explore::sweep::{Axis, AxisError, equal};
-use crate::scene::{Knob, Level, Levels, Setting, nearest};
+use crate::scene::{Knob, Level, Levels, Override, Setting, nearest};
 use std::path::Path;
 
 /// What records must be; of each list one entry is enough, and an empty list asks for nothing.
@@ -14,8 +14,17 @@ pub struct RunFilter {
     pub jobs: Vec<Job>,
     /// The first day, YYYY-MM-DD.
     pub since: Option<String>,
-    /// Settings, all of which must have one of their levels.
-    pub settings: Vec<Axis>,
+    /// All of them.
+    pub settings: Vec<Wanted>,
+}
+
+/// A setting that runs must have.
+#[derive(Debug, Clone)]
+pub enum Wanted {
+    /// One of the levels of a knob.
+    Level(Axis),
+    /// A value that was set in place of that of the case file.
+    Override(Override),
 }
 
 /// What is wrong with a filter.
@@ -51,7 +60,10 @@ impl RunFilter {
         (self.cases.is_empty() || self.cases.iter().any(name))
             && (self.jobs.is_empty() || self.jobs.contains(&record.job))
             && self.since.as_ref().is_none_or(|day| record.timings.date >= *day)
-            && self.settings.iter().all(|axis| has_level(record, axis))
+            && self.settings.iter().all(|wanted| match wanted {
+                Wanted::Level(axis) => has_level(record, axis),
+                Wanted::Override(given) => record.overrides.iter().any(|own| own.means(given)),
+            })
     }
 
     /// The name under which runs of a case file, or of a bundled case, are stored.
@@ -60,13 +72,18 @@ impl RunFilter {
         stem.map_or(case.to_string(), |stem| stem.to_string_lossy().into())
     }
 
-    /// `dilation=1.8`, with lists and ranges as studies take them.
-    pub fn setting(text: &str) -> Result<Axis, FilterError> {
+    /// `dilation=1.8`, with lists and ranges as studies take them, or a key of a case file with
+    /// its value, such as `material.tissue.young_modulus=3000`.
+    pub fn setting(text: &str) -> Result<Wanted, FilterError> {
         let (name, levels) =
             text.split_once('=').ok_or_else(|| FilterError::NoValue(text.into()))?;
+        if name.contains(['.', '[']) {
+            let given = text.parse().map_err(|_| FilterError::NoValue(text.into()))?;
+            return Ok(Wanted::Override(given));
+        }
         let axis = Axis::named(name.trim(), levels)?;
         axis.levels.iter().try_for_each(|level| refuse_other_kind(axis.knob, level))?;
-        Ok(axis)
+        Ok(Wanted::Level(axis))
     }
 
     /// YYYY-MM-DD; such texts are ordered as their days are.
@@ -129,6 +146,7 @@ mod tests {
             job: Job::Solve,
             case: case.into(),
             solver: String::new(),
+            overrides: vec!["material.tissue.density=1e3".parse().unwrap()],
             settings,
             times_s: Vec::new(),
             outcome: RunOutcome::Failed { stage: Stage::Refused, reason: "none".into() },
@@ -147,10 +165,16 @@ mod tests {
             since: Some(RunFilter::day("2026-03-01").unwrap()),
             jobs: vec![Job::Solve],
         };
-        for texts in [&[][..], &["dilation=1.80", "spacing=x2.0"], &["dilation=1.4..2.2:0.2"]] {
+        for texts in [
+            &[][..],
+            &["dilation=1.80", "spacing=x2.0"],
+            &["dilation=1.4..2.2:0.2", "material.tissue.density=1000"],
+        ] {
             assert!(with(texts).accepts(&known), "{texts:?}");
         }
-        for texts in [["dilation=1.6"], ["spacing=x1"], ["basis=linear"]] {
+        for texts in
+            [["dilation=1.6"], ["spacing=x1"], ["basis=linear"], ["material.tissue.density=1"]]
+        {
             assert!(!with(&texts).accepts(&known), "{texts:?}");
         }
         assert!(!RunFilter { jobs: vec![Job::Patch], ..with(&[]) }.accepts(&known));

@@ -12,7 +12,7 @@ mod rows;
 mod table;
 
 pub use csv::to_csv;
-pub use filter::{FilterError, RunFilter};
+pub use filter::{FilterError, RunFilter, Wanted};
 pub use parquet::to_parquet;
 pub use rows::{quantities_are_missing, runs_table};
 pub use table::{Cells, Column, Table};

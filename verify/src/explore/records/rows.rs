@@ -123,6 +123,10 @@ fn about_the_run(rows: &[Row]) -> Vec<Column> {
         RunOutcome::Failed { stage: Stage::Refused, .. } => "refused",
         RunOutcome::Failed { stage: Stage::Running, .. } => "failed",
     };
+    let overrides = |row: &Row| {
+        let all: Vec<String> = row.record.overrides.iter().map(ToString::to_string).collect();
+        (!all.is_empty()).then(|| all.join("; "))
+    };
     let warnings = |row: &Row| match &row.record.outcome {
         RunOutcome::Done { warnings, .. } if !warnings.is_empty() => Some(warnings.join("; ")),
         _ => None,
@@ -131,6 +135,7 @@ fn about_the_run(rows: &[Row]) -> Vec<Column> {
         text("key", rows, |row| Some(row.record.key.clone())),
         text("run", rows, |row| Some(row.record.job.name().into())),
         text("case_name", rows, |row| Some(row.record.case.clone())),
+        text("overrides", rows, overrides),
         text("outcome", rows, |row| Some(outcome(row).into())),
         text("reason", rows, |row| row.record.failure().map(String::from)),
         text("warnings", rows, warnings),

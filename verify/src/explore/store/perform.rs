@@ -50,6 +50,7 @@ pub fn perform(task: &Task) -> Result<Option<RunRecord>> {
         job: task.job,
         case: task.source.name.clone(),
         solver: solver_identity().to_string(),
+        overrides: task.source.case.overrides().to_vec(),
         settings: task.settings.clone(),
         times_s: task.times.clone(),
         outcome,
@@ -214,7 +215,7 @@ mod tests {
     #[test]
     fn a_recipe_whose_gradients_cannot_be_made_consistent_is_refused_before_the_first_step() {
         let folder = tempfile::tempdir().unwrap();
-        let source = Source::find("falling_beam", folder.path()).unwrap();
+        let source = Source::find("falling_beam", folder.path(), &[]).unwrap();
         let settings = vec![
             Setting::word(Knob::Spacing, "x1.6"),
             Setting::number(Knob::Dilation, 1.5),

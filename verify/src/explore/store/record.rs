@@ -3,7 +3,7 @@
 use super::task::Job;
 use crate::reference::Quantity;
 use crate::run::Work;
-use crate::scene::{Knob, Setting};
+use crate::scene::{Knob, Override, Setting};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -26,7 +26,10 @@ pub struct RunRecord {
     pub case: String,
     /// [`super::solver_identity`] of the program that ran it.
     pub solver: String,
-    /// Changes to the case file.
+    /// Values under keys of the case file in place of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub overrides: Vec<Override>,
+    /// Changes to the recipe of the case.
     pub settings: Vec<Setting>,
     /// Instants of the values \[s\].
     pub times_s: Vec<f64>,
