@@ -53,6 +53,7 @@ const EXAMPLES: &str = "Examples:
   mtled study convergence my_case.toml          errors over spacings, with orders
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the bundled cases
+  mtled runs export -o runs.parquet             the results of stored runs as a table
   mtled bench --quick                           how fast is the solver here?
   mtled reference check                         do the finite-element references agree?";
 

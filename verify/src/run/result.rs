@@ -19,6 +19,9 @@ use mtled_checks::report::four_digits;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+/// More points than this are not listed in the summary.
+const MOST_POINTS: usize = 20;
+
 /// Version of the layout of `result.json`.
 const SCHEMA_VERSION: u32 = 1;
 
@@ -308,7 +311,8 @@ pub fn summary_text(
     }
     if let Some(last) = record.samples.last() {
         let probes = case.probes.iter().zip(&record.references).zip(&last.displacements);
-        for ((probe, references), displacements) in probes.filter(|(_, u)| u.len() == 1) {
+        let single: Vec<_> = probes.filter(|(_, u)| u.len() == 1).collect();
+        for ((probe, references), displacements) in single.iter().take(MOST_POINTS) {
             let place = if matches!(probe.kind, ProbeKind::CentreOfMass { .. }) {
                 "centre of mass"
             } else {
@@ -321,6 +325,9 @@ pub fn summary_text(
                 triple(&displacements[0]),
                 plus_minus(bars, &format!("displacement/{}", probe.name))
             ));
+        }
+        if let Some(more) = single.len().checked_sub(MOST_POINTS).filter(|more| *more > 0) {
+            lines.push(format!("  {more} more points are in result.json and history.csv"));
         }
         for (condition, reaction) in case.problem.conditions.iter().zip(&last.reactions) {
             lines.push(format!(

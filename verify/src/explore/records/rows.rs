@@ -192,9 +192,12 @@ fn about_the_number(rows: &[Row]) -> Vec<Column> {
     ]
 }
 
+/// The name of a count of work and where it is.
+type Counter = (&'static str, fn(&Work) -> usize);
+
 /// What the run took, where, when and by which program.
 fn effort(rows: &[Row]) -> Vec<Column> {
-    let counters: [(&'static str, fn(&Work) -> usize); 7] = [
+    let counters: [Counter; 7] = [
         ("steps", |work| work.steps),
         ("force_evaluations", |work| work.force_evaluations),
         ("lanczos_evaluations", |work| work.lanczos_evaluations),
