@@ -1,7 +1,7 @@
 //! Stored records as a table: which of them, with which columns, in which kind of file.
 //!
-//! Parquet is written here and not by its crate, which takes a minute of processor time to
-//! compile: a table of optional texts and numbers needs one page per column and a list of
+//! Parquet is written here and not by its crate, which with its dependencies takes a minute of
+//! processor time to compile: a table of optional texts and numbers needs one page per column and a list of
 //! columns, nothing else of the format.
 
 mod compact;
