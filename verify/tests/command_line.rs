@@ -333,3 +333,25 @@ fn an_interrupted_run_leaves_complete_files() {
     assert!(history.lines().all(|line| columns(line) == columns(history.lines().next().unwrap())));
     assert!(out.join("nodes_0000.vtu").exists() && out.join("case.pvd").exists());
 }
+
+#[test]
+fn points_of_a_file_are_probes_as_if_each_were_written_out() {
+    let one = "[[probe]]\nname = \"top\"\npoint = [0.05, 0.05, 0.1]\n";
+    let file = "[[probe]]\nname = \"marks\"\npoints = { file = \"marks.csv\" }\n";
+    let (folder, path) = case_with(one, file);
+    let marks = "name,x_mm,y_mm,z_mm\ntop,50,50,100\nside,0,50,50\n";
+    std::fs::write(folder.path().join("marks.csv"), marks).unwrap();
+    let (code, _, err) = solve(&path, &folder.path().join("marks"), &["--no-error-bar"]);
+    assert_eq!(code, 0, "{err}");
+    let (other, path) = case_with("", "");
+    assert_eq!(solve(&path, &other.path().join("top"), &["--no-error-bar"]).0, 0);
+    let (marks, top) = (result(&folder.path().join("marks")), result(&other.path().join("top")));
+    let names = |result: &Value| -> Vec<String> {
+        let probes = result["probes"].as_array().unwrap();
+        probes.iter().map(|probe| probe["name"].as_str().unwrap().to_string()).collect()
+    };
+    assert_eq!(names(&marks), ["marks.top", "marks.side"]);
+    for what in ["kind", "reference_m", "displacement_m"] {
+        assert_eq!(marks["probes"][0][what], top["probes"][0][what]);
+    }
+}

@@ -194,3 +194,93 @@ fn a_range_that_cannot_be_read_and_a_case_that_is_not_there_end_with_code_2() {
         assert!(output.contains(words), "{arguments:?}: {output}");
     }
 }
+
+#[test]
+fn an_exported_table_has_every_number_of_the_records_bit_for_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let arguments = ["convergence", "uniaxial_bar", "--spacing", "x2,x1.6", "--clouds", "1"];
+    let files = ["--store", "runs", "--out", "report", "--quiet"];
+    assert_eq!(run(folder, &[&["study"], &arguments[..], &files[..]].concat()).0, 0);
+    let (code, table, _) = run(folder, &["runs", "export", "--store", "runs"]);
+    assert_eq!(code, 0);
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let names = reader.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let cell = |row: &csv::StringRecord, name: &str| {
+        row[names.iter().position(|n| n == name).unwrap()].to_string()
+    };
+    for record in listed(folder, "runs") {
+        let done = &record["outcome"]["done"];
+        let own: Vec<_> = rows.iter().filter(|row| cell(row, "key") == record["key"]).collect();
+        for (quantity, values) in
+            done["quantities"].as_array().unwrap().iter().zip(done["values"].as_array().unwrap())
+        {
+            let name = quantity["name"].as_str().unwrap();
+            let given: Vec<f64> = (own.iter().filter(|row| cell(row, "quantity") == name))
+                .map(|row| cell(row, "value").parse().unwrap())
+                .collect();
+            let stored: Vec<f64> =
+                values.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
+            assert_eq!(given, stored, "{name}");
+        }
+        let nodes = done["figures"]["nodes"].as_f64().unwrap();
+        assert!(own.iter().all(|row| cell(row, "nodes") == nodes.to_string()));
+        let reaction = own.iter().find(|row| cell(row, "quantity") == "force/left").unwrap();
+        assert_eq!((cell(reaction, "unit"), cell(reaction, "component")), ("N".into(), "x".into()));
+    }
+}
+
+#[test]
+fn list_and_export_take_the_same_filters_and_say_what_does_not_fit() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    store_of_one(folder, "runs");
+    let filtered = |command: &str, more: &[&str]| {
+        run(folder, &[&["runs", command, "--store", "runs"], more].concat())
+    };
+    for fitting in [
+        &["--case", "cube_compression.toml", "--run", "consistency"][..],
+        &["--where", "dilation=1.4..2.2:0.2", "--where", "cells-per-spacing=1.26"],
+        &["--since", "2000-01-01"],
+    ] {
+        let (code, out, err) = filtered("list", fitting);
+        assert!(code == 0 && out.ends_with("1 records in runs\n") && err.is_empty(), "{out}{err}");
+        let (code, out, err) = filtered("export", fitting);
+        assert!(code == 0 && out.lines().count() > 5 && err.is_empty(), "{out}{err}");
+    }
+    for other in [["--case", "cube"], ["--where", "dilation=1.6"], ["--since", "2999-01-01"]] {
+        for command in ["list", "export"] {
+            let (code, _, err) = filtered(command, &other);
+            assert!(code == 0 && err.contains("none of 1 records in runs fits"), "{err}");
+        }
+    }
+    for (wrong, message) in [
+        (&["--where", "dilatoin=1.6"][..], "did you mean `dilation`?"),
+        (&["--since", "yesterday"], "is not a day such as 2026-01-31"),
+        (&["--format", "json"], "[possible values: csv, parquet]"),
+        (&["--format", "parquet"], "name it with --output"),
+    ] {
+        let (code, _, err) = filtered("export", wrong);
+        assert!(code == 2 && err.contains(message), "{wrong:?}: {err}");
+    }
+}
+
+#[test]
+fn the_ending_of_a_file_decides_between_csv_and_parquet_unless_the_format_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    store_of_one(folder, "runs");
+    for (arguments, start) in [
+        (&["-o", "deep/a.parquet"][..], "PAR1"),
+        (&["-o", "b.csv"], "key,run,case_name"),
+        (&["-o", "c.parquet", "--format", "csv"], "key,run,case_name"),
+        (&["-o", "d", "--format", "parquet"], "PAR1"),
+    ] {
+        let all = [&["runs", "export", "--store", "runs"], arguments].concat();
+        let (code, out, err) = run(folder, &all);
+        assert!(code == 0 && out.contains(" rows of 1 runs in "), "{out}{err}");
+        let bytes = std::fs::read(folder.join(arguments[1])).unwrap();
+        assert!(bytes.starts_with(start.as_bytes()), "{arguments:?}");
+    }
+}

@@ -1,13 +1,13 @@
 //! `mtled case …`.
 
 use super::common::{COULD_NOT_RUN, Common, Format};
-use super::load::{load, located};
+use super::load::{SetArgs, load, located};
 use super::messages::place;
 use super::migrate::{MigrateArgs, migrate};
 use super::streams::{print_data, print_json, print_text};
 use crate::bundled::CASES;
 use crate::run::prepare_to_run;
-use crate::scene::{Diagnostic, Mistakes, schema};
+use crate::scene::{Diagnostic, Mistakes, Override, schema};
 use anyhow::{Result, bail};
 use clap::Subcommand;
 use mtled_checks::escape::printable;
@@ -21,6 +21,8 @@ pub enum CaseCommand {
         /// Case files, or names of bundled cases.
         #[arg(required = true)]
         files: Vec<PathBuf>,
+        #[command(flatten)]
+        set: SetArgs,
     },
     /// Update case files to the current names of keys and values.
     Migrate(MigrateArgs),
@@ -37,7 +39,7 @@ pub enum CaseCommand {
 
 pub fn case(command: &CaseCommand, common: &Common) -> Result<u8> {
     match command {
-        CaseCommand::Check { files } => return check(files, common),
+        CaseCommand::Check { files, set } => return check(files, &set.overrides, common),
         CaseCommand::Migrate(arguments) => return migrate(arguments, common),
         CaseCommand::List => {
             let names: Vec<&str> = CASES.iter().map(|(name, _)| *name).collect();
@@ -67,10 +69,10 @@ struct Checked<'a> {
 }
 
 /// Prints the mistakes of case files; in JSON they are the result.
-fn check(files: &[PathBuf], common: &Common) -> Result<u8> {
+fn check(files: &[PathBuf], overrides: &[Override], common: &Common) -> Result<u8> {
     let mut all = Vec::new();
     for file in files {
-        let checked = examine(file)?;
+        let checked = examine(file, overrides)?;
         if common.format == Format::Human {
             checked.print(common)?;
         }
@@ -86,8 +88,8 @@ fn check(files: &[PathBuf], common: &Common) -> Result<u8> {
 
 /// The mistakes of a case file. It is discretised, since empty selections and poor supports
 /// show only then.
-fn examine(file: &Path) -> Result<Checked<'_>> {
-    let warnings = load(file).and_then(|case| match prepare_to_run(&case.problem) {
+fn examine<'a>(file: &'a Path, overrides: &[Override]) -> Result<Checked<'a>> {
+    let warnings = load(file, overrides).and_then(|case| match prepare_to_run(&case.problem) {
         Ok(prepared) => Ok(prepared.doubts(&case.problem)),
         Err(error) => Err(located(&case, &error)),
     });

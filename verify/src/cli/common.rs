@@ -29,6 +29,12 @@ pub enum Format {
     Human,
     /// One JSON document, and one JSON object per line on standard error.
     Json,
+    /// A table for people's own programs: `mtled runs export` alone takes this.
+    #[value(skip)]
+    Csv,
+    /// As [`Format::Csv`].
+    #[value(skip)]
+    Parquet,
 }
 
 impl Common {
@@ -50,7 +56,7 @@ impl Common {
     ) -> Result<()> {
         match self.format {
             Format::Json => print_json(&json()?)?,
-            Format::Human => print_text(&text())?,
+            _ => print_text(&text())?,
         }
         Ok(())
     }
@@ -61,7 +67,7 @@ impl Common {
         json: &dyn Fn() -> Result<String>,
         text: &dyn Fn() -> String,
     ) -> Result<()> {
-        match self.quiet && self.format == Format::Human {
+        match self.quiet && self.format != Format::Json {
             true => Ok(()),
             false => self.print_result(json, text),
         }
@@ -76,8 +82,8 @@ impl Common {
     ) -> Result<()> {
         match self.format {
             Format::Json => print_json(&json()?)?,
-            Format::Human if self.quiet => {}
-            Format::Human => print_data(&text())?,
+            _ if self.quiet => {}
+            _ => print_data(&text())?,
         }
         Ok(())
     }

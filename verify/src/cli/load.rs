@@ -2,14 +2,27 @@
 
 use crate::bundled::{CASES, unpack};
 use crate::run::refuse_beyond_memory;
-use crate::scene::{Case, Diagnostic, one_error, parse_case, read_case};
+use crate::scene::{Case, Diagnostic, Override, one_error, parse_overridden, read_overridden};
 use anyhow::{Context, Result};
+use clap::Args;
 use mtled::error::Error;
 use std::path::Path;
 
-/// Reads a case file, or a bundled case by its name. It fits into the memory.
-pub fn load(case: &Path) -> Result<Case> {
-    let case = read(case)?;
+/// Values in place of those of a case file.
+#[derive(Debug, Args)]
+pub struct SetArgs {
+    /// Use another value in place of that of the case file, as if the file had it; may be
+    /// repeated. Keys are written as in messages, such as material.tissue.young_modulus,
+    /// prescribe.top.displacement.z or prescribe[0].release, values as in TOML, words without
+    /// quotation marks; a whole table is replaced by another, as in 'time={ method = "dynamic",
+    /// end = 2 }'.
+    #[arg(long = "set", value_name = "KEY=VALUE", help_heading = "Case")]
+    pub overrides: Vec<Override>,
+}
+
+/// Reads a case file, or a bundled case by its name, with overrides. It fits into the memory.
+pub fn load(case: &Path, overrides: &[Override]) -> Result<Case> {
+    let case = read(case, overrides)?;
     match refuse_beyond_memory(&case) {
         Ok(()) => Ok(case),
         Err(shortage) => {
@@ -18,7 +31,7 @@ pub fn load(case: &Path) -> Result<Case> {
     }
 }
 
-fn read(case: &Path) -> Result<Case> {
+fn read(case: &Path, overrides: &[Override]) -> Result<Case> {
     let bundled = CASES.iter().find(|(name, _)| Path::new(name) == case);
     let absent = matches!(case.try_exists(), Ok(false));
     // A folder of that name is no case.
@@ -29,11 +42,11 @@ fn read(case: &Path) -> Result<Case> {
             let file = case.display().to_string();
             Err(one_error(vec![Diagnostic::of_file(&file, message.into())]))
         }
-        None => read_case(case).map_err(one_error),
+        None => read_overridden(case, overrides).map_err(one_error),
         Some((name, text)) => {
             let folder = tempfile::tempdir().context("cannot make a folder for a bundled case")?;
             let cases = unpack(folder.path())?;
-            parse_case(text, &format!("{name}.toml"), &cases).map_err(one_error)
+            parse_overridden(text, &format!("{name}.toml"), &cases, overrides).map_err(one_error)
         }
     }
 }

@@ -71,7 +71,9 @@ impl Common {
     /// A line of text, or of JSON with the place of what it is about.
     fn message(&self, severity: &str, shown: &str, message: &str, place: Option<Value>) {
         match self.format {
-            Format::Human => to_standard_error(&printable_lines(shown)),
+            Format::Human | Format::Csv | Format::Parquet => {
+                to_standard_error(&printable_lines(shown));
+            }
             Format::Json => {
                 let mut object = Map::new();
                 object.insert("severity".into(), severity.into());

@@ -53,6 +53,7 @@ const EXAMPLES: &str = "Examples:
   mtled study convergence my_case.toml          errors over spacings, with orders
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the bundled cases
+  mtled runs export -o runs.parquet             the results of stored runs as a table
   mtled bench --quick                           how fast is the solver here?
   mtled reference check                         do the finite-element references agree?";
 
@@ -129,8 +130,8 @@ fn without_a_command(answer: &clap::Error) -> u8 {
     let common = Common { threads: None, quiet: false, format: requested_format() };
     if answer.use_stderr() {
         match common.format {
-            Format::Human => drop(answer.print()),
             Format::Json => common.complain(answer.render().to_string().trim_end()),
+            _ => drop(answer.print()),
         }
         return COULD_NOT_RUN;
     }

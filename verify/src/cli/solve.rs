@@ -1,7 +1,7 @@
 //! `mtled solve`.
 
 use super::common::{Common, STOPPED};
-use super::load::{load, located};
+use super::load::{SetArgs, load, located};
 use super::progress::progress_bar;
 use crate::run::{
     Estimated, Prepared, Recorder, Recording, Solved, contact_results, error_bars,
@@ -18,6 +18,8 @@ use std::path::{Path, PathBuf};
 pub struct SolveArgs {
     /// Case file (TOML), or name of a bundled case.
     case: PathBuf,
+    #[command(flatten)]
+    set: SetArgs,
     /// Folder for VTU frames, history.csv, displacement_field.json (see `mtled warp`) and
     /// result.json, which replace those of an earlier run [default: reports/<case>].
     #[arg(long, value_name = "DIR")]
@@ -29,7 +31,7 @@ pub struct SolveArgs {
 }
 
 pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
-    let case = load(&arguments.case)?;
+    let case = load(&arguments.case, &arguments.set.overrides)?;
     let preset = || PathBuf::from("reports").join(file_name(&case.name));
     let out = arguments.out.clone().unwrap_or_else(preset);
     ensure_writable(&out)?;

@@ -6,5 +6,7 @@ pub mod store;
 
 pub mod sweep;
 
+pub mod records;
+
 pub mod budget;
 pub mod tune;

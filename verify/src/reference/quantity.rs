@@ -2,9 +2,11 @@
 
 use crate::scene::{Case, ProbeKind};
 use mtled::problem::Motion;
+use serde::{Deserialize, Serialize};
 
 /// Kinds of quantities; those of one kind share their unit and their size.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Family {
     /// Displacements of the positions of a probe.
     Displacement,
@@ -41,7 +43,7 @@ impl Family {
 }
 
 /// One quantity of a case.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Quantity {
     /// Its key in a reference file, such as `force/top`.
     pub name: String,

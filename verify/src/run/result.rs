@@ -19,6 +19,9 @@ use mtled_checks::report::four_digits;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+/// More points than this are not listed in the summary.
+const MOST_POINTS: usize = 20;
+
 /// Version of the layout of `result.json`.
 const SCHEMA_VERSION: u32 = 1;
 
@@ -71,7 +74,12 @@ fn recorded_json(case: &Case, prepared: &Prepared, record: &Recording) -> Value 
     let quadrature = &discretisation.quadrature;
     json!({
         "schema_version": SCHEMA_VERSION,
-        "case": { "name": case.name, "title": case.title, "hash": case.hash },
+        "case": {
+            "name": case.name,
+            "title": case.title,
+            "hash": case.hash,
+            "overrides": case.overrides(),
+        },
         "version": env!("CARGO_PKG_VERSION"),
         "discretisation": {
             "nodes": discretisation.cloud.positions.len(),
@@ -253,8 +261,9 @@ pub fn summary_text(
 ) -> String {
     let (d, s) = (&solved.prepared.discretisation, &solved.summary);
     let model = &solved.prepared.model;
-    let mut lines = vec![
-        format!("{}: {}", printable(&case.name), printable(&case.title)),
+    let mut lines = vec![format!("{}: {}", printable(&case.name), printable(&case.title))];
+    lines.extend(case.overrides().iter().map(|set| printable(&format!("  with {set}"))));
+    lines.extend([
         format!(
             "  {} nodes, {} quadrature points, {:.1} nodes per support",
             d.cloud.positions.len(),
@@ -281,7 +290,7 @@ pub fn summary_text(
                 four_digits(s.smallest_jacobian.jacobian)
             ),
         },
-    ];
+    ]);
     if model.added_mass > 0.0 {
         let fraction = model.added_mass / model.lumped_mass.iter().sum::<f64>();
         lines.push(format!("  mass scaling adds {} % of the mass", four_digits(100.0 * fraction)));
@@ -302,7 +311,8 @@ pub fn summary_text(
     }
     if let Some(last) = record.samples.last() {
         let probes = case.probes.iter().zip(&record.references).zip(&last.displacements);
-        for ((probe, references), displacements) in probes.filter(|(_, u)| u.len() == 1) {
+        let single: Vec<_> = probes.filter(|(_, u)| u.len() == 1).collect();
+        for ((probe, references), displacements) in single.iter().take(MOST_POINTS) {
             let place = if matches!(probe.kind, ProbeKind::CentreOfMass { .. }) {
                 "centre of mass"
             } else {
@@ -315,6 +325,9 @@ pub fn summary_text(
                 triple(&displacements[0]),
                 plus_minus(bars, &format!("displacement/{}", probe.name))
             ));
+        }
+        if let Some(more) = single.len().checked_sub(MOST_POINTS).filter(|more| *more > 0) {
+            lines.push(format!("  {more} more points are in result.json and history.csv"));
         }
         for (condition, reaction) in case.problem.conditions.iter().zip(&last.reactions) {
             lines.push(format!(

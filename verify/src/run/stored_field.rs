@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::prepare::Prepared;
-use crate::scene::Case;
+use crate::scene::{Case, Override};
 use anyhow::Result;
 use mtled::algebra::tensor::Vector3;
 use mtled_checks::escape::printable_json;
@@ -45,6 +45,9 @@ pub struct SolvedCase {
     pub hash: String,
     /// Where the case file was, or the name of a bundled case.
     pub file: PathBuf,
+    /// Values under its keys in place of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub overrides: Vec<Override>,
 }
 
 /// Why the field of a run cannot be used.
@@ -89,7 +92,12 @@ impl StoredField {
         };
         StoredField {
             schema_version: SCHEMA_VERSION,
-            case: SolvedCase { name: case.name.clone(), hash: case.hash.clone(), file },
+            case: SolvedCase {
+                name: case.name.clone(),
+                hash: case.hash.clone(),
+                file,
+                overrides: case.overrides().to_vec(),
+            },
             stopped,
             nodes_m: approximation.nodes.iter().map(|X| (*X).into()).collect(),
             influence_radius_m: approximation.influence_radius.clone(),

@@ -2,6 +2,7 @@
 
 use crate::scene::diagnostic::{Diagnostic, Location};
 use crate::scene::document::Document;
+use crate::scene::edit::Override;
 use mtled::algebra::tensor::Vector3;
 use mtled::problem::Problem;
 
@@ -114,7 +115,12 @@ impl Case {
         self.document.file()
     }
 
-    /// The file as it was read.
+    /// What stands under its keys in place of what the file has.
+    pub fn overrides(&self) -> &[Override] {
+        self.document.overrides()
+    }
+
+    /// The file as it was read, with the overrides written into it.
     pub fn text(&self) -> &str {
         self.document.text()
     }

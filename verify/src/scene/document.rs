@@ -1,6 +1,8 @@
 //! The text of a case file with the place of every key in it.
 
 use crate::scene::diagnostic::{Diagnostic, Location};
+use crate::scene::edit::{Overridden, Override};
+use crate::scene::key_path::{entry, numbered, segments};
 use std::ops::Range;
 use toml_edit::{Item, TableLike};
 
@@ -10,13 +12,21 @@ pub struct Document {
     file: String,
     text: String,
     tree: toml_edit::Document<String>,
+    changed: Option<Box<Changed>>,
+}
+
+/// The file before its overrides.
+#[derive(Debug, Clone)]
+struct Changed {
+    original: Document,
+    overridden: Overridden,
 }
 
 impl Document {
     /// Parses `text`; a mistake of syntax is located.
     pub fn parse(text: &str, file: &str) -> Result<Document, Diagnostic> {
         match toml_edit::Document::parse(text.to_string()) {
-            Ok(tree) => Ok(Document { file: file.to_string(), text: text.to_string(), tree }),
+            Ok(tree) => Ok(Document { file: file.into(), text: text.into(), tree, changed: None }),
             Err(error) => {
                 let span = error.span().unwrap_or(0..0);
                 let message = error.message().replace('\n', ", ");
@@ -25,7 +35,28 @@ impl Document {
         }
     }
 
-    /// The text as it was read.
+    /// As [`Document::parse`], with overrides. Mistakes in these are located on the command
+    /// line, others where they are in `text`.
+    pub fn overridden(
+        text: &str,
+        file: &str,
+        overrides: &[Override],
+    ) -> Result<Document, Diagnostic> {
+        let original = Document::parse(text, file)?;
+        if overrides.is_empty() {
+            return Ok(original);
+        }
+        let overridden = Overridden::new(text, overrides)?;
+        let changed = Document::parse(&overridden.text, file)?;
+        Ok(Document { changed: Some(Box::new(Changed { original, overridden })), ..changed })
+    }
+
+    /// What stands under its keys in place of what the file has.
+    pub fn overrides(&self) -> &[Override] {
+        self.changed.as_ref().map_or(&[], |changed| &changed.overridden.overrides)
+    }
+
+    /// The text as it was read, with the overrides.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -43,20 +74,31 @@ impl Document {
     /// A mistake at a key path; where the path ends early, at its last part
     /// that exists.
     pub fn diagnostic(&self, key: &str, message: String) -> Diagnostic {
-        let span = self.span(key).1;
-        Diagnostic::at(&self.file, &self.text, span, key.to_string(), message)
+        self.diagnostic_at(self.span(key).1, key.to_string(), message)
     }
 
     /// A mistake at bytes of the text.
     pub fn diagnostic_at(&self, span: Range<usize>, key: String, message: String) -> Diagnostic {
-        Diagnostic::at(&self.file, &self.text, span, key, message)
+        let Some(changed) = &self.changed else {
+            return Diagnostic::at(&self.file, &self.text, span, key, message);
+        };
+        let path = numbered(self.tree.as_item(), &key);
+        let known = known_part(self, &path);
+        let created = !changed.original.span(known).0;
+        let on_key = segments(&key).last().map(String::as_str) == self.text.get(span.clone());
+        let mistake = |path: &str, created: bool| {
+            changed.overridden.mistake(path, created, on_key, (&key, &message))
+        };
+        mistake(&path, false)
+            .or_else(|| mistake(known, created))
+            .unwrap_or_else(|| changed.in_the_file(&self.text, span, key, message))
     }
 
     /// Place of a key path such as `prescribe[1].where`, `None` if there is no such key. A
     /// table of an array can be named too: `prescribe.top.where`.
     pub fn locate(&self, key: &str) -> Option<Location> {
         let (exists, span) = self.span(key);
-        exists.then(|| Location::of(&self.file, &self.text, span.start))
+        exists.then(|| self.diagnostic_at(span, key.to_string(), String::new()).location)
     }
 
     /// Whether the whole path exists, and the bytes of its last part that does.
@@ -112,9 +154,40 @@ impl Document {
     }
 }
 
-/// `a.b[2].c` as a, b, 2, c.
-fn segments(key: &str) -> Vec<String> {
-    key.split(['.', '[', ']']).filter(|part| !part.is_empty()).map(str::to_string).collect()
+impl Changed {
+    /// A mistake that no override has made: `span` of `text` is looked for in the file, before
+    /// or behind all that the overrides have changed, else by its key.
+    fn in_the_file(
+        &self,
+        text: &str,
+        span: Range<usize>,
+        key: String,
+        message: String,
+    ) -> Diagnostic {
+        let original = &self.original;
+        let pairs = || text.bytes().zip(original.text.bytes());
+        let before = pairs().take_while(|(a, b)| a == b).count();
+        let backward = text.bytes().rev().zip(original.text.bytes().rev());
+        let behind = backward.take_while(|(a, b)| a == b).count();
+        let own = match (span.end <= before, text.len() - span.start <= behind) {
+            (true, _) => span,
+            (false, true) => {
+                let end = |place: usize| original.text.len() - (text.len() - place);
+                end(span.start)..end(span.end)
+            }
+            (false, false) => original.span(&key).1,
+        };
+        original.diagnostic_at(own, key, message)
+    }
+}
+
+/// The part of a path that a document has.
+fn known_part<'a>(document: &Document, path: &'a str) -> &'a str {
+    let mut known = path;
+    while !known.is_empty() && !document.span(known).0 {
+        known = known.rfind(['.', '[']).map_or("", |end| &known[..end]);
+    }
+    known
 }
 
 /// The child called `segment` and its place.
@@ -123,13 +196,7 @@ fn step_into<'a>(item: &'a Item, segment: &str) -> Option<(&'a Item, Option<Rang
         let (key, child) = table.get_key_value(segment)?;
         return Some((child, child.span().or(key.span())));
     }
-    let index = match segment.parse::<usize>() {
-        Ok(index) => index,
-        Err(_) => item.as_array_of_tables()?.iter().position(|table| {
-            table.get("name").and_then(Item::as_str).is_some_and(|name| name == segment)
-        })?,
-    };
-    let child = item.get(index)?;
+    let child = item.get(entry(item, segment)?)?;
     Some((child, child.span()))
 }
 

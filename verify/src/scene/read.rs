@@ -5,6 +5,7 @@ use crate::scene::case::Case;
 use crate::scene::deserialise::deserialise;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::document::Document;
+use crate::scene::edit::Override;
 use crate::scene::format::CaseFormat;
 use crate::scene::migrate::outdated;
 use std::fs::File;
@@ -13,10 +14,15 @@ use std::path::Path;
 
 /// Reads a case file and the files it refers to.
 pub fn read_case(path: &Path) -> Result<Case, Vec<Diagnostic>> {
+    read_overridden(path, &[])
+}
+
+/// As [`read_case`], with other values under some keys.
+pub fn read_overridden(path: &Path, overrides: &[Override]) -> Result<Case, Vec<Diagnostic>> {
     let file = path.display().to_string();
     let text = read_text(path)
         .map_err(|error| vec![Diagnostic::of_file(&file, format!("cannot be read: {error}"))])?;
-    parse_case(&text, &file, path.parent().unwrap_or(Path::new(".")))
+    parse_overridden(&text, &file, path.parent().unwrap_or(Path::new(".")), overrides)
 }
 
 /// The longest case file or plan that is read \[byte\].
@@ -37,7 +43,18 @@ pub fn read_text(path: &Path) -> io::Result<String> {
 
 /// Reads a case from text; other files are looked for from `base_dir`.
 pub fn parse_case(text: &str, file_name: &str, base_dir: &Path) -> Result<Case, Vec<Diagnostic>> {
-    let document = Document::parse(text, file_name).map_err(|mistake| vec![mistake])?;
+    parse_overridden(text, file_name, base_dir, &[])
+}
+
+/// As [`parse_case`], with other values under some keys.
+pub fn parse_overridden(
+    text: &str,
+    file_name: &str,
+    base_dir: &Path,
+    overrides: &[Override],
+) -> Result<Case, Vec<Diagnostic>> {
+    let document =
+        Document::overridden(text, file_name, overrides).map_err(|mistake| vec![mistake])?;
     for mistakes in [document.numbers_that_are_not_finite(), outdated(&document)] {
         if !mistakes.is_empty() {
             return Err(mistakes);

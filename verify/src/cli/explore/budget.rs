@@ -2,6 +2,7 @@
 
 use super::args::ErrorArgs;
 use crate::cli::common::{Common, command_line};
+use crate::cli::load::SetArgs;
 use crate::cli::progress::ManyRuns;
 use crate::cli::publish::{publish, report_of};
 use crate::explore::budget::{BudgetRequest, budget_study, budget_text, measure_budget};
@@ -19,13 +20,15 @@ pub struct BudgetArgs {
     #[arg(long, default_value_t = 2)]
     clouds: u16,
     #[command(flatten)]
+    set: SetArgs,
+    #[command(flatten)]
     error: ErrorArgs,
 }
 
 pub fn budget(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
     let start = Instant::now();
     let store = arguments.error.store.open()?;
-    let source = Source::find(&arguments.case, store.folder())?;
+    let source = Source::find(&arguments.case, store.folder(), &arguments.set.overrides)?;
     let request = BudgetRequest {
         source: source.clone(),
         reference: arguments.error.reference(),

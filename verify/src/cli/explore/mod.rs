@@ -2,6 +2,8 @@
 
 mod args;
 pub mod budget;
+mod export;
+mod filter;
 mod ranges;
 pub mod runs;
 pub mod sweep;

@@ -1,6 +1,8 @@
 //! `mtled runs` and `mtled merge`.
 
 use super::args::StoreArgs;
+use super::export::{ExportArgs, export};
+use super::filter::{Chosen, FilterArgs, name_corrupt};
 use crate::cli::common::{COULD_NOT_RUN, Common};
 use crate::cli::streams::print_json;
 use crate::explore::store::{Contents, Corrupt, RunOutcome, RunRecord, Store, solver_identity};
@@ -14,7 +16,9 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Subcommand)]
 pub enum RunsCommand {
     /// List the records of a store, one per line.
-    List(StoreArgs),
+    List(FilterArgs),
+    /// Write the results of the records of a store as a table, CSV or Parquet.
+    Export(ExportArgs),
     /// Print one record as JSON.
     Show {
         /// Key of the record, or its first digits.
@@ -48,7 +52,8 @@ pub struct MergeArgs {
 
 pub fn runs(command: &RunsCommand, common: &Common) -> Result<u8> {
     match command {
-        RunsCommand::List(store) => list(&Store::new(&store.store), common),
+        RunsCommand::List(filter) => list(filter, common),
+        RunsCommand::Export(arguments) => export(arguments, common),
         RunsCommand::Show { key, store } => show(&Store::new(&store.store), key),
         RunsCommand::Prune { all, corrupt, store } => {
             prune(&Store::new(&store.store), *all, *corrupt, common)
@@ -56,20 +61,12 @@ pub fn runs(command: &RunsCommand, common: &Common) -> Result<u8> {
     }
 }
 
-/// Names the files that are no records; the exit code says whether there are any.
-fn name_corrupt(corrupt: &[Corrupt], common: &Common) -> u8 {
-    corrupt.iter().for_each(|corrupt| common.complain(&corrupt.error));
-    if corrupt.is_empty() { 0 } else { COULD_NOT_RUN }
-}
-
-fn list(store: &Store, common: &Common) -> Result<u8> {
-    let Contents { records, corrupt } = store.contents()?;
+fn list(filter: &FilterArgs, common: &Common) -> Result<u8> {
+    let Chosen { records, code } = filter.read(common)?;
     let json = || Ok(serde_json::to_string(&records)? + "\n");
-    let count = records.len();
-    common.print_result(&json, &|| {
-        format!("{}\n{count} records in {}\n", table(&records), store.folder().display())
-    })?;
-    Ok(name_corrupt(&corrupt, common))
+    let (count, store) = (records.len(), filter.store.store.display());
+    common.print_result(&json, &|| format!("{}\n{count} records in {store}\n", table(&records)))?;
+    Ok(code)
 }
 
 fn table(records: &[RunRecord]) -> Table {
@@ -77,7 +74,9 @@ fn table(records: &[RunRecord]) -> Table {
     table.load_style(presets::NOTHING);
     table.set_header(["key", "run", "case", "settings", "CPU s", "outcome", "solver"]);
     for record in records {
-        let settings: Vec<String> = record.settings.iter().map(|s| s.to_string()).collect();
+        let overrides = record.overrides.iter().map(ToString::to_string);
+        let settings = overrides.chain(record.settings.iter().map(ToString::to_string));
+        let settings: Vec<String> = settings.collect();
         let outcome = match &record.outcome {
             RunOutcome::Done { .. } => "done".to_string(),
             RunOutcome::Failed { reason, .. } => printable(reason).chars().take(60).collect(),
@@ -85,7 +84,7 @@ fn table(records: &[RunRecord]) -> Table {
         let this = record.solver == solver_identity();
         table.add_row([
             record.key.chars().take(12).collect(),
-            format!("{:?}", record.job).to_lowercase(),
+            record.job.name().into(),
             printable(&record.case),
             printable(&settings.join(", ")),
             format!("{:.2}", record.cpu_s()),

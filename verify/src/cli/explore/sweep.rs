@@ -3,6 +3,7 @@
 use super::args::ErrorArgs;
 use super::ranges::Ranges;
 use crate::cli::common::{Common, command_line};
+use crate::cli::load::SetArgs;
 use crate::cli::progress::ManyRuns;
 use crate::cli::publish::{publish, report_of, tables};
 use crate::explore::store::{Source, Store, TaskRunner};
@@ -28,6 +29,8 @@ pub struct SweepArgs {
     /// Node clouds per combination [default: 1; for convergence 3].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     clouds: Option<u16>,
+    #[command(flatten)]
+    set: SetArgs,
     #[command(flatten)]
     error: ErrorArgs,
     /// Run part i of n only, without a report; `mtled merge` combines the stores of all
@@ -92,7 +95,8 @@ fn definition(subject: Subject, arguments: &SweepArgs, store: &Store) -> Result<
             plan.unwrap_or_default()
         );
     }
-    let sources = names.iter().map(|name| Source::find(name, store.folder()));
+    let sources =
+        names.iter().map(|name| Source::find(name, store.folder(), &arguments.set.overrides));
     let sources = sources.collect::<Result<Vec<_>>>().context("the case cannot be used")?;
     let mut axes = arguments.ranges.axes()?;
     for axis in plan.axes("plan")? {

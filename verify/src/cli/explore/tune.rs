@@ -4,6 +4,7 @@ use super::args::ErrorArgs;
 use super::ranges::Ranges;
 use crate::bundled::small_cases;
 use crate::cli::common::{Common, command_line};
+use crate::cli::load::SetArgs;
 use crate::cli::progress::ManyRuns;
 use crate::cli::publish::{publish, report_of, tables};
 use crate::explore::store::{Source, Store, TaskRunner};
@@ -39,6 +40,8 @@ pub struct TuneArgs {
     clouds: u16,
     #[command(flatten)]
     ranges: Ranges,
+    #[command(flatten)]
+    set: SetArgs,
     #[command(flatten)]
     error: ErrorArgs,
 }
@@ -108,7 +111,7 @@ fn request(name: &str, arguments: &TuneArgs, store: &Store) -> Result<TuneReques
         }
     }
     Ok(TuneRequest {
-        source: Source::find(name, store.folder())?,
+        source: Source::find(name, store.folder(), &arguments.set.overrides)?,
         goal,
         reference: arguments.error.reference(),
         group: arguments.error.quantity,

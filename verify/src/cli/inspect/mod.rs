@@ -4,7 +4,7 @@ mod inspection;
 mod text;
 
 use super::common::{Common, Format};
-use super::load::{load, located};
+use super::load::{SetArgs, load, located};
 use super::streams::{print_json, print_text};
 use crate::run::prepare;
 use clap::Args;
@@ -16,6 +16,8 @@ use text::{advice, to_json, to_text};
 pub struct InspectArgs {
     /// Case file (TOML), or name of a bundled case.
     case: PathBuf,
+    #[command(flatten)]
+    set: SetArgs,
     /// Whether to search for zero-energy modes: "auto" does so up to 20 000 nodes, which takes
     /// seconds.
     #[arg(long, value_enum, default_value_t = Search::Auto)]
@@ -23,14 +25,14 @@ pub struct InspectArgs {
 }
 
 pub fn inspect(arguments: &InspectArgs, common: &Common) -> anyhow::Result<u8> {
-    let case = load(&arguments.case)?;
+    let case = load(&arguments.case, &arguments.set.overrides)?;
     let prepared = prepare(&case.problem).map_err(|error| located(&case, &error))?;
     let inspection =
         examine(&case, &prepared, arguments.modes).map_err(|error| located(&case, &error))?;
     match common.format {
         Format::Json => print_json(&format!("{}\n", to_json(&inspection)))?,
-        Format::Human if common.quiet => print_text(&(advice(&inspection).join("\n") + "\n"))?,
-        Format::Human => print_text(&to_text(&inspection))?,
+        _ if common.quiet => print_text(&(advice(&inspection).join("\n") + "\n"))?,
+        _ => print_text(&to_text(&inspection))?,
     }
     Ok(0)
 }

@@ -33,7 +33,11 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let (few, many) = inspection.support;
     let mut lines = vec![
-        printable(&format!("{}: {}", case.name, case.title)),
+        std::iter::once(format!("{}: {}", case.name, case.title))
+            .chain(case.overrides().iter().map(|set| format!("  with {set}")))
+            .map(|line| printable(&line))
+            .collect::<Vec<_>>()
+            .join("\n"),
         format!(
             "nodes               {nodes}, {} of them on the boundary; all are covered",
             discretisation.cloud.on_boundary.iter().filter(|b| **b).count()

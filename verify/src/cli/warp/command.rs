@@ -89,8 +89,8 @@ fn surfaces(
 /// The case that was solved.
 fn solved_case(arguments: &WarpArgs, stored: &StoredField) -> Result<Case> {
     match &arguments.case {
-        Some(file) => load(file),
-        None => load(&stored.case.file).with_context(|| {
+        Some(file) => load(file, &stored.case.overrides),
+        None => load(&stored.case.file, &stored.case.overrides).with_context(|| {
             format!(
                 "{} was solved; where it has been moved, name it with --case",
                 stored.case.file.display()

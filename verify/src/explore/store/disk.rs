@@ -202,6 +202,7 @@ mod tests {
             job: Job::Solve,
             case: "cube".into(),
             solver: "another".into(),
+            overrides: Vec::new(),
             settings: Vec::new(),
             times_s: Vec::new(),
             outcome: RunOutcome::Failed { stage: Stage::Refused, reason: "none".into() },

@@ -7,7 +7,7 @@ use super::record::{Figures, RunOutcome, RunRecord, SCHEMA_VERSION, Stage, Timin
 use super::task::{Job, Task, solver_identity};
 use crate::accuracy::{SAMPLES, values};
 use crate::machine::provenance;
-use crate::reference::is_dynamic;
+use crate::reference::{is_dynamic, quantities};
 use crate::run::{
     Prepared, Recorder, Solved, Work, estimated_memory, integrate, prepare_to_run,
     refuse_beyond_memory,
@@ -50,6 +50,7 @@ pub fn perform(task: &Task) -> Result<Option<RunRecord>> {
         job: task.job,
         case: task.source.name.clone(),
         solver: solver_identity().to_string(),
+        overrides: task.source.case.overrides().to_vec(),
         settings: task.settings.clone(),
         times_s: task.times.clone(),
         outcome,
@@ -83,7 +84,8 @@ fn run_job(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOut
             let mut figures = discretisation_figures(case, &prepared);
             figures.append(&mut more);
             let warnings = prepared.doubts(&case.problem);
-            RunOutcome::Done { figures, values: Vec::new(), work: None, warnings }
+            let (quantities, values) = (Vec::new(), Vec::new());
+            RunOutcome::Done { figures, quantities, values, work: None, warnings }
         }
     }))
 }
@@ -110,6 +112,7 @@ fn solve(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOutco
     warnings.extend(solved.doubts());
     Ok(Some(RunOutcome::Done {
         figures,
+        quantities: quantities(case),
         values: values(case, &record, &task.times)?,
         work: Some(Work::of(&solved)),
         warnings,
@@ -212,7 +215,7 @@ mod tests {
     #[test]
     fn a_recipe_whose_gradients_cannot_be_made_consistent_is_refused_before_the_first_step() {
         let folder = tempfile::tempdir().unwrap();
-        let source = Source::find("falling_beam", folder.path()).unwrap();
+        let source = Source::find("falling_beam", folder.path(), &[]).unwrap();
         let settings = vec![
             Setting::word(Knob::Spacing, "x1.6"),
             Setting::number(Knob::Dilation, 1.5),

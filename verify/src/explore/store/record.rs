@@ -1,8 +1,9 @@
 //! What is stored of a run.
 
 use super::task::Job;
+use crate::reference::Quantity;
 use crate::run::Work;
-use crate::scene::{Knob, Setting};
+use crate::scene::{Knob, Override, Setting};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -25,7 +26,10 @@ pub struct RunRecord {
     pub case: String,
     /// [`super::solver_identity`] of the program that ran it.
     pub solver: String,
-    /// Changes to the case file.
+    /// Values under keys of the case file in place of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub overrides: Vec<Override>,
+    /// Changes to the recipe of the case.
     pub settings: Vec<Setting>,
     /// Instants of the values \[s\].
     pub times_s: Vec<f64>,
@@ -43,6 +47,9 @@ pub enum RunOutcome {
     Done {
         /// Single numbers.
         figures: Figures,
+        /// Names and kinds of the values; a record of an earlier version has none.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        quantities: Vec<Quantity>,
         /// \[quantity of the case\]\[instant and component\].
         values: Vec<Vec<f64>>,
         /// Operation counts of a simulation.

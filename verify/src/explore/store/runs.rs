@@ -66,6 +66,7 @@ impl TaskRunner<'_> {
         // mean the same.
         let label = |(place, task): (usize, &Task)| RunRecord {
             case: task.source.name.clone(),
+            overrides: task.source.case.overrides().to_vec(),
             settings: task.settings.clone(),
             ..records[place].clone()
         };
@@ -131,7 +132,7 @@ mod tests {
     #[test]
     fn equal_tasks_are_run_once_and_each_gets_the_record() {
         let folder = tempfile::tempdir().unwrap();
-        let source = Source::find("uniaxial_bar", folder.path()).unwrap();
+        let source = Source::find("uniaxial_bar", folder.path(), &[]).unwrap();
         let task = |spacing: &str| Task {
             job: Job::Consistency,
             source: source.clone(),

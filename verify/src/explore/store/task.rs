@@ -1,7 +1,9 @@
 //! Cases and the runs that are made of them.
 
 use crate::bundled::{CASES, unpack};
-use crate::scene::{Case, EditError, Setting, edited, one_error, parse_case, read_text};
+use crate::scene::{
+    Case, EditError, Override, Setting, edited, one_error, parse_case, parse_overridden, read_text,
+};
 use anyhow::{Context, Result, anyhow};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -12,8 +14,11 @@ use std::sync::Arc;
 pub(super) const KEY_DIGITS: usize = 32;
 
 /// Kind of run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, clap::ValueEnum,
+)]
 #[serde(rename_all = "snake_case")]
+#[value(rename_all = "snake_case")]
 pub enum Job {
     /// A simulation to its end.
     Solve,
@@ -36,10 +41,22 @@ pub struct Source {
     pub case: Case,
 }
 
+impl Job {
+    /// As it is written on the command line and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Job::Solve => "solve",
+            Job::Consistency => "consistency",
+            Job::Patch => "patch",
+            Job::TimeStep => "time_step",
+        }
+    }
+}
+
 impl Source {
-    /// A case file, or a bundled case by its name, which is unpacked into `folder`. The
-    /// error lists the mistakes, one per line.
-    pub fn find(name: &str, folder: &Path) -> Result<Arc<Source>> {
+    /// A case file, or a bundled case by its name, which is unpacked into `folder`, with other
+    /// values under some keys. The error lists the mistakes, one per line.
+    pub fn find(name: &str, folder: &Path, overrides: &[Override]) -> Result<Arc<Source>> {
         let path = PathBuf::from(name);
         let bundled = CASES.iter().any(|(bundled, _)| *bundled == name);
         // A folder of that name is no case.
@@ -54,7 +71,9 @@ impl Source {
             }
         };
         let text = read_text(&file).with_context(|| format!("cannot read {}", file.display()))?;
-        let case = parse(&text, &file)?;
+        let base = file.parent().unwrap_or(Path::new("."));
+        let case = parse_overridden(&text, &file.display().to_string(), base, overrides);
+        let case = case.map_err(one_error)?;
         Ok(Arc::new(Source { name: case.name.clone(), file, case }))
     }
 

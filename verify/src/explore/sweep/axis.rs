@@ -1,6 +1,6 @@
 //! Ranges of settings as they are written on the command line and in plans.
 
-use crate::scene::{Knob, Level, Setting};
+use crate::scene::{Knob, Level, Setting, nearest};
 
 /// More levels than this on one axis are taken for a typing error.
 const MOST_LEVELS: usize = 1000;
@@ -21,7 +21,7 @@ pub struct Axis {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AxisError {
     /// No setting has this name.
-    #[error("there is no setting `{name}`; the settings are {}", names())]
+    #[error("there is no setting `{name}`; {}", meant(name))]
     Unknown {
         /// The name.
         name: String,
@@ -68,8 +68,13 @@ pub fn refuse_too_many_runs(axes: &[Axis], clouds: usize) -> Result<(), AxisErro
     }
 }
 
-fn names() -> String {
-    Knob::ALL.iter().map(|knob| knob.name()).collect::<Vec<_>>().join(", ")
+/// What could have been meant.
+fn meant(name: &str) -> String {
+    let names: Vec<&str> = Knob::ALL.iter().map(|knob| knob.name()).collect();
+    match nearest(name, names.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("the settings are {}", names.join(", ")),
+    }
 }
 
 impl Axis {
@@ -118,7 +123,7 @@ impl Axis {
 }
 
 /// Whether two levels are the same, however their numbers are written.
-fn equal(a: &Level, b: &Level) -> bool {
+pub fn equal(a: &Level, b: &Level) -> bool {
     let words = |level: &Level| matches!(level, Level::Word(_));
     a == b || words(a) && words(b) && number_of(a).is_some() && number_of(a) == number_of(b)
 }

@@ -11,7 +11,7 @@ mod study;
 mod subject;
 mod tables;
 
-pub use axis::{Axis, AxisError, combinations, refuse_too_many_runs};
+pub use axis::{Axis, AxisError, combinations, equal, refuse_too_many_runs};
 pub use definition::Sweep;
 pub use plan::{Plan, PlanError};
 pub use reference::{ReferenceSource, find_reference};

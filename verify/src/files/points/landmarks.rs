@@ -25,6 +25,8 @@ const UNITS: [(&str, LengthUnit); 3] =
     [("_m", LengthUnit::Metre), ("_mm", LengthUnit::Millimetre), ("_um", LengthUnit::Micrometre)];
 const HEADER: &str = "a header that names name, x, y, z and, where they were found again, x2, y2, z2, either plainly, \
                       with their unit stated by --unit, or all with it, as in x_mm or x_m";
+const HEADER_OF_POINTS: &str = "a header that names name, x, y, z, either plainly, with `unit` in the case file, or all \
+                                with their unit, as in x_mm or x_m";
 const ROW: &str = "finite numbers below x, y, z, and below x2, y2, z2 three or none";
 
 /// Columns of the header, and the unit that it states.
@@ -37,18 +39,39 @@ struct Columns {
 
 /// Reads landmarks from a CSV file with a header; `unit` overrides what that states.
 pub fn read_landmarks(path: &Path, unit: Option<LengthUnit>) -> Result<Vec<Landmark>, FileError> {
+    read_csv(path, unit, HEADER)
+}
+
+/// Reads named points for a case file from a CSV file with a header; `unit` overrides what that
+/// states.
+pub fn read_named_points(
+    path: &Path,
+    unit: Option<LengthUnit>,
+) -> Result<Vec<Landmark>, FileError> {
+    read_csv(path, unit, HEADER_OF_POINTS)
+}
+
+fn read_csv(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    header: &'static str,
+) -> Result<Vec<Landmark>, FileError> {
     let kind = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     if kind != "csv" {
         return Err(Mistake::UnknownExtension { known: ".csv" }.of(path));
     }
-    bytes_of(path).and_then(|bytes| parse(&bytes, unit).map_err(|mistake| mistake.of(path)))
+    bytes_of(path).and_then(|bytes| parse(&bytes, unit, header).map_err(|mistake| mistake.of(path)))
 }
 
-fn parse(bytes: &[u8], unit: Option<LengthUnit>) -> Result<Vec<Landmark>, Mistake> {
+fn parse(
+    bytes: &[u8],
+    unit: Option<LengthUnit>,
+    expected: &'static str,
+) -> Result<Vec<Landmark>, Mistake> {
     let mut reader = reader(bytes, true);
     let header = reader.headers().map_err(undecodable)?.clone();
-    let columns = columns(&header).ok_or_else(|| bad_line(&header, HEADER))?;
-    let unit = unit.or(columns.stated).ok_or_else(|| bad_line(&header, HEADER))?;
+    let columns = columns(&header).ok_or_else(|| bad_line(&header, expected))?;
+    let unit = unit.or(columns.stated).ok_or_else(|| bad_line(&header, expected))?;
     let rows = reader.records().map(|row| {
         let row = row.map_err(undecodable)?;
         landmark(&row, &columns, unit.in_metres()).ok_or_else(|| bad_line(&row, ROW))
@@ -88,7 +111,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str, unit: Option<LengthUnit>) -> Result<Vec<Landmark>, Mistake> {
-        parse(text.as_bytes(), unit)
+        parse(text.as_bytes(), unit, HEADER)
     }
 
     #[test]

@@ -15,7 +15,7 @@ use mtled::algebra::tensor::Vector3;
 use std::path::Path;
 
 pub use displacements::read_displacements;
-pub use landmarks::{Landmark, read_landmarks};
+pub use landmarks::{Landmark, read_landmarks, read_named_points};
 
 /// Reads node positions, with the format given by the extension of the name. Files of two
 /// columns get z = 0.

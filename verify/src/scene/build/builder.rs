@@ -1,10 +1,10 @@
 //! Mistakes and shared state of the conversion.
 
 use crate::files::visit_bytes;
-use crate::scene::deserialise::nearest;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::document::Document;
 use crate::scene::format::UnitFormat;
+use crate::scene::nearest::nearest;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{LabelField, LabelMap, Shape};
 use mtled::problem::Dimension;

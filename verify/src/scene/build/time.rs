@@ -1,12 +1,16 @@
 //! Time, probes and output of a case file.
 
+use crate::files::LengthUnit;
+use crate::files::points::{Landmark, read_named_points};
 use crate::scene::build::builder::Builder;
 use crate::scene::case::{Outputs, Probe, ProbeKind};
 use crate::scene::format::{
-    CaseFormat, LatticeFormat, MethodFormat, OutputFormat, ProbeFormat, SolverFormat, TimeFormat,
+    CaseFormat, LatticeFormat, MethodFormat, OutputFormat, PointsFormat, ProbeFormat, SolverFormat,
+    TimeFormat,
 };
 use mtled::algebra::tensor::Vector3;
 use mtled::problem::{Dimension, Motion, Newton, Relaxation, StepControl};
+use std::collections::HashSet;
 
 /// The most positions of a probe, samples of its history and frames of the fields.
 const MOST_POSITIONS: f64 = 1e6;
@@ -133,22 +137,54 @@ impl Builder<'_> {
             false => format.region.iter().map(|region| region.name.as_str()).collect(),
         };
         let spacing = format.discretisation.spacing;
-        let read: Vec<Option<Probe>> = (format.probe.iter().enumerate())
-            .map(|(n, row)| self.probe(&format!("probe[{n}]"), row, &regions))
-            .collect();
-        for (n, probe) in read.iter().enumerate() {
-            if let (Some(probe), Some(spacing)) = (probe, spacing) {
-                self.in_the_body(&format!("probe[{n}]"), probe, 0.5 * spacing);
+        let mut probes = Vec::new();
+        for (n, row) in format.probe.iter().enumerate() {
+            let key = format!("probe[{n}]");
+            let read = match (&row.points, &row.point, &row.lattice, &row.centre_of_mass) {
+                (Some(points), None, None, None) => self.points(&key, &row.name, points),
+                _ => self.probe(&key, row, &regions).into_iter().collect(),
+            };
+            if let Some(spacing) = spacing {
+                self.in_the_body(&key, &read, 0.5 * spacing);
             }
+            probes.extend(read);
         }
-        read.into_iter().flatten().collect()
+        probes
+    }
+
+    /// A probe for each point of a file.
+    fn points(&mut self, key: &str, name: &str, format: &PointsFormat) -> Vec<Probe> {
+        let (key, path) = (format!("{key}.points.file"), self.resolve(&format.file));
+        let points = match read_named_points(&path, format.unit.map(LengthUnit::from)) {
+            Ok(points) => points,
+            Err(error) => {
+                self.mistake(&key, error);
+                return Vec::new();
+            }
+        };
+        self.hash_file(&key, &path);
+        self.at_most(&key, "positions", points.len() as f64, MOST_POSITIONS);
+        let mut names = HashSet::new();
+        let repeated = points.iter().find(|point| !names.insert(point.name.as_str()));
+        if let Some(point) = repeated {
+            self.mistake(&key, format!("has several points called `{}`", point.name));
+        }
+        self.refuse_if(names.contains(""), &key, "has a point without a name");
+        let probe = |point: &Landmark| Probe {
+            name: format!("{name}.{}", point.name),
+            kind: ProbeKind::Point(self.in_the_plane(&point.position.into())),
+        };
+        points.iter().map(probe).collect()
     }
 
     fn probe(&mut self, key: &str, row: &ProbeFormat, regions: &[&str]) -> Option<Probe> {
+        let one = row.points.is_none();
         let kind = match (&row.point, &row.lattice, &row.centre_of_mass) {
-            (Some(point), None, None) => ProbeKind::Point(self.in_the_plane(point)),
-            (None, Some(lattice), None) => self.lattice(&format!("{key}.lattice"), lattice)?,
-            (None, None, Some(region)) => {
+            (Some(point), None, None) if one => ProbeKind::Point(self.in_the_plane(point)),
+            (None, Some(lattice), None) if one => {
+                self.lattice(&format!("{key}.lattice"), lattice)?
+            }
+            (None, None, Some(region)) if one => {
                 if !regions.contains(&region.as_str()) {
                     let key = format!("{key}.centre_of_mass");
                     self.unknown_name(&key, "region", region, regions);
@@ -156,7 +192,7 @@ impl Builder<'_> {
                 ProbeKind::CentreOfMass { region: region.clone() }
             }
             _ => {
-                self.mistake(key, "needs exactly one of point, lattice, centre_of_mass");
+                self.mistake(key, "needs exactly one of point, points, lattice, centre_of_mass");
                 return None;
             }
         };
@@ -165,16 +201,24 @@ impl Builder<'_> {
 
     /// Refuses positions further outside the body than `margin` \[m\], where
     /// there is no displacement to record.
-    fn in_the_body(&mut self, key: &str, probe: &Probe, margin: f64) {
+    fn in_the_body(&mut self, key: &str, probes: &[Probe], margin: f64) {
         let Some(body) = self.section.clone() else { return };
-        let mut outside = probe.kind.positions().into_iter().filter_map(|position| {
-            let distance = body.signed_distance(&position);
-            (distance > margin).then_some((position, distance))
+        let mut outside = probes.iter().filter_map(|probe| {
+            let far = |position: Vector3| {
+                let distance = body.signed_distance(&position);
+                (distance > margin).then_some((&probe.name, position, distance))
+            };
+            probe.kind.positions().into_iter().find_map(far)
         });
-        if let Some((position, distance)) = outside.next() {
-            let [x, y, z]: [f64; 3] = position.into();
-            let message = format!("({x}, {y}, {z}) m lies {distance:.3} m outside the body");
-            self.mistake(key, message);
+        let Some((name, position, distance)) = outside.next() else { return };
+        let [x, y, z]: [f64; 3] = position.into();
+        let place = format!("({x}, {y}, {z}) m lies {distance:.3} m outside the body");
+        match (probes.len(), outside.count()) {
+            (1, _) => self.mistake(key, place),
+            (_, 0) => self.mistake(key, format!("`{name}` at {place}")),
+            (all, more) => {
+                self.mistake(key, format!("`{name}` at {place}, and so do {more} more of {all}"));
+            }
         }
     }
 

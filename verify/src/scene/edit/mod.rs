@@ -2,10 +2,12 @@
 //! all, but for the keys that change.
 
 mod load;
+mod overrides;
 mod paths;
 mod settings;
 mod values;
 
+pub use overrides::{NotAnOverride, Overridden, Override};
 pub use paths::with_absolute_paths;
 pub use settings::edited;
 pub use values::EditError;

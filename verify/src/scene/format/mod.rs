@@ -20,4 +20,6 @@ pub use recipe::{
     BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientsFormat, GridFormat,
     MassFormat, VolumetricProjectionFormat, WeightFunctionFormat,
 };
-pub use time::{LatticeFormat, MethodFormat, OutputFormat, ProbeFormat, SolverFormat, TimeFormat};
+pub use time::{
+    LatticeFormat, MethodFormat, OutputFormat, PointsFormat, ProbeFormat, SolverFormat, TimeFormat,
+};

@@ -1,9 +1,10 @@
 //! Time integration, probes and output.
 
 use crate::scene::format::choice::choice;
-use crate::scene::format::geometry::Triple;
+use crate::scene::format::geometry::{Triple, UnitFormat};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::path::PathBuf;
 
 /// How the body moves. `end`, `damping` and `mass_scaling` belong to method "dynamic";
 /// `solver`, `load_end`, `load_steps`, `tolerance` and `max_steps` to "static".
@@ -61,7 +62,7 @@ choice! {
     }
 }
 
-/// Where displacements are recorded: one of `point`, `lattice`,
+/// Where displacements are recorded: one of `point`, `points`, `lattice`,
 /// `centre_of_mass`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -69,9 +70,22 @@ pub struct ProbeFormat {
     pub name: String,
     /// A reference position [m].
     pub point: Option<Triple>,
+    pub points: Option<PointsFormat>,
     pub lattice: Option<LatticeFormat>,
     /// Name of a region.
     pub centre_of_mass: Option<String>,
+}
+
+/// Reference positions from a file, each a probe with the name of this one, a point and its own
+/// name, as in `landmarks.tip`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointsFormat {
+    /// CSV with a header that names name, x, y and z, or x_mm, y_mm and z_mm. Path relative to
+    /// the case file.
+    pub file: PathBuf,
+    /// Unit of the positions; needed where the header states none.
+    pub unit: Option<UnitFormat>,
 }
 
 /// Equally spaced reference positions, ends included.
