@@ -271,6 +271,7 @@ fn brain() -> Study {
             layer("tumour", LayerStyle::Filled, 1, vec![outline(0.012, 0.001)]),
             layer("finite elements", LayerStyle::Outline, 0, vec![outline(0.07, 0.0125)]),
         ],
+        scale: None,
     };
     let contour = Drawing {
         title: "Ventricles".into(),
@@ -313,6 +314,7 @@ fn brain() -> Study {
             ),
         ],
         figures: vec![Figure::Drawing(drawing), Figure::Drawing(contour)],
+        leading: 2,
         notes: vec!["Horton 2007 reports 1.8 to 9.6 % of the displacement.".into()],
         wall_seconds: 37.0,
         ..Study::default()

@@ -2,7 +2,7 @@
 
 use crate::accuracy::{Difference, Group, SAMPLES, difference, values};
 use crate::bundled::CASES;
-use crate::reference::{ReferenceFile, ReferenceValues, agreements, is_dynamic};
+use crate::reference::{Mesh, ReferenceFile, ReferenceValues, agreements, is_dynamic};
 use crate::run::{Solved, solve_case};
 use crate::scene::Case;
 use crate::studies::workbench::Workbench;
@@ -65,5 +65,14 @@ impl Compared {
     /// Difference of all quantities of a group from the reference.
     pub fn of(&self, group: Group) -> Option<Difference> {
         difference(&self.case, group, &self.references, &self.computed)
+    }
+
+    /// The same of a finite-element mesh.
+    pub fn of_mesh(&self, group: Group, mesh: &Mesh) -> Option<Difference> {
+        let values = |reference: &ReferenceValues| {
+            mesh.values.get(&reference.quantity.name).map(|values| values.flat())
+        };
+        let values: Vec<Vec<f64>> = self.references.iter().map(values).collect::<Option<_>>()?;
+        difference(&self.case, group, &self.references, &values)
     }
 }

@@ -9,6 +9,7 @@ fn plot(log: bool, points: Vec<(f64, f64)>) -> Figure {
         error_bars: vec![0.1; points.len()],
         points: points.clone(),
         style,
+        colour: None,
     });
     Figure::Plot(Plot {
         title: "title".into(),
@@ -34,6 +35,7 @@ fn drawing(lines: Vec<Vec<[f64; 2]>>) -> Figure {
         caption: String::new(),
         unit: "m".into(),
         layers: layers.to_vec(),
+        scale: None,
     })
 }
 
