@@ -26,7 +26,7 @@ fn render(report: &Report, colour: bool, verbose: bool, width: u16) -> String {
     if verbose {
         for study in report.studies.iter().filter(|study| !study.checks.is_empty()) {
             let heading = format!("{} ({})", printable(&study.title), duration(study.wall_seconds));
-            let _ = writeln!(text, "{}", paint(&heading, colour.then_some("1")));
+            paragraph(&mut text, &heading, width, colour.then_some("1"));
             let _ = writeln!(text, "{}\n", check_table(study, colour, width));
         }
     }

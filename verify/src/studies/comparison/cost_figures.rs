@@ -31,7 +31,7 @@ fn provenance(costs: &[Costs]) -> String {
     format!(
         "mtled: CPU seconds of this run, one thread, set-up included, while other studies ran \
          beside it. Finite elements: stored CPU seconds of one thread, from another machine and \
-         other days{when}."
+         other days{when}, so that factors near 1 mean nothing."
     )
 }
 

@@ -189,3 +189,64 @@ impl Cut {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bundled::unpack;
+    use crate::scene::read_case;
+
+    const UPRIGHT: Plane =
+        Plane { origin: Vector3::new(0.0, 0.3, 0.0), across: Vector3::new(1.0, 0.0, 0.0) };
+
+    /// A cut through a space that has moved by `u` \[m\], from pixels of 2 cm.
+    fn moved_by(u: Vector3) -> Cut {
+        let bounds = ([-1.0, -1.0], [1.0, 1.0]);
+        let sources = vec![-u; 101 * 101];
+        Cut { plane: UPRIGHT, bounds, step: 0.02, size: [101, 101], sources }
+    }
+
+    /// Middle and largest distance from it of the points of the only line.
+    fn circle(lines: &[Vec<[f64; 2]>]) -> ([f64; 2], f64) {
+        assert_eq!(lines.len(), 1);
+        let sum = lines[0].iter().fold([0.0; 2], |sum, p| [sum[0] + p[0], sum[1] + p[1]]);
+        let middle = sum.map(|x| x / lines[0].len() as f64);
+        let distance = |p: &[f64; 2]| (p[0] - middle[0]).hypot(p[1] - middle[1]);
+        (middle, lines[0].iter().map(distance).fold(0.0, f64::max))
+    }
+
+    #[test]
+    fn outlines_after_the_deformation_are_where_the_shape_has_moved() {
+        // The plane cuts the ball 0.3 m beside its centre before and in its centre after.
+        let ball = Shape::Sphere { centre: Vector3::zeros(), radius: 0.5 };
+        let cut = moved_by(Vector3::new(0.2, 0.3, -0.1));
+        let (middle, radius) = circle(&cut.before(&ball, 0.0));
+        assert!(middle.iter().all(|x| x.abs() < 5e-3) && (radius - 0.4).abs() < 5e-3, "{radius}");
+        let (middle, radius) = circle(&cut.after(&ball));
+        assert!((middle[0] - 0.2).abs() < 5e-3 && (middle[1] + 0.1).abs() < 5e-3, "{middle:?}");
+        assert!((radius - 0.5).abs() < 5e-3, "{radius}");
+    }
+
+    #[test]
+    fn what_has_moved_further_than_everything_is_empty() {
+        let ball = Shape::Sphere { centre: Vector3::zeros(), radius: 0.5 };
+        let cut = moved_by(Vector3::new(0.0, 0.3, 0.0));
+        let moved = cut.moved(&ball, &[0.0, 0.2, 0.4]);
+        assert_eq!(moved.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1, 0]);
+        assert!((cut.largest_displacement(&ball) - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_planes_of_both_whole_brains_go_through_the_tumour() {
+        let folder = tempfile::tempdir().unwrap();
+        let cases = unpack(folder.path()).unwrap();
+        for name in ["brain_shift", "brain_gravity"] {
+            let case = read_case(&cases.join(format!("{name}.toml"))).unwrap();
+            let (plane, _) = Plane::of(&case.problem).unwrap();
+            let tumour = Vector3::new(0.0285, 0.0165, 0.0225);
+            let beside = plane.across.cross(&Vector3::z());
+            let distance = (tumour - plane.origin).dot(&beside).abs();
+            assert!(distance < 2e-3, "{name}: {distance} m");
+        }
+    }
+}

@@ -183,7 +183,9 @@ impl Shown<'_> {
 
     /// The body and its parts, filled.
     fn labels(&self, title: &str, outlines: impl Fn(&Shape) -> Lines) -> Drawing {
-        let mut layers = vec![layer("body", LayerStyle::Filled, BODY, outlines(self.body))];
+        let all = self.case.problem.regions.iter().find(|r| matches!(r.part, Selector::All));
+        let name = all.map_or("body", |region| region.name.as_str());
+        let mut layers = vec![layer(name, LayerStyle::Filled, BODY, outlines(self.body))];
         for ((name, shape), colour) in self.parts.iter().zip(PARTS) {
             layers.push(layer(name, LayerStyle::Filled, colour, outlines(shape)));
         }

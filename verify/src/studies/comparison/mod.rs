@@ -17,7 +17,6 @@ use crate::studies::comparison::cost_figures::{
     costs_table, error_over_cost, times_at_equal_error,
 };
 use crate::studies::comparison::costs::Costs;
-use crate::studies::comparison::cut_drawings::cut_panels;
 use crate::studies::comparison::limits::{TARGET, limit};
 use crate::studies::comparison::tables::{brain_table, differences_table};
 use crate::studies::workbench::Workbench;
@@ -38,7 +37,7 @@ pub fn comparison(bench: &Workbench, study: &mut Study) -> Result<()> {
     if let Some(brain) = compared.iter().find(|c| c.case.name == "brain_slice") {
         study.tables.push(brain_table(brain));
     }
-    add_figures(study, &compared)?;
+    add_figures(study, &compared);
     study.notes.push(
         "Each case is solved once, with the recipe of its file. Differences are relative to the \
          largest value of their group in the reference; a bound is the limit plus the reference's \
@@ -63,16 +62,14 @@ pub fn comparison(bench: &Workbench, study: &mut Study) -> Result<()> {
 }
 
 /// Error over processor time of all cases, and cuts through those with a label map.
-fn add_figures(study: &mut Study, compared: &[Compared]) -> Result<()> {
+fn add_figures(study: &mut Study, compared: &[Compared]) {
     let costs: Vec<Costs> = compared.iter().filter_map(Costs::of).collect();
     study.figures.push(Figure::Plot(times_at_equal_error(&costs)));
     study.figures.push(Figure::Panels(error_over_cost(&costs)));
     study.tables.push(costs_table(&costs));
-    for case in compared {
-        study.figures.extend(cut_panels(&case.case, &case.solved)?.map(Figure::Panels));
-    }
+    let cuts = compared.iter().filter_map(|case| case.cut.clone());
+    study.figures.extend(cuts.map(Figure::Panels));
     study.leading = study.figures.len();
-    Ok(())
 }
 
 /// A check of every group that is compared and that the case has.

@@ -82,3 +82,47 @@ fn no_text_of_a_report_becomes_an_element() {
 fn a_report_without_studies_is_a_page() {
     assert!(to_html(&sample::empty()).unwrap().contains("Figures only"));
 }
+
+#[test]
+fn checks_that_pass_are_folded_away_and_those_that_fail_are_not() {
+    let page = to_html(&sample::report()).unwrap();
+    let mut folded = String::new();
+    for part in page.split("<details>").skip(1) {
+        folded += part.split("</details>").next().unwrap();
+    }
+    let row = |id: &str| format!("<code class=\"id\">{id}</code>");
+    let (failing, passing) = (row("brain/<wbr>tumour/<wbr>shift"), row("brain/<wbr>step"));
+    assert!(page.contains(&failing) && !folded.contains(&failing));
+    assert!(folded.contains(&passing));
+    assert!(!page.contains("<details open"));
+}
+
+#[test]
+fn the_first_leading_figure_is_beside_the_result_and_the_others_before_the_studies() {
+    let page = to_html(&sample::report()).unwrap();
+    let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("{text} is missing"));
+    assert!(at("Time of another code over ours") < at("</header>"));
+    assert!(at("</header>") < at("id=\"failures\""));
+    let titles = ["Error over time", "Brain slice under a 10 mm indentation", "Ventricles"];
+    let mut places = vec![at("id=\"pictures\"")];
+    places.extend(titles.map(|title| at(&format!("<span class=\"title\">{title}"))));
+    places.push(at("id=\"contents\""));
+    assert!(places.is_sorted(), "{places:?}");
+    assert!(at("<span class=\"title\">Displacement") > at("id=\"study-brain\""));
+}
+
+#[test]
+fn there_is_a_row_per_study() {
+    let page = to_html(&sample::report()).unwrap();
+    let table = page.split("data-file=\"studies\"").nth(1).unwrap().split("</table>").next();
+    assert_eq!(table.unwrap().matches("<tr").count(), 1 + sample::report().studies.len());
+}
+
+#[test]
+fn where_nothing_changed_the_pictures_come_first() {
+    let mut report = sample::compared();
+    let same = |change: &crate::study::Change| change.verdict == crate::study::Verdict::Same;
+    report.comparison.as_mut().unwrap().changes.retain(same);
+    let page = to_html(&report).unwrap();
+    assert!(page.find("id=\"pictures\"") < page.find("id=\"compared\""));
+}
