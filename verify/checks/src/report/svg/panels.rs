@@ -1,8 +1,7 @@
 //! Small figures side by side.
 
 use super::canvas::{Anchor, Canvas};
-use super::plot;
-use super::{drawing, to_svg as figure_svg};
+use super::{drawing, plot};
 use crate::study::{Figure, Panels, Plot};
 
 /// Panels in a row of a picture of its own.
@@ -26,7 +25,7 @@ pub fn parts(panels: &Panels) -> PanelParts {
     let picture = |figure: &Figure| match figure {
         Figure::Plot(plot) => plot::sized(plot, &plots, &plot::SMALL),
         Figure::Drawing(drawing) => drawing::to_svg(drawing),
-        Figure::Panels(_) => figure_svg(figure),
+        Figure::Panels(nested) => to_svg(nested),
     };
     let panel = |figure: &Figure| (figure.title().to_string(), picture(figure));
     PanelParts {
