@@ -221,3 +221,16 @@ fn a_stored_run_is_compared_with_a_baseline_without_being_repeated() {
     assert!(out.contains(&format!("worse    {ORDER}: 1.900 → 1.786")), "{out}");
     assert!(folder.read("out/summary.md").contains("worse"), "{}", folder.read("out/summary.md"));
 }
+
+#[test]
+fn single_checks_are_printed_on_request_only_and_lines_have_at_most_100_characters() {
+    let folder = Folder::new();
+    for (more, checks) in [(&[][..], false), (&["--verbose"][..], true)] {
+        let (code, out, err) = folder.verify(more);
+        assert_eq!(code, 0, "{err}");
+        assert!(out.contains("Finite-element references"), "{out}");
+        assert_eq!(out.contains("codes_agree"), checks, "{out}");
+        let longest = out.lines().map(|line| line.chars().count()).max().unwrap();
+        assert!(longest <= 100, "{out}");
+    }
+}

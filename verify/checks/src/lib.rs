@@ -37,7 +37,7 @@
 //!     comparison: None,
 //! };
 //! assert!(report.passed());
-//! assert!(human::to_table(&report, false).ends_with("1 of 1 check passed\n"));
+//! assert!(human::to_table(&report, false, false).ends_with("1 of 1 check passed\n"));
 //! ```
 
 #![deny(missing_docs)]

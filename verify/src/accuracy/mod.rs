@@ -2,6 +2,7 @@
 //! error bar.
 
 mod difference;
+mod equal_error;
 mod finest;
 mod group;
 mod own_runs;
@@ -10,6 +11,7 @@ mod reference_solution;
 mod values;
 
 pub use difference::{Difference, difference};
+pub use equal_error::{Cost, cost_at};
 pub use finest::{FinestField, finest};
 pub use group::Group;
 pub use own_runs::from_own_runs;

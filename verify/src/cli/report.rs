@@ -21,6 +21,9 @@ pub struct ReportArgs {
     /// exit code 1 if a check got worse or fails.
     #[arg(long, value_name = "FILE", conflicts_with = "later")]
     baseline: Option<PathBuf>,
+    /// Print every check, and not only those that fail.
+    #[arg(long)]
+    verbose: bool,
 }
 
 pub fn report(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
@@ -45,7 +48,7 @@ fn rebuild(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
     let out = arguments.out.clone().unwrap_or_else(same);
     write_report(&report, &out)?;
     common.print_coloured_summary(&|| Ok(json::to_json(&report)), &|| {
-        let table = human::to_table(&report, common.colours());
+        let table = human::to_table(&report, common.colours(), arguments.verbose);
         format!("{table}\nreport: {}\n", out.join("index.html").display())
     })?;
     Ok(u8::from(arguments.baseline.is_some() && !report.passed()))

@@ -9,6 +9,11 @@ use thiserror::Error;
 /// Codes that references come from; a case needs both.
 pub const CODES: [&str; 2] = ["fenicsx", "scikit-fem"];
 
+/// Name of a code in tables and figures.
+pub fn title_of(code: &str) -> &str {
+    if code == "fenicsx" { "FEniCSx" } else { code }
+}
+
 /// Meshes per code, the fewest that show an order.
 pub const MESHES: usize = 3;
 

@@ -50,6 +50,7 @@ pub fn brain(bench: &Workbench, study: &mut Study) -> Result<()> {
     for (moment, when) in [(1, "at the release"), (2, "at the end")] {
         study.figures.push(Figure::Drawing(drawing(&run, moment, when)?));
     }
+    study.leading = study.figures.len();
     let discretisation = &run.solved.prepared.discretisation;
     study.notes.push(format!(
         "{} nodes, {} quadrature points, {} steps of {:.1} µs; damping, push and skull gap are those of \
@@ -332,6 +333,7 @@ fn drawing(run: &SliceRun, moment: usize, when: &str) -> Result<Drawing> {
         ),
         unit: "mm".into(),
         layers,
+        scale: None,
     })
 }
 

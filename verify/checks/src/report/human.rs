@@ -1,7 +1,7 @@
 //! The table for the terminal.
 
 use super::change::{band_text, change_text, remark_text, verdict_counts};
-use super::labels::{duration, result_line, unit_text};
+use super::labels::{duration, failure_text, result_line, study_counts, unit_text};
 use super::number::{bound_text, four_digits};
 use crate::escape::printable;
 use crate::study::{Check, Comparison, Report, Study, Verdict};
@@ -10,48 +10,74 @@ use comfy_table::{
 };
 use std::fmt::Write;
 
-/// All checks grouped by study, then failures, changes and the result.
-pub fn to_table(report: &Report, colour: bool) -> String {
-    render(report, colour, None)
+/// Characters in a line, where the terminal has not fewer.
+const WIDTH: u16 = 100;
+
+/// A row per study, then failures, changes and the result; `verbose` adds all checks, grouped by
+/// study.
+pub fn to_table(report: &Report, colour: bool, verbose: bool) -> String {
+    let width = Table::new().width().map_or(WIDTH, |width| width.min(WIDTH));
+    render(report, colour, verbose, width)
 }
 
-/// `width` in characters replaces that of the terminal.
-fn render(report: &Report, colour: bool, width: Option<u16>) -> String {
+/// `width` in characters.
+fn render(report: &Report, colour: bool, verbose: bool, width: u16) -> String {
     let mut text = String::new();
-    for study in &report.studies {
-        let heading = format!("{} ({})", printable(&study.title), duration(study.wall_seconds));
-        let _ = writeln!(text, "{}", paint(&heading, colour.then_some("1")));
-        if let Some(reason) = &study.failure {
-            let line = format!("  COULD NOT RUN: {}", printable(reason));
-            let _ = writeln!(text, "{}", paint(&line, colour.then_some("1;31")));
+    if verbose {
+        for study in report.studies.iter().filter(|study| !study.checks.is_empty()) {
+            let heading = format!("{} ({})", printable(&study.title), duration(study.wall_seconds));
+            paragraph(&mut text, &heading, width, colour.then_some("1"));
+            let _ = writeln!(text, "{}\n", check_table(study, colour, width));
         }
-        if !study.checks.is_empty() {
-            let _ = writeln!(text, "{}", table(study, colour, width));
-        }
-        text.push('\n');
     }
-    text += &attention(report, colour);
+    if !report.studies.is_empty() {
+        let _ = writeln!(text, "{}\n", study_table(report, colour, width));
+    }
+    text += &attention(report, colour, width);
     let code = if report.passed() { "1;32" } else { "1;31" };
     let _ = writeln!(text, "{}", paint(&result_line(report), colour.then_some(code)));
     text
 }
 
-/// Failures with their cases, and changes, repeated below the tables.
-fn attention(report: &Report, colour: bool) -> String {
+/// Studies that could not run, failures with their cases, and changes, below the tables.
+fn attention(report: &Report, colour: bool, width: u16) -> String {
     let mut text = String::new();
+    let red = colour.then_some("1;31");
+    for study in &report.studies {
+        if let Some(reason) = &study.failure {
+            let line = format!("COULD NOT RUN {}: {reason}", study.id);
+            paragraph(&mut text, &printable(&line), width, red);
+        }
+    }
     for check in report.checks().filter(|check| !check.pass) {
-        let (value, bound) = (four_digits(check.value), bound_text(&check.bound));
-        let (id, quantity) = (printable(&check.id), printable(&check.quantity));
-        let line = format!("FAIL {id}: {value}, must be {bound}: {quantity}");
-        let _ = writeln!(text, "{}", paint(&line, colour.then_some("1;31")));
+        let line = format!("FAIL {}: {}", check.id, failure_text(check));
+        paragraph(&mut text, &printable(&line), width, red);
         if let Some(file) = check.failure_file() {
             let _ = writeln!(text, "     the smallest case that shows it: {file}");
         }
     }
     let Some(comparison) = &report.comparison else { return text };
     text += &changed_lines(comparison, colour);
-    let _ = writeln!(text, "{}", compared_with(comparison));
+    paragraph(&mut text, &compared_with(comparison), width, None);
     text
+}
+
+/// A text broken between words, with all lines but the first indented; a longer word, such as a
+/// path, stays whole.
+fn paragraph(text: &mut String, words: &str, width: u16, code: Option<&str>) {
+    let mut line = String::new();
+    for word in words.split(' ') {
+        let long = line.chars().count() + 1 + word.chars().count() > usize::from(width);
+        if long && !line.trim().is_empty() {
+            let _ = writeln!(text, "{}", paint(&line, code));
+            line = "    ".to_string();
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line += word;
+    }
+    let _ = writeln!(text, "{}", paint(&line, code));
 }
 
 /// `beside the baseline of …: 1 worse, 454 the same`.
@@ -71,26 +97,31 @@ pub fn changed_lines(comparison: &Comparison, colour: bool) -> String {
         let name = change.verdict.name();
         let (values, band) = (change_text(change), band_text(&change.band));
         let (id, remark) = (&change.id, remark_text(change));
-        let line = printable(&format!("{name:8} {id}: {values} (same: {band}){remark}"));
-        let _ = writeln!(text, "{}", paint(&line, colour.then_some(code)));
+        let line = format!("{name:8} {id}: {values} (same: {band}){remark}");
+        paragraph(&mut text, &printable(&line), WIDTH, colour.then_some(code));
     }
     text
 }
 
-fn table(study: &Study, colour: bool, width: Option<u16>) -> Table {
+/// A table with these columns, some of which are of numbers.
+fn table(
+    width: u16,
+    colour: bool,
+    columns: &[&str],
+    rows: Vec<Vec<Cell>>,
+    numbers: &[usize],
+) -> Table {
     let mut table = Table::new();
     let style = presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none());
     table.load_style(style);
     table.set_content_arrangement(ContentArrangement::Dynamic);
-    if let Some(width) = width {
-        table.set_width(width);
-    }
+    table.set_width(width);
     if colour {
         table.enforce_styling();
     }
-    table.set_header(["check", "quantity", "kind", "value", "bound", "unit", "verdict"]);
-    table.add_rows(study.checks.iter().map(|check| row(check, colour)));
-    for index in [3, 4] {
+    table.set_header(columns);
+    table.add_rows(rows);
+    for &index in numbers {
         if let Some(column) = table.column_mut(index) {
             column.set_cell_alignment(CellAlignment::Right);
         }
@@ -98,12 +129,44 @@ fn table(study: &Study, colour: bool, width: Option<u16>) -> Table {
     table
 }
 
-fn row(check: &Check, colour: bool) -> Vec<Cell> {
-    let mut verdict = Cell::new(if check.pass { "pass" } else { "FAIL" });
-    if colour {
-        let shade = if check.pass { Color::Green } else { Color::Red };
-        verdict = verdict.fg(shade).add_attribute(Attribute::Bold);
+/// A row per study.
+fn study_table(report: &Report, colour: bool, width: u16) -> Table {
+    let row = |study: &Study| {
+        let (passed, all) = study_counts(study);
+        let counts = if all == 0 { "–".to_string() } else { format!("{passed} of {all}") };
+        let label = match (&study.failure, study.passed()) {
+            (Some(_), _) => "COULD NOT RUN",
+            (_, true) => "pass",
+            (_, false) => "FAIL",
+        };
+        vec![
+            Cell::new(printable(&study.title)),
+            Cell::new(counts),
+            Cell::new(duration(study.wall_seconds)),
+            verdict(label, study.passed(), colour),
+        ]
+    };
+    let rows = report.studies.iter().map(row).collect();
+    table(width, colour, &["study", "checks passed", "time", "verdict"], rows, &[1, 2])
+}
+
+/// All checks of a study.
+fn check_table(study: &Study, colour: bool, width: u16) -> Table {
+    let rows = study.checks.iter().map(|check| row(check, colour)).collect();
+    let columns = ["check", "quantity", "kind", "value", "bound", "unit", "verdict"];
+    table(width, colour, &columns, rows, &[3, 4])
+}
+
+fn verdict(label: &str, pass: bool, colour: bool) -> Cell {
+    let cell = Cell::new(label);
+    match (colour, pass) {
+        (false, _) => cell,
+        (true, true) => cell.fg(Color::Green).add_attribute(Attribute::Bold),
+        (true, false) => cell.fg(Color::Red).add_attribute(Attribute::Bold),
     }
+}
+
+fn row(check: &Check, colour: bool) -> Vec<Cell> {
     vec![
         Cell::new(printable(&check.id)),
         Cell::new(printable(&check.quantity)),
@@ -111,7 +174,7 @@ fn row(check: &Check, colour: bool) -> Vec<Cell> {
         Cell::new(four_digits(check.value)),
         Cell::new(bound_text(&check.bound)),
         Cell::new(printable(unit_text(&check.unit))),
-        verdict,
+        verdict(if check.pass { "pass" } else { "FAIL" }, check.pass, colour),
     ]
 }
 
@@ -127,16 +190,25 @@ mod tests {
 
     #[test]
     fn the_verdict_is_the_last_line_and_colour_comes_only_when_asked() {
-        let plain = render(&sample::report(), false, Some(200));
+        let plain = render(&sample::report(), false, false, 200);
         assert_eq!(plain.lines().last(), Some("9 of 11 checks passed, 1 study could not run"));
         assert!(plain.contains("FAIL") && plain.contains("COULD NOT RUN"), "{plain}");
         assert!(!plain.contains('\u{1b}'));
-        assert!(to_table(&sample::report(), true).contains("\u{1b}["));
+        assert!(to_table(&sample::report(), true, false).contains("\u{1b}["));
     }
 
     #[test]
-    fn the_quantity_is_beside_its_value_and_bound() {
-        let plain = render(&sample::report(), false, Some(200));
+    fn there_is_a_row_per_study_and_no_check_that_passes() {
+        let plain = render(&sample::report(), false, false, 100);
+        let row = |text: &str| plain.lines().find(|line| line.contains(text));
+        assert!(row("Affine patch test").unwrap().contains("3 of 3"), "{plain}");
+        assert!(row("Cook's membrane").unwrap().contains("COULD NOT RUN"), "{plain}");
+        assert!(row("FAIL brain/tumour/shift").is_some() && row("patch/cube").is_none(), "{plain}");
+    }
+
+    #[test]
+    fn on_request_the_quantity_of_each_check_is_beside_its_value_and_bound() {
+        let plain = render(&sample::report(), false, true, 200);
         let line = plain.lines().find(|line| line.contains("brain/step")).unwrap();
         for text in ["critical time step", "regression", "12.34×10⁻⁶", "≥ 12×10⁻⁶", "pass"]
         {
@@ -145,12 +217,26 @@ mod tests {
     }
 
     #[test]
-    fn failures_and_what_got_worse_are_repeated_below_the_tables() {
-        let plain = render(&sample::compared(), false, Some(200));
+    fn no_line_has_more_than_100_characters() {
+        let mut report = sample::compared();
+        report.studies[0].title = "a title of many words ".repeat(9);
+        report.studies[4].failure = Some("a reason of many words ".repeat(9));
+        report.studies[3].checks[0].quantity = "a quantity of many words ".repeat(9);
+        for verbose in [false, true] {
+            let plain = render(&report, false, verbose, WIDTH);
+            let longest = plain.lines().max_by_key(|line| line.chars().count()).unwrap();
+            assert!(longest.chars().count() <= 100, "{longest}");
+        }
+    }
+
+    #[test]
+    fn failures_and_what_got_worse_are_below_the_tables() {
+        let plain = render(&sample::compared(), false, false, 100);
         let at = |part: &str| plain.find(part).unwrap_or_else(|| panic!("{part}: {plain}"));
         assert!(
             at("failures/brain-tumour-shift.toml") < at("worse    brain/tumour/shift: 0.01010 mm")
         );
+        assert!(at("Indentation of a brain slice") < at("FAIL brain/tumour/shift"));
         assert!(at("worse    ") < at("missing  brain/none"));
         assert!(!plain.contains("\nsame     "));
     }
@@ -171,13 +257,13 @@ mod tests {
         for change in &mut comparison.changes {
             (change.id, change.unit, change.remark) = (evil.into(), evil.into(), Some(evil.into()));
         }
-        let plain = render(&report, false, Some(200));
+        let plain = render(&report, false, true, 200);
         assert!(plain.contains("x\\u{1b}[2J\\nall checks passed"), "{plain}");
         assert!(!plain.contains('\u{1b}') && !plain.contains("\nall checks passed"), "{plain}");
     }
 
     #[test]
     fn an_empty_report_is_one_line() {
-        assert_eq!(to_table(&sample::empty(), false), "Figures only\n");
+        assert_eq!(to_table(&sample::empty(), false, false), "Figures only\n");
     }
 }

@@ -20,6 +20,7 @@ struct StudyLine<'a> {
     notes: &'a [String],
     tables: &'a [Table],
     figures: &'a [Figure],
+    leading: usize,
 }
 
 /// The report as JSON; what is not finite becomes `null`.
@@ -61,6 +62,7 @@ fn line(study: &Study) -> StudyLine<'_> {
         notes: &study.notes,
         tables: &study.tables,
         figures: &study.figures,
+        leading: study.leading,
     }
 }
 

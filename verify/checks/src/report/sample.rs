@@ -1,9 +1,9 @@
 //! A made-up report that uses every feature, for the tests of this folder.
 
 use crate::study::{
-    Band, BandSource, Bound, Cell, Change, Check, Comparison, Drawing, Figure, Kind, Layer,
-    LayerStyle, Plot, Provenance, Report, Scale, Scatter, Series, SeriesStyle, Study, Table,
-    Verdict, axis, curve, number, styled, text,
+    Band, BandSource, Bound, Cell, Change, Check, ColourScale, Comparison, Drawing, Figure, Kind,
+    Layer, LayerStyle, Panels, Plot, Provenance, Report, Scale, Scatter, Series, SeriesStyle,
+    Study, Table, Verdict, axis, curve, names_axis, number, styled, text,
 };
 use std::f64::consts::TAU;
 
@@ -238,6 +238,67 @@ fn cantilever() -> Study {
     }
 }
 
+/// Ratios of two codes, a row per case.
+fn ratios() -> Plot {
+    let names = vec!["brain slice, h < 1 & more".to_string(), "cube".to_string()];
+    let bound =
+        |style, at: (f64, f64)| Series { colour: Some(0), ..styled("bound", vec![at], style) };
+    Plot {
+        title: "Time of another code over ours".into(),
+        caption: "Right of 1 we take less.".into(),
+        x: axis("ratio", "1", true),
+        y: names_axis("case", names),
+        series: vec![
+            styled("equal", vec![(3.0, 0.0)], SeriesStyle::Points),
+            bound(SeriesStyle::AtMost, (2.0, 1.0)),
+            bound(SeriesStyle::AtLeast, (5.0, 1.0)),
+        ],
+        slopes: vec![],
+    }
+}
+
+/// Error over time of two cases, with a floor that one point is below.
+fn costs() -> Panels {
+    let panel = |title: &str, floor: f64| {
+        Figure::Plot(Plot {
+            title: title.into(),
+            caption: String::new(),
+            x: axis("time", "s", true),
+            y: axis("error", "1", true),
+            series: vec![
+                curve("meshes", vec![(1.0, 1e-2), (10.0, 1e-3), (100.0, 1e-9)]),
+                styled("below the error bar", vec![(1.0, floor)], SeriesStyle::Floor),
+            ],
+            slopes: vec![],
+        })
+    };
+    let panels = vec![panel("cube", 1e-4), panel("slice", 1e-6)];
+    Panels { title: "Error over time".into(), caption: "Lower left is better.".into(), panels }
+}
+
+/// A displacement in two bands.
+fn bands() -> Drawing {
+    let band = |band: usize, radius: f64| Layer {
+        name: String::new(),
+        style: LayerStyle::Band,
+        colour: band,
+        closed: true,
+        lines: vec![outline(radius, 0.0)],
+    };
+    let edge = Layer { name: "edge".into(), style: LayerStyle::Outline, ..band(0, 0.05) };
+    Drawing {
+        title: "Displacement".into(),
+        caption: "Of the slice.".into(),
+        unit: "m".into(),
+        layers: vec![band(0, 0.07), band(1, 0.04), edge],
+        scale: Some(ColourScale {
+            label: "displacement".into(),
+            unit: "mm".into(),
+            edges: vec![0.0, 2.5, 5.0],
+        }),
+    }
+}
+
 /// A wobbly outline like a slice of a brain.
 fn outline(radius: f64, push: f64) -> Vec<[f64; 2]> {
     let place = |a: f64| {
@@ -271,6 +332,7 @@ fn brain() -> Study {
             layer("tumour", LayerStyle::Filled, 1, vec![outline(0.012, 0.001)]),
             layer("finite elements", LayerStyle::Outline, 0, vec![outline(0.07, 0.0125)]),
         ],
+        scale: None,
     };
     let contour = Drawing {
         title: "Ventricles".into(),
@@ -312,7 +374,14 @@ fn brain() -> Study {
                 "s",
             ),
         ],
-        figures: vec![Figure::Drawing(drawing), Figure::Drawing(contour)],
+        figures: vec![
+            Figure::Plot(ratios()),
+            Figure::Panels(costs()),
+            Figure::Drawing(drawing),
+            Figure::Drawing(contour),
+            Figure::Drawing(bands()),
+        ],
+        leading: 4,
         notes: vec!["Horton 2007 reports 1.8 to 9.6 % of the displacement.".into()],
         wall_seconds: 37.0,
         ..Study::default()

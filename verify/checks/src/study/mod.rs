@@ -10,7 +10,8 @@ mod table;
 pub use check::{Bound, Check, Kind};
 pub use comparison::{Band, BandSource, Change, Comparison, Scale, Scatter, Verdict};
 pub use figure::{
-    Axis, Drawing, Figure, Layer, LayerStyle, Plot, Series, SeriesStyle, axis, curve, line, styled,
+    Axis, ColourScale, Drawing, Figure, Layer, LayerStyle, Panels, Plot, Series, SeriesStyle, axis,
+    curve, line, names_axis, styled,
 };
 pub use report::{Provenance, Report, Study};
 pub use table::{Cell, Column, Table, number, text};

@@ -25,6 +25,10 @@ pub struct Study {
     pub tables: Vec<Table>,
     /// Plots and drawings.
     pub figures: Vec<Figure>,
+    /// How many of its figures, from the first, lead the page; the very first of all studies is
+    /// beside the result.
+    #[serde(default)]
+    pub leading: usize,
     /// Findings that are not gated, a paragraph each.
     pub notes: Vec<String>,
     /// Why it could not run; a skip is not a pass.

@@ -33,6 +33,9 @@ pub struct VerifyArgs {
     /// Folder for index.html, results.json, junit.xml and summary.md.
     #[arg(long, default_value = "reports/verify", value_name = "DIR")]
     out: PathBuf,
+    /// Print every check, and not only those that fail.
+    #[arg(long)]
+    verbose: bool,
     #[command(flatten)]
     gate: GateArgs,
 }
@@ -66,7 +69,7 @@ pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
     gate.write(&report, whole)?.iter().for_each(|line| common.note(line));
     report_to_github(&report, &arguments.out)?;
     common.print_coloured_summary(&|| Ok(json::to_json(&report)), &|| {
-        let table = human::to_table(&report, common.colours());
+        let table = human::to_table(&report, common.colours(), arguments.verbose);
         format!("{table}\nreport: {}\n", arguments.out.join("index.html").display())
     })?;
     let could_run = report.studies.iter().all(|study| study.failure.is_none());

@@ -92,6 +92,7 @@ pub fn tune_study(request: &TuneRequest, tuned: &Tuned) -> Study {
     };
     study.checks.extend(confirmation(request, tuned));
     study.figures.push(Figure::Plot(pareto(request, tuned)));
+    study.leading = 1;
     let title = "Front: no other recipe is both cheaper and more accurate";
     study.tables.push(trials_table(title, tuned, front(&tuned.trials)));
     if let Some(winner) = &tuned.winner {

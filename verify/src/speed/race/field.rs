@@ -1,9 +1,9 @@
 //! A race, and all runs of one of its problems.
 
 use super::challenge::Challenge;
-use super::equal_error::{Cost, cost_at};
 use super::finite_elements::Interpreter;
 use super::race_run::{Code, RaceRun};
+use crate::accuracy::{Cost, cost_at};
 
 /// What to run.
 #[derive(Debug)]

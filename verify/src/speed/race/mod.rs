@@ -7,7 +7,6 @@
 //! kernels, which are listed separately. Sampling the displacements is not counted.
 
 mod challenge;
-mod equal_error;
 mod field;
 mod finite_elements;
 mod notes;

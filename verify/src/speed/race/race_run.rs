@@ -1,5 +1,6 @@
 //! One run of any code that takes part in the race.
 
+use crate::reference::title_of;
 use mtled_checks::measure::median;
 use serde::{Deserialize, Serialize};
 
@@ -33,10 +34,7 @@ impl Code {
 
     /// Name in tables.
     pub fn title(self) -> &'static str {
-        match self {
-            Code::Fenicsx => "FEniCSx",
-            other => other.name(),
-        }
+        title_of(self.name())
     }
 }
 

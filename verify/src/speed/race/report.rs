@@ -30,6 +30,7 @@ pub fn study(settings: &RaceSettings, codes: &FiniteElementCodes, fields: &[Fiel
         study.figures.push(figure(field, "peak memory", "MB", megabytes));
         study.checks.extend(checks(field));
     }
+    study.leading = 1;
     study.notes = notes(settings, codes, fields);
     study
 }

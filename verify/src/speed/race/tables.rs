@@ -1,9 +1,9 @@
 //! The race as tables.
 
 use super::challenge::Challenge;
-use super::equal_error::Cost;
 use super::field::{Field, cost_of, megabytes};
 use super::race_run::{CODES, Code, FINITE_ELEMENT_CODES, RaceRun};
+use crate::accuracy::Cost;
 use mtled_checks::report::four_digits;
 use mtled_checks::study::{Cell, Table, number, text};
 

@@ -2,12 +2,14 @@
 
 use crate::accuracy::{Difference, Group, SAMPLES, difference, values};
 use crate::bundled::CASES;
-use crate::reference::{ReferenceFile, ReferenceValues, agreements, is_dynamic};
+use crate::reference::{Mesh, ReferenceFile, ReferenceValues, agreements, is_dynamic};
 use crate::run::{Solved, solve_case};
 use crate::scene::Case;
+use crate::studies::comparison::cut_drawings::cut_panels;
 use crate::studies::workbench::Workbench;
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
+use mtled_checks::study::Panels;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// One case, its solution and its reference.
@@ -18,6 +20,8 @@ pub struct Compared {
     /// CPU time of one thread, set-up included \[s\].
     pub cpu: f64,
     pub references: Vec<ReferenceValues>,
+    /// A cut through the body of a label map.
+    pub cut: Option<Panels>,
     /// Computed values at the instants of the reference, in the order of `references`.
     pub computed: Vec<Vec<f64>>,
 }
@@ -43,27 +47,40 @@ pub fn compare_all(bench: &Workbench) -> Vec<Result<Compared>> {
     results.into_iter().map(|(_, result)| result).collect()
 }
 
+/// On a thread of its own: a thread of the studies would run other studies while it waits.
 fn compare(bench: &Workbench, name: &str) -> Result<Compared> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    pool.install(|| compare_here(bench, name))
+}
+
+fn compare_here(bench: &Workbench, name: &str) -> Result<Compared> {
     let mut case = bench.case(name)?;
     let file = bench.reference(&case)?;
     if is_dynamic(&case) {
         case.outputs.history = case.outputs.history.max(SAMPLES);
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let (result, cpu) = pool.install(|| {
-        let start = ThreadTime::now();
-        (solve_case(&case), start.elapsed().as_secs_f64())
-    });
-    let (solved, record) = result?;
+    let start = ThreadTime::now();
+    let (solved, record) = solve_case(&case)?;
+    let cpu = start.elapsed().as_secs_f64();
     let references: Vec<ReferenceValues> =
         agreements(&case, &file).iter().map(|a| a.reference()).collect();
     let computed = values(&case, &record, &file.times_s)?;
-    Ok(Compared { case, file, solved, cpu, references, computed })
+    let cut = cut_panels(&case, &solved)?;
+    Ok(Compared { case, file, solved, cpu, references, cut, computed })
 }
 
 impl Compared {
     /// Difference of all quantities of a group from the reference.
     pub fn of(&self, group: Group) -> Option<Difference> {
         difference(&self.case, group, &self.references, &self.computed)
+    }
+
+    /// The same of a finite-element mesh.
+    pub fn of_mesh(&self, group: Group, mesh: &Mesh) -> Option<Difference> {
+        let values = |reference: &ReferenceValues| {
+            mesh.values.get(&reference.quantity.name).map(|values| values.flat())
+        };
+        let values: Vec<Vec<f64>> = self.references.iter().map(values).collect::<Option<_>>()?;
+        difference(&self.case, group, &self.references, &values)
     }
 }

@@ -3,14 +3,22 @@
 pub mod benchmarks;
 mod compared;
 pub mod convergence;
+mod cost_figures;
+mod costs;
+mod cut;
+mod cut_drawings;
 pub mod held_patches;
 mod limits;
 mod tables;
 
 use crate::accuracy::Group;
 use crate::studies::comparison::compared::{Compared, compare_all};
+use crate::studies::comparison::cost_figures::{
+    costs_table, error_over_cost, times_at_equal_error,
+};
+use crate::studies::comparison::costs::Costs;
 use crate::studies::comparison::limits::{TARGET, limit};
-use crate::studies::comparison::tables::{brain_table, cost_figure, differences_table};
+use crate::studies::comparison::tables::{brain_table, differences_table};
 use crate::studies::workbench::Workbench;
 use anyhow::{Result, bail};
 use mtled_checks::study::{Bound, Check, Figure, Kind, Study};
@@ -29,7 +37,7 @@ pub fn comparison(bench: &Workbench, study: &mut Study) -> Result<()> {
     if let Some(brain) = compared.iter().find(|c| c.case.name == "brain_slice") {
         study.tables.push(brain_table(brain));
     }
-    study.figures.push(Figure::Plot(cost_figure(&compared)));
+    add_figures(study, &compared);
     study.notes.push(
         "Each case is solved once, with the recipe of its file. Differences are relative to the \
          largest value of their group in the reference; a bound is the limit plus the reference's \
@@ -51,6 +59,17 @@ pub fn comparison(bench: &Workbench, study: &mut Study) -> Result<()> {
         bail!("{}", failures.join("; "));
     }
     Ok(())
+}
+
+/// Error over processor time of all cases, and cuts through those with a label map.
+fn add_figures(study: &mut Study, compared: &[Compared]) {
+    let costs: Vec<Costs> = compared.iter().filter_map(Costs::of).collect();
+    study.figures.push(Figure::Plot(times_at_equal_error(&costs)));
+    study.figures.push(Figure::Panels(error_over_cost(&costs)));
+    study.tables.push(costs_table(&costs));
+    let cuts = compared.iter().filter_map(|case| case.cut.clone());
+    study.figures.extend(cuts.map(Figure::Panels));
+    study.leading = study.figures.len();
 }
 
 /// A check of every group that is compared and that the case has.

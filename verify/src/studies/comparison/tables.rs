@@ -1,10 +1,8 @@
 //! Tables and figures of the comparison with the references.
 
 use crate::accuracy::{Difference, Group};
-use crate::reference::agreement::rms_of_points;
-use crate::reference::{CODES, Family, Mesh};
 use crate::studies::comparison::compared::Compared;
-use mtled_checks::study::{Cell, Plot, SeriesStyle, Table, axis, number, styled, text};
+use mtled_checks::study::{Cell, Table, number, text};
 
 /// A row per case and kind of quantity.
 pub fn differences_table(compared: &[Compared]) -> Table {
@@ -97,55 +95,4 @@ fn centre_rows(brain: &Compared, probe: &str, instant: usize) -> Vec<Vec<Cell>> 
         ]
     };
     ["x", "y"].into_iter().enumerate().map(row).collect()
-}
-
-/// CPU seconds against the error of displacements, all cases.
-pub fn cost_figure(compared: &[Compared]) -> Plot {
-    let mut series = Vec::new();
-    for code in CODES {
-        let mut points = Vec::new();
-        for case in compared {
-            let meshes = case.file.solutions.iter().filter(|s| s.code == code);
-            for mesh in meshes.flat_map(|solution| &solution.meshes) {
-                points.extend(error_of(case, mesh).map(|error| (mesh.cpu_s, error)));
-            }
-        }
-        let name = format!("{code}, on the machine of the references");
-        series.push(styled(&name, points, SeriesStyle::Points));
-    }
-    let own = |case: &Compared| {
-        let difference = case.of(Group::Displacement).or_else(|| case.of(Group::CentreOfMass))?;
-        Some((case.cpu, difference.rms))
-    };
-    let points = compared.iter().filter_map(own).collect();
-    series.push(styled("mtled, on this machine", points, SeriesStyle::Points));
-    Plot {
-        title: "Speed against error".into(),
-        caption: "A point per case and mesh: CPU seconds of one thread, set-up included, and rms \
-                  difference of the displacements from the reference over its largest \
-                  displacement. The finite-element codes ran on another machine; their finest meshes made \
-                  the reference."
-            .into(),
-        x: axis("CPU time", "s", true),
-        y: axis("error of the displacement", "1", true),
-        series,
-        slopes: Vec::new(),
-    }
-}
-
-/// rms error of all displacements on a mesh, relative to the largest one; none
-/// where the mesh differs from the reference by no more than its error bar.
-fn error_of(case: &Compared, mesh: &Mesh) -> Option<f64> {
-    let (mut differences, mut bars, mut largest) = (Vec::new(), Vec::new(), 0.0f64);
-    for reference in &case.references {
-        if reference.quantity.family == Family::Displacement {
-            let values = mesh.values[&reference.quantity.name].flat();
-            differences.extend(values.iter().zip(&reference.values).map(|(a, b)| a - b));
-            bars.extend(std::iter::repeat_n(reference.error, values.len() / 3));
-            let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-            largest = reference.values.chunks(3).map(length).fold(largest, f64::max);
-        }
-    }
-    let error = rms_of_points(&differences, 3) / largest;
-    (error > rms_of_points(&bars, 1) / largest).then_some(error)
 }

@@ -261,6 +261,7 @@ pub fn figure(poisson_ratio: f64, all: &[(Scenario, Vec<Level>)]) -> Figure {
                 points: spacings.zip(samples.iter().map(|s| s.0)).collect(),
                 error_bars: samples.iter().map(|s| s.1).collect(),
                 style: SeriesStyle::LineAndPoints,
+                colour: None,
             });
         }
     }

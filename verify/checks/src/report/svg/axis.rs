@@ -56,6 +56,11 @@ impl Scale {
         Scale { log, low, high, from, to }
     }
 
+    /// Rows of the numbers 0, 1, 2 … from pixel `from` down to `to`.
+    pub fn of_rows(count: usize, from: f64, to: f64) -> Scale {
+        Scale { log: false, low: -0.5, high: count as f64 - 0.5, from, to }
+    }
+
     /// Pixel of a value, None where it has none.
     pub fn position(&self, value: f64) -> Option<f64> {
         if !value.is_finite() || (self.log && value <= 0.0) {
@@ -133,6 +138,16 @@ impl Scale {
 }
 
 impl Ticks {
+    /// A tick at each of 0, 1, 2 …
+    pub fn named(names: &[String]) -> Ticks {
+        let tick = |(row, name): (usize, &String)| Tick {
+            value: row as f64,
+            label: name.clone(),
+            rank: 0,
+        };
+        Ticks { major: names.iter().enumerate().map(tick).collect(), ..Ticks::default() }
+    }
+
     /// Ticks whose labels do not overlap one of lower rank or further left, with the
     /// middles of their labels; `extent` is the middle of a label and half of its size in
     /// pixels.

@@ -63,6 +63,13 @@ impl Canvas {
         );
     }
 
+    /// Another picture of this size, as it is.
+    pub fn picture(&mut self, at: [f64; 2], size: [f64; 2], svg: &str) {
+        let [x, y, width, height] = [at[0], at[1], size[0], size[1]].map(pixels);
+        let place = format!("<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"");
+        let _ = writeln!(self.body, "{place}{}", svg.trim_start_matches("<svg").trim_end());
+    }
+
     /// Closes the picture; `label` is what a screen reader says.
     pub fn finish(self, width: f64, height: f64, label: &str) -> String {
         format!(
@@ -111,6 +118,14 @@ pub(super) fn marker(index: usize, at: [f64; 2]) -> String {
         6 => around(&[[-4.8, 0.0], [4.8, 0.0]]) + &around(&[[0.0, -4.8], [0.0, 4.8]]),
         _ => around(&[[-4.0, -4.0], [4.0, -4.0], [-4.0, 4.0], [4.0, 4.0]]),
     }
+}
+
+/// An arrow from a bound to the right (1) or to the left (−1).
+pub(super) fn pointer([x, y]: [f64; 2], side: f64) -> String {
+    let head = [[9.0, -4.0], [16.0, 0.0], [9.0, 4.0]].map(|d| [x + side * d[0], y + d[1]]);
+    polyline(&[[x, y - 4.0], [x, y + 4.0]], false)
+        + &polyline(&[[x, y], [x + 9.0 * side, y]], false)
+        + &polyline(&head, true)
 }
 
 /// A disc as a path, so that thousands of them can be one element.

@@ -4,6 +4,7 @@ use super::super::number::four_digits;
 use super::axis::nice_step;
 use super::canvas::{Anchor, COLOURS, Canvas, dot, polyline};
 use super::legend::Legend;
+use super::scale::{band_class, bar};
 use crate::study::{Drawing, Layer, LayerStyle};
 
 const WIDTH: f64 = 420.0;
@@ -30,18 +31,27 @@ impl View {
 pub(super) fn to_svg(drawing: &Drawing) -> String {
     let view = view_of(drawing);
     let mut canvas = Canvas::default();
-    for layer in &drawing.layers {
-        shapes(&mut canvas, &view, layer);
+    let first_band = drawing.layers.iter().position(|layer| layer.style == LayerStyle::Band);
+    let classes: Vec<Vec<String>> = (drawing.layers.iter().enumerate())
+        .map(|(index, layer)| classes(drawing, layer, first_band.is_some_and(|b| index > b)))
+        .collect();
+    for (layer, classes) in drawing.layers.iter().zip(&classes) {
+        shapes(&mut canvas, &view, layer, classes);
     }
-    let below = view.bottom + MARGIN + 6.0;
+    let mut below = view.bottom + MARGIN + 6.0;
     scale_bar(&mut canvas, &view, &drawing.unit, below);
-    let shown: Vec<&Layer> = drawing.layers.iter().filter(|l| !l.name.is_empty()).collect();
+    if let Some(scale) = &drawing.scale {
+        below = bar(&mut canvas, scale, [0.42 * WIDTH, below - 4.0], WIDTH - MARGIN - 8.0) - 16.0;
+    }
+    let named = |(layer, _): &(&Layer, &Vec<String>)| !layer.name.is_empty();
+    let (shown, classes): (Vec<&Layer>, Vec<&Vec<String>>) =
+        drawing.layers.iter().zip(&classes).filter(named).unzip();
     let names: Vec<&str> = shown.iter().map(|layer| layer.name.as_str()).collect();
     let width = WIDTH - 2.0 * MARGIN;
     let legend = Legend::new(&names, width);
     let corner = [MARGIN, below + 24.0];
     legend.draw(&mut canvas, &names, corner, width, |canvas, index, from, to| {
-        swatch(canvas, shown[index], from, to);
+        swatch(canvas, shown[index], classes[index], from, to);
     });
     canvas.finish(WIDTH, corner[1] + legend.height() + 4.0, &drawing.title)
 }
@@ -70,7 +80,7 @@ fn view_of(drawing: &Drawing) -> View {
     View { scale, low, left, bottom: MARGIN + (height * scale).max(8.0) }
 }
 
-fn shapes(canvas: &mut Canvas, view: &View, layer: &Layer) {
+fn shapes(canvas: &mut Canvas, view: &View, layer: &Layer, classes: &[String]) {
     let mut commands = String::new();
     for line in &layer.lines {
         let runs = line.split(|point| !finite(point));
@@ -79,14 +89,15 @@ fn shapes(canvas: &mut Canvas, view: &View, layer: &Layer) {
             if layer.style == LayerStyle::Dots {
                 commands.extend(placed.iter().map(|&at| dot(at, radius(layer))));
             } else {
-                let closed = layer.closed || layer.style == LayerStyle::Filled;
+                let filled = matches!(layer.style, LayerStyle::Filled | LayerStyle::Band);
+                let closed = layer.closed || filled;
                 // An interrupted line is not closed.
                 commands += &polyline(&placed, closed && run.len() == line.len());
             }
         }
     }
     let dash = if layer.style == LayerStyle::Dashed { "6 4" } else { "" };
-    canvas.path(&class(layer), &commands, dash);
+    classes.iter().for_each(|class| canvas.path(class, &commands, dash));
 }
 
 /// Clouds of many points have small dots.
@@ -98,21 +109,29 @@ fn radius(layer: &Layer) -> f64 {
     }
 }
 
-fn class(layer: &Layer) -> String {
+/// The classes that a layer is drawn with, one above the other; lines above bands of colour are
+/// white with dark edges, which all colours let through.
+fn classes(drawing: &Drawing, layer: &Layer, above_bands: bool) -> Vec<String> {
     let colour = layer.colour % COLOURS;
-    match layer.style {
+    vec![match layer.style {
+        LayerStyle::Outline | LayerStyle::Dashed if above_bands => {
+            return vec!["casing".into(), "above".into()];
+        }
         LayerStyle::Outline | LayerStyle::Dashed => format!("line s{colour}"),
         LayerStyle::Filled => format!("area s{colour} f{colour}"),
         LayerStyle::Dots => format!("f{colour}"),
-    }
+        LayerStyle::Band => {
+            band_class(layer.colour, drawing.scale.as_ref().map_or(0, |scale| scale.edges.len()))
+        }
+    }]
 }
 
-fn swatch(canvas: &mut Canvas, layer: &Layer, from: [f64; 2], to: [f64; 2]) {
+fn swatch(canvas: &mut Canvas, layer: &Layer, classes: &[String], from: [f64; 2], to: [f64; 2]) {
     let (left, right, y) = (from[0], to[0], from[1]);
     let (commands, dash) = match layer.style {
         LayerStyle::Outline => (polyline(&[from, to], false), ""),
         LayerStyle::Dashed => (polyline(&[from, to], false), "6 4"),
-        LayerStyle::Filled => {
+        LayerStyle::Filled | LayerStyle::Band => {
             let (top, bottom) = (y - 6.0, y + 6.0);
             (polyline(&[[left, top], [right, top], [right, bottom], [left, bottom]], true), "")
         }
@@ -121,7 +140,7 @@ fn swatch(canvas: &mut Canvas, layer: &Layer, from: [f64; 2], to: [f64; 2]) {
             (at.map(|at| dot(at, radius(layer).max(1.7))).concat(), "")
         }
     };
-    canvas.path(&class(layer), &commands, dash);
+    classes.iter().for_each(|class| canvas.path(class, &commands, dash));
 }
 
 /// A bar of a round length, about a fifth of the picture.

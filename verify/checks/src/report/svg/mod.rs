@@ -5,15 +5,18 @@ mod axis;
 mod canvas;
 mod drawing;
 mod legend;
+mod panels;
 mod plot;
+mod scale;
 mod slope;
 
 pub use canvas::escape;
+pub use panels::{PanelParts, parts};
 
 use crate::study::Figure;
 
 /// Colours and line widths of all figures; a page includes it once. The
-/// palette is Okabe and Ito's (2008), shaded for contrast on either ground.
+/// palette is Okabe and Ito's (2008), shaded for contrast on either ground; bands have viridis.
 pub const STYLE: &str = include_str!("figure.css");
 
 /// A figure to be placed inside a page that includes [`STYLE`].
@@ -21,6 +24,7 @@ pub fn to_svg(figure: &Figure) -> String {
     match figure {
         Figure::Plot(plot) => plot::to_svg(plot),
         Figure::Drawing(drawing) => drawing::to_svg(drawing),
+        Figure::Panels(panels) => panels::to_svg(panels),
     }
 }
 

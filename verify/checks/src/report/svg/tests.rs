@@ -9,6 +9,7 @@ fn plot(log: bool, points: Vec<(f64, f64)>) -> Figure {
         error_bars: vec![0.1; points.len()],
         points: points.clone(),
         style,
+        colour: None,
     });
     Figure::Plot(Plot {
         title: "title".into(),
@@ -34,6 +35,7 @@ fn drawing(lines: Vec<Vec<[f64; 2]>>) -> Figure {
         caption: String::new(),
         unit: "m".into(),
         layers: layers.to_vec(),
+        scale: None,
     })
 }
 
@@ -130,4 +132,58 @@ fn where_labels_are_close_some_are_left_out() {
     let svg = to_svg(&plot(true, vec![(0.65, 1.0), (4.6, 5.0)]));
     let written = |label: &str| svg.contains(&format!(">{label}</text>"));
     assert!(written("1") && written("2") && !written("0.9"), "{svg}");
+}
+
+/// A figure of the sample report.
+fn sample_figure(title: &str) -> Figure {
+    let report = sample::report();
+    let mut figures = report.studies.into_iter().flat_map(|study| study.figures);
+    figures.find(|figure| figure.title() == title).unwrap()
+}
+
+#[test]
+fn what_is_below_a_floor_is_shaded_and_faint_and_does_not_stretch_the_scale() {
+    let Figure::Panels(panels) = sample_figure("Error over time") else { panic!() };
+    let shown = parts(&panels);
+    for (_, svg) in &shown.panels {
+        assert_eq!(svg.matches("class=\"floor\"").count(), 1, "{svg}");
+        let marks = |class: &str| svg.lines().find(|line| line.contains(class)).unwrap();
+        assert_eq!(marks("\"mark faint s0\"").matches('M').count(), 1, "{svg}");
+        assert_eq!(marks("\"mark s0\"").matches('M').count(), 2, "{svg}");
+        assert!(!svg.contains("10⁻⁹"), "{svg}");
+    }
+}
+
+#[test]
+fn panels_have_one_legend_and_the_same_scales() {
+    let Figure::Panels(panels) = sample_figure("Error over time") else { panic!() };
+    let shown = parts(&panels);
+    let ticks = |svg: &str| -> Vec<String> {
+        svg.lines().filter(|line| line.contains("\"tick\"")).map(str::to_string).collect()
+    };
+    assert_eq!(ticks(&shown.panels[0].1), ticks(&shown.panels[1].1));
+    assert!(shown.plots && shown.legend.unwrap().contains(">meshes<"));
+    assert!(shown.panels.iter().all(|(_, svg)| !svg.contains(">meshes<")));
+    let file = to_svg_file(&Figure::Panels(panels));
+    assert!(file.contains(">cube<") && file.contains(">slice<"), "{file}");
+}
+
+#[test]
+fn rows_have_names_from_the_top_and_bounds_point_to_where_the_value_may_be() {
+    let svg = to_svg(&sample_figure("Time of another code over ours"));
+    let at = |text: &str| svg.find(text).unwrap_or_else(|| panic!("{text} in {svg}"));
+    assert!(at("h &lt; 1 &amp; more") < at(">cube<"));
+    let heads: Vec<&str> = svg.lines().filter(|line| line.contains("\"mark s0\"")).collect();
+    // The mark of the equal ratio, both bounds, and their entries in the legend.
+    assert_eq!(heads.len(), 6, "{svg}");
+}
+
+#[test]
+fn bands_are_filled_from_one_end_of_the_colours_to_the_other_and_have_a_bar_with_their_unit() {
+    let svg = to_svg(&sample_figure("Displacement"));
+    for text in ["class=\"b0\"", "class=\"b9\"", ">2.5<", ">displacement [mm]<"] {
+        assert!(svg.contains(text), "{text} in {svg}");
+    }
+    // Lines above bands have an edge that shows on every colour.
+    assert!(svg.contains("class=\"casing\"") && svg.contains("class=\"above\""));
 }

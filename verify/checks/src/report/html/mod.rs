@@ -1,22 +1,20 @@
 //! One page for people that works offline, in print and on small screens.
 
+mod figures;
+
 use super::change::{breakable, change_values, verdict_counts};
 use super::labels::{counts, duration, plural, result_line, study_counts, unit_text};
 use super::number::{bound_text, four_digits};
 use super::svg;
 use crate::escape::printable_lines;
 use crate::study::{
-    Bound, Cell, Change, Check, Comparison, Figure, Kind, Provenance, Report, Study, Table, Verdict,
+    Bound, Cell, Change, Check, Comparison, Kind, Provenance, Report, Study, Table, Verdict,
 };
+use figures::{figure_value, leading_figures};
 use minijinja::{Environment, Value, context};
 
 /// Texts with more bytes get a wide column.
 const LONG: usize = 24;
-
-/// The study whose drawings are at the top of the page.
-const DRAWN: &str = "brain";
-/// Studies whose first plot is, of error against cost.
-const PARETO: [&str; 2] = ["race", "tune"];
 
 /// Style and script of every page.
 pub(super) const STYLE: &str = include_str!("page/page.css");
@@ -36,6 +34,7 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
     let studies: Vec<Value> = report.studies.iter().map(study_value).collect();
     let failures: Vec<Value> =
         report.checks().filter(|check| !check.pass).map(check_value).collect();
+    let mut leading = leading_figures(report);
     let page = context! {
         style => Value::from_safe_string(format!("{STYLE}{}", svg::STYLE)),
         script => Value::from_safe_string(SCRIPT.to_string()),
@@ -47,7 +46,8 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
         judged => report.checks().next().is_some(),
         kinds => kind_values(report),
         failures => failures,
-        hero => hero_values(report),
+        lead => leading.next().map(figure_value),
+        pictures => leading.map(figure_value).collect::<Vec<_>>(),
         studies => studies,
         provenance => provenance_values(report),
         date => report.provenance.date.as_str(),
@@ -61,8 +61,10 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
 
 fn study_value(study: &Study) -> Value {
     let (passed, all) = study_counts(study);
-    let below = study.figures.iter().filter(|figure| !is_hero(study, figure));
-    let figures: Vec<Value> = below.map(figure_value).collect();
+    let below = study.figures.iter().skip(study.leading);
+    let (passing, failing): (Vec<&Check>, Vec<&Check>) =
+        study.checks.iter().partition(|check| check.pass);
+    let values = |checks: Vec<&Check>| checks.into_iter().map(check_value).collect::<Vec<_>>();
     context! {
         id => study.id.as_str(),
         title => study.title.as_str(),
@@ -71,12 +73,14 @@ fn study_value(study: &Study) -> Value {
         failure => study.failure.as_deref(),
         pass => study.passed(),
         counts => if all == 0 { "figures only".into() } else { format!("{passed} of {all}") },
-        checks => study.checks.iter().map(check_value).collect::<Vec<_>>(),
+        failing => values(failing),
+        passing => values(passing),
         tables => study.tables.iter().map(table_value).collect::<Vec<_>>(),
-        figures => figures,
+        figures => below.map(figure_value).collect::<Vec<_>>(),
         notes => study.notes.iter().map(Value::from).collect::<Vec<_>>(),
-        above => study.figures.iter().any(|figure| is_hero(study, figure)),
+        above => study.leading > 0 && !study.figures.is_empty(),
         wall => duration(study.wall_seconds),
+        wall_key => study.wall_seconds.to_string(),
     }
 }
 
@@ -149,37 +153,6 @@ fn cell_value(cell: &Cell) -> Value {
     }
 }
 
-fn figure_value(figure: &Figure) -> Value {
-    let (title, caption) = match figure {
-        Figure::Plot(plot) => (&plot.title, &plot.caption),
-        Figure::Drawing(drawing) => (&drawing.title, &drawing.caption),
-    };
-    context! {
-        title => title,
-        caption => caption,
-        svg => Value::from_safe_string(svg::to_svg(figure)),
-    }
-}
-
-fn hero_values<'a>(report: &'a Report) -> Vec<Value> {
-    let of_study =
-        |study: &'a Study| study.figures.iter().filter(move |figure| is_hero(study, figure));
-    let mut heroes: Vec<&Figure> = report.studies.iter().flat_map(of_study).collect();
-    heroes.sort_by_key(|figure| matches!(figure, Figure::Drawing(_)));
-    heroes.into_iter().map(figure_value).collect()
-}
-
-/// Whether a figure is shown at the top of the page only.
-fn is_hero(study: &Study, figure: &Figure) -> bool {
-    match figure {
-        Figure::Drawing(_) => study.id == DRAWN,
-        Figure::Plot(_) => {
-            let first = study.figures.iter().find(|f| matches!(f, Figure::Plot(_)));
-            PARETO.contains(&study.id.as_str()) && first.is_some_and(|f| std::ptr::eq(f, figure))
-        }
-    }
-}
-
 /// Passed and all checks of each kind, with what the kind means.
 fn kind_values(report: &Report) -> Vec<Value> {
     let kinds = [
@@ -219,88 +192,4 @@ fn provenance_values(report: &Report) -> Vec<Value> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::report::sample;
-
-    #[test]
-    fn the_page_needs_nothing_from_outside() {
-        let page = to_html(&sample::report()).unwrap();
-        for link in ["href=\"http", "src=", "url(", "@import", "<link"] {
-            assert!(!page.contains(link), "{link}");
-        }
-        assert!(page.contains("<html lang=\"en\">") && page.contains("<title>"));
-    }
-
-    #[test]
-    fn control_characters_of_a_title_are_shown_as_escapes() {
-        let mut report = sample::report();
-        report.studies[0].title = "a\u{1b}[31mb".into();
-        let page = to_html(&report).unwrap();
-        assert!(page.contains("a\\u{1b}[31mb") && !page.contains('\u{1b}'));
-    }
-
-    #[test]
-    fn the_verdict_and_the_failures_come_before_the_studies() {
-        let page = to_html(&sample::report()).unwrap();
-        let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("{text} is missing"));
-        assert!(at("9 of 11 checks passed") < at("id=\"failures\""));
-        assert!(at("id=\"failures\"") < at("id=\"contents\""));
-        assert!(at("id=\"contents\"") < at("id=\"study-patch\""));
-    }
-
-    #[test]
-    fn what_got_worse_comes_first_and_a_failure_links_its_case_file() {
-        let page = to_html(&sample::compared()).unwrap();
-        let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("{text} is missing"));
-        assert!(at("failures/brain-tumour-shift.toml") < at("id=\"compared\""));
-        assert!(at("1 worse, 1 missing, 1 new, 1 improved, 1 the same") < at("id=\"failures\""));
-        let verdicts = ["worse", "missing", "new", "improved", "same"];
-        let places = verdicts.map(|verdict| at(&format!("<span class=\"chip {verdict}\">")));
-        assert!(places.is_sorted(), "{places:?}");
-        assert!(at("id=\"compared\"") < at("id=\"pictures\""));
-    }
-
-    #[test]
-    fn without_scripts_there_is_no_button_that_does_nothing() {
-        let page = to_html(&sample::compared()).unwrap();
-        assert!(!page.split("<script>").next().unwrap().contains("<button"));
-        let tables = page.matches("<table").count();
-        assert_eq!(page.matches("<table data-file=").count(), tables);
-        assert_eq!(page.matches("<caption>").count(), tables);
-    }
-
-    #[test]
-    fn texts_are_escaped() {
-        let page = to_html(&sample::report()).unwrap();
-        assert!(page.contains("h &lt; 1 &amp; more"));
-        assert!(!page.contains("h < 1 & more"));
-    }
-
-    #[test]
-    fn no_text_of_a_report_becomes_an_element() {
-        let mut report = sample::compared();
-        let evil = "\"'><script>evil</script>";
-        for study in &mut report.studies {
-            (study.id, study.title, study.claim) = (evil.into(), evil.into(), evil.into());
-            (study.command, study.notes) = (evil.into(), vec![evil.into()]);
-            for check in &mut study.checks {
-                (check.id, check.quantity, check.unit) = (evil.into(), evil.into(), evil.into());
-            }
-            for table in &mut study.tables {
-                (table.title, table.columns[0].name) = (evil.into(), evil.into());
-                table.rows.iter_mut().for_each(|row| row[0] = Cell::Text(evil.into()));
-            }
-        }
-        report.suite = evil.into();
-        report.provenance.commit = evil.into();
-        report.comparison.as_mut().unwrap().with = evil.into();
-        let page = to_html(&report).unwrap();
-        assert!(page.contains("evil") && !page.contains("<script>evil"));
-    }
-
-    #[test]
-    fn a_report_without_studies_is_a_page() {
-        assert!(to_html(&sample::empty()).unwrap().contains("Figures only"));
-    }
-}
+mod tests;
