@@ -1,8 +1,5 @@
 //! Frictionless contact of elastic spheres at small displacements (Hertz 1882;
 //! Johnson 1985, section 4.2).
-//!
-//! No case uses it: it holds for half-spaces, and a block would have to be tens of
-//! contact radii wide.
 
 use std::f64::consts::PI;
 

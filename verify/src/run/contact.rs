@@ -80,21 +80,16 @@ pub fn contact_fields(
     prepared: &Prepared,
     frame: &Frame,
     displacement: &[f64],
-) -> [PointArray; 2] {
-    let plan = &prepared.model.contact;
-    let positions = &prepared.discretisation.cloud.positions;
-    let u = displacement.as_chunks::<3>().0;
-    let place = |node: usize| positions[node] + Vector3::from(u[node]);
-    let components = prepared.model.components;
-    let places = frame.contact.iter().map(|force| place(force.node as usize));
-    let normals = plan.normals(&frame.contact, places, components);
-    let pressures = surface.pressures(&frame.contact, &normals.collect::<Vec<_>>());
-    let gaps = (0..positions.len()).map(|node| {
-        let x = place(node);
+) -> Result<[PointArray; 2], Error> {
+    let (plan, discretisation) = (&prepared.model.contact, &prepared.discretisation);
+    let pressures = surface.pressures(plan, discretisation, &frame.contact, &frame.displacement)?;
+    let values = displacement.as_chunks::<3>().0;
+    let gaps = discretisation.cloud.positions.iter().zip(values).map(|(X, u)| {
+        let x = X + Vector3::from(*u);
         plan.obstacles.iter().map(|obstacle| gap(obstacle, &x)).fold(f64::INFINITY, f64::min)
     });
-    [
+    Ok([
         PointArray::new("contact_gap", 1, gaps.collect()),
         PointArray::new("contact_pressure", 1, pressures),
-    ]
+    ])
 }

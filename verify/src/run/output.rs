@@ -141,7 +141,8 @@ fn write_frames(
         let mut fields = node_frame(&case.problem, prepared, &points, frame)?;
         if let Some(surface) = &surface {
             let displacement = &fields.point_data[0].values;
-            fields.point_data.extend(contact_fields(surface, prepared, frame, displacement));
+            let contact = contact_fields(surface, prepared, frame, displacement)?;
+            fields.point_data.extend(contact);
         }
         let is_last = number + 1 == record.frames.len();
         if let Some(mode) = record.unstable_mode.as_ref().filter(|_| is_last) {

@@ -2,23 +2,24 @@
 #![allow(non_snake_case)]
 
 use super::plan::{ContactForce, ContactPlan, gap, normal};
-use crate::algebra::tensor::Vector3;
+use crate::algebra::tensor::{Vector3, cofactor};
 use crate::discretisation::{Discretisation, Rows};
 use crate::error::Error;
-use crate::geometry::PointHash;
+use crate::geometry::{Panel, PointHash};
 use crate::problem::Problem;
+use std::collections::BTreeMap;
 
-/// Edge of the panels between whose nodes penetration is looked for, over the mean spacing \[–\].
+/// Edge of the panels over the mean spacing \[–\].
 const PANEL: f64 = 0.5;
+/// Least cosine between a panel's normal and the obstacle's, turned around, of a panel that
+/// faces it \[–\]: the sides of a block on a floor do not.
+const FACING: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// The part of the boundary that belongs to each node, and places between them.
+/// Panels of the boundary, each with the node of the boundary nearest to it.
 #[derive(Debug)]
 pub struct ContactSurface {
-    /// Undeformed area of the panels to which a node is the nearest one of the boundary
-    /// \[node\] \[m²\].
-    pub areas: Vec<f64>,
-    /// Centres of the panels near nodes in contact \[m\], and their nearest nodes.
-    places: Vec<(Vector3, u32)>,
+    panels: Vec<(Panel, u32)>,
+    nodes: usize,
 }
 
 /// What one obstacle does to the body.
@@ -30,7 +31,7 @@ pub struct ContactResult {
     pub force: Vector3,
     /// Sum of the normal parts of the forces on nodes \[N\].
     pub normal_force: f64,
-    /// Undeformed area of the nodes that are pushed \[m²\].
+    /// Undeformed area of the panels that face it at nodes that are pushed \[m²\].
     pub area: f64,
     /// Largest normal force of a node over its area \[Pa\].
     pub largest_pressure: f64,
@@ -51,28 +52,33 @@ impl ContactSurface {
             .collect();
         let mut hash = PointHash::new(mean, mean);
         boundary.iter().for_each(|&node| hash.insert(cloud.positions[node as usize]));
-        let mut areas = vec![0.0; cloud.positions.len()];
-        let mut places = Vec::with_capacity(panels.len());
-        for panel in &panels {
-            if let Some((_, nearest)) = hash.nearest(&panel.centre, usize::MAX, 1).first() {
-                let node = boundary[*nearest];
-                areas[node as usize] += panel.area;
-                places.push((panel.centre, node));
-            }
-        }
-        Ok(ContactSurface { areas, places })
+        let nearest = |panel: Panel| {
+            let (_, place) = *hash.nearest(&panel.centre, usize::MAX, 1).first()?;
+            Some((panel, boundary[place]))
+        };
+        let panels = panels.into_iter().filter_map(nearest).collect();
+        Ok(ContactSurface { panels, nodes: cloud.positions.len() })
     }
 
-    /// Contact pressure at the nodes \[Pa\]: the normal force over the area.
-    pub fn pressures(&self, forces: &[ContactForce], normals: &[Vector3]) -> Vec<f64> {
-        let mut pressures = vec![0.0; self.areas.len()];
-        for (force, normal) in forces.iter().zip(normals) {
-            let node = force.node as usize;
-            if self.areas[node] > 0.0 {
-                pressures[node] += force.force.dot(normal) / self.areas[node];
+    /// Contact pressure \[Pa\] at the nodes at nodal parameters `u` \[component of node\]
+    /// \[m\]: the normal force over the area that faces the obstacle.
+    pub fn pressures(
+        &self,
+        plan: &ContactPlan,
+        discretisation: &Discretisation,
+        forces: &[ContactForce],
+        u: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        let normals = normals(plan, discretisation, forces, u)?;
+        let near = self.near(discretisation, forces, u)?;
+        let areas = near.areas(plan, forces);
+        let mut pressures = vec![0.0; self.nodes];
+        for ((force, normal), area) in forces.iter().zip(&normals).zip(areas) {
+            if area > 0.0 {
+                pressures[force.node as usize] += force.force.dot(normal) / area;
             }
         }
-        pressures
+        Ok(pressures)
     }
 
     /// What each obstacle does at nodal parameters `u` \[component of node\] \[m\].
@@ -85,49 +91,92 @@ impl ContactSurface {
     ) -> Result<Vec<ContactResult>, Error> {
         let mut results = vec![ContactResult::default(); plan.obstacles.len()];
         let normals = normals(plan, discretisation, forces, u)?;
-        for (force, normal) in forces.iter().zip(&normals) {
+        let near = self.near(discretisation, forces, u)?;
+        let areas = near.areas(plan, forces);
+        for ((force, normal), area) in forces.iter().zip(&normals).zip(areas) {
             let result = &mut results[force.obstacle as usize];
             let along = force.force.dot(normal);
             result.nodes += 1;
             result.force += force.force;
             result.normal_force += along;
-            let area = self.areas[force.node as usize];
             if along > 0.0 && area > 0.0 {
                 result.area += area;
                 result.largest_pressure = result.largest_pressure.max(along / area);
             }
         }
-        self.find_deepest(plan, discretisation, forces, u, &mut results)?;
+        near.find_deepest(plan, &mut results);
         Ok(results)
     }
 
-    /// The deepest of the panels whose nodes touch.
-    fn find_deepest(
+    /// The panels whose nodes touch, where they are now.
+    fn near(
         &self,
-        plan: &ContactPlan,
         discretisation: &Discretisation,
         forces: &[ContactForce],
         u: &[f64],
-        results: &mut [ContactResult],
-    ) -> Result<(), Error> {
-        let mut touches = vec![false; self.areas.len()];
+    ) -> Result<NearPanels<'_>, Error> {
+        let mut touches = vec![false; self.nodes];
         forces.iter().for_each(|force| touches[force.node as usize] = true);
-        let near: Vec<Vector3> = (self.places.iter())
-            .filter(|(_, node)| touches[*node as usize])
-            .map(|place| place.0)
-            .collect();
-        let rows: Rows = discretisation.rows_at(&near)?;
-        let components = u.len() / self.areas.len();
-        for (index, X) in near.iter().enumerate() {
-            let x = X + rows.interpolate(index, u, components);
+        let panels = self.panels.iter().filter(|(_, node)| touches[*node as usize]);
+        let panels: Vec<(&Panel, u32)> = panels.map(|(panel, node)| (panel, *node)).collect();
+        let centres: Vec<Vector3> = panels.iter().map(|(panel, _)| panel.centre).collect();
+        let rows: Rows = discretisation.rows_at(&centres)?;
+        let components = u.len() / self.nodes;
+        let now = |(index, (panel, node))| {
+            let F = rows.deformation_gradient(index, u, components);
+            NearPanel {
+                panel,
+                node,
+                place: panel.centre + rows.interpolate(index, u, components),
+                normal: (cofactor(&F) * panel.normal).normalize(),
+            }
+        };
+        Ok(NearPanels { panels: panels.into_iter().enumerate().map(now).collect(), components })
+    }
+}
+
+/// A panel whose node touches.
+struct NearPanel<'a> {
+    panel: &'a Panel,
+    node: u32,
+    /// Of its centre \[m\].
+    place: Vector3,
+    /// Out of the deformed body.
+    normal: Vector3,
+}
+
+struct NearPanels<'a> {
+    panels: Vec<NearPanel<'a>>,
+    components: usize,
+}
+
+impl NearPanels<'_> {
+    /// Undeformed area \[force\] \[m²\] of the node's panels that face the obstacle.
+    fn areas(&self, plan: &ContactPlan, forces: &[ContactForce]) -> Vec<f64> {
+        let mut panels_of: BTreeMap<u32, Vec<&NearPanel>> = BTreeMap::new();
+        self.panels.iter().for_each(|near| panels_of.entry(near.node).or_default().push(near));
+        let area = |force: &ContactForce| {
+            let obstacle = &plan.obstacles[force.obstacle as usize];
+            let faces = |near: &&&NearPanel| {
+                let towards = normal(obstacle, &near.place, self.components);
+                near.normal.dot(&towards) <= -FACING
+            };
+            let own = panels_of.get(&force.node).into_iter().flatten();
+            own.filter(faces).map(|near| near.panel.area).sum()
+        };
+        forces.iter().map(area).collect()
+    }
+
+    /// The deepest of them in each obstacle.
+    fn find_deepest(&self, plan: &ContactPlan, results: &mut [ContactResult]) {
+        for near in &self.panels {
             for (obstacle, result) in plan.obstacles.iter().zip(results.iter_mut()) {
-                let depth = -gap(obstacle, &x);
+                let depth = -gap(obstacle, &near.place);
                 if depth > result.depth {
-                    (result.depth, result.deepest) = (depth, *X);
+                    (result.depth, result.deepest) = (depth, near.panel.centre);
                 }
             }
         }
-        Ok(())
     }
 }
 

@@ -3,7 +3,6 @@
 use super::active_contacts::ActiveContacts;
 use super::conjugate_gradients::{Correction, Solver as LinearSolver, System};
 use super::drift::drifts;
-
 use super::free_space::FreeSpace;
 use super::load_path::Path;
 use crate::algebra::packed::{dot, largest};
@@ -43,6 +42,8 @@ const LARGEST_MOVE: f64 = 2.0;
 const FIRST_MOVE: f64 = 0.5;
 /// Factor of the shift after a correction that went too far \[–\].
 const TOO_FAR: f64 = 10.0;
+/// Factor of the shift while a body falls that touches nothing \[–\].
+const FALLING: f64 = 0.5;
 /// Bounds of the shift \[–\]; 0 where the body is held without contact.
 const SHIFTS: (f64, f64) = (1e-9, 1.0);
 
@@ -181,7 +182,9 @@ impl<'a> Solver<'a> {
                 return Err(Unsolved::Stopped(Box::new(now)));
             }
             indefinite = correction.indefinite;
-            let searched = !first && settled;
+            // Nothing balances a falling body before it touches something.
+            let falling = self.floating && self.free.contacts.is_empty();
+            let searched = !first && settled && !falling;
             let norm = now.imbalance.norm(model);
             match self.take(&now, &correction.change, fraction, searched, buffers) {
                 Outcome::Taken(next) => now = next,
@@ -194,7 +197,8 @@ impl<'a> Solver<'a> {
             }
             if self.floating {
                 let changed = changes as f64 / (self.free.contacts.len() as f64).max(10.0);
-                self.shift = (shift_factor(changed) * self.shift).clamp(SHIFTS.0, SHIFTS.1);
+                let factor = if falling { FALLING } else { shift_factor(changed) };
+                self.shift = (factor * self.shift).clamp(SHIFTS.0, SHIFTS.1);
             }
             jump = vec![0.0; start.len()];
             // Eisenstat and Walker 1996, choice 2.

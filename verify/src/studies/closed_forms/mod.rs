@@ -1,5 +1,6 @@
 //! Problems with a closed form.
 
+mod contact;
 mod motion;
 mod results;
 
@@ -8,6 +9,7 @@ use crate::run::{integrate, prepare, solve_case};
 use crate::scene::Case;
 use crate::specimens::simple::relaxation;
 use crate::specimens::spacing::spacing_of;
+use crate::studies::closed_forms::contact::contact;
 use crate::studies::closed_forms::motion::{swing, wave};
 use crate::studies::closed_forms::results::Results;
 use crate::studies::workbench::Workbench;
@@ -33,6 +35,7 @@ pub fn closed_forms(bench: &Workbench, study: &mut Study) -> Result<()> {
     twist(&with_dense_grid(bench.case("twisted_cylinder")?)?, study, &mut results)?;
     column(&bar, &mut results)?;
     swing(&mut results)?;
+    contact(bench, &mut results)?;
     study.checks.append(&mut results.checks);
     study.notes.push(
         "Two cells per spacing here, instead of the default 1.26: with plain gradients the quadrature \
@@ -40,9 +43,8 @@ pub fn closed_forms(bench: &Workbench, study: &mut Study) -> Result<()> {
             .into(),
     );
     study.notes.push(
-        "The spherical shell is not solved, since the solver has no pressure that follows a surface; \
-         nor is the contact of Hertz, since an affordable block is no half-space. Both are formulas \
-         with tests against published values."
+        "Hertz's half-space is a block eight contact radii to each side, moved at its far faces as \
+         a half-space under a point force. The spherical shell is a formula only."
             .into(),
     );
     study.tables.push(Table {
