@@ -9,7 +9,7 @@ use mtled::algebra::tensor::{Vector3, rotation};
 use mtled::discretisation::Discretisation;
 use mtled::geometry::Shape;
 use mtled::model::Model;
-use mtled::model::contact::gap;
+use mtled::model::contact::{ContactSurface, gap};
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -104,6 +104,25 @@ fn a_ball_comes_to_rest_at_the_bottom_of_a_hollow_one() {
     let force = contact_force(&solved.state) / weight(&solved.model);
     // What it takes to stop the ball from turning is in it.
     assert!((force - Vector3::z()).norm() < 1e-4, "{force}");
+}
+
+#[test]
+fn a_body_that_touches_nothing_falls_until_it_is_caught() {
+    let mut problem = ball_in_a_ball(Friction::Frictionless);
+    problem.obstacles[0].shape = Shape::Sphere { centre: Vector3::zeros(), radius: 0.6 * EDGE };
+    let solved = solve(&problem);
+    let force = contact_force(&solved.state) / weight(&solved.model);
+    assert!((force - Vector3::z()).norm() < 1e-3, "{force}");
+}
+
+#[test]
+fn the_area_of_contact_is_that_of_the_face_and_not_of_the_sides_beside_it() {
+    let problem = resting(0.0);
+    let Solved { discretisation, model, state, .. } = solve(&problem);
+    let surface = ContactSurface::new(&problem, &discretisation).unwrap();
+    let (forces, u) = (state.contact_forces(), &state.displacement);
+    let results = surface.results(&model.contact, &discretisation, &forces, u).unwrap();
+    assert!((results[0].area / (EDGE * EDGE) - 1.0).abs() < 1e-9, "{} m²", results[0].area);
 }
 
 #[test]
