@@ -190,7 +190,15 @@ pub enum Error {
              is {residual:.2e} of the largest force{}: use dynamic relaxation, or reduce the load",
         if *.indefinite { " and the tangent is indefinite, as where a body buckles" } else { "" }
     )]
-    NoEquilibrium { reached: f64, iterations: usize, residual: f64, indefinite: bool },
+    NoEquilibrium {
+        reached: f64,
+        iterations: usize,
+        evaluations: usize,
+        residual: f64,
+        indefinite: bool,
+    },
+    #[error("{then}; newton's method, tried before, came to {reached:.4} of the load")]
+    NeitherSolver { reached: f64, then: Box<Error> },
     #[error(
         "the model was built for a static problem, its masses are fictitious: build it from a problem whose motion is dynamic"
     )]
@@ -210,6 +218,17 @@ pub enum Error {
         100.0 * fraction, 100.0 * most
     )]
     TooMuchAddedMass { factor: f64, fraction: f64, most: f64 },
+}
+
+impl Error {
+    /// The instability that the run met.
+    pub fn instability(&self) -> Option<&Instability> {
+        match self {
+            Error::Unstable { instability, .. } => Some(instability),
+            Error::NotHeld { then, .. } | Error::NeitherSolver { then, .. } => then.instability(),
+            _ => None,
+        }
+    }
 }
 
 /// What a message says of rigid motions that nothing prevents.

@@ -123,6 +123,15 @@ fn automatic() -> Motion {
 }
 
 #[test]
+fn where_both_solvers_fail_the_error_speaks_of_both() {
+    let few = Relaxation { load_steps: 10, max_steps: 20, ..Relaxation::default() };
+    let error = run_standing(0.1, Motion::Automatic(few)).1.unwrap_err();
+    assert!(matches!(error, Error::NeitherSolver { .. }), "{error}");
+    let text = error.to_string();
+    assert!(text.contains("relaxation") && text.contains("newton's method"), "{text}");
+}
+
+#[test]
 fn a_strip_that_buckles_under_its_weight_is_called_unstable_and_a_stiffer_one_is_not() {
     for motion in [relaxation(1e-4), automatic()] {
         for stable in [1.5, 4.0] {
@@ -132,8 +141,7 @@ fn a_strip_that_buckles_under_its_weight_is_called_unstable_and_a_stiffer_one_is
         for unstable in [0.8, 0.5] {
             let instability = match run_standing(unstable, motion.clone()).1 {
                 Ok(summary) => summary.instability.expect("the strip has buckled without a word"),
-                Err(Error::Unstable { instability, .. }) => instability,
-                Err(other) => panic!("{other}"),
+                Err(error) => error.instability().unwrap_or_else(|| panic!("{error}")).clone(),
             };
             assert!(instability.position.y > 5.0 * EDGE, "{unstable}: {instability}");
         }

@@ -58,11 +58,14 @@ fn solve_static(
     }
     let start = state.copy();
     match equilibrate(model, &settings.newton(), state, observer) {
-        Err(Error::NoEquilibrium { reached, iterations, .. }) => {
+        Err(Error::NoEquilibrium { reached, iterations, evaluations, .. }) => {
             *state = start;
             observer.restart();
-            let summary = relax(model, settings, state, observer)?;
-            Ok(Summary { newton_failed: Some(NewtonFailure { reached, iterations }), ..summary })
+            let mut summary = relax(model, settings, state, observer)
+                .map_err(|then| Error::NeitherSolver { reached, then: Box::new(then) })?;
+            summary.force_evaluations += evaluations;
+            summary.newton_failed = Some(NewtonFailure { reached, iterations });
+            Ok(summary)
         }
         solved => solved,
     }

@@ -94,6 +94,7 @@ fn diagnose(case: &Case, error: &Error) -> Diagnostic {
         | Error::NotConverged { .. }
         | Error::Unstable { .. }
         | Error::NotHeld { .. }
+        | Error::NeitherSolver { .. }
         | Error::FictitiousMass => "time",
     };
     case.diagnostic(key, error.to_string())

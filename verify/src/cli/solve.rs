@@ -64,10 +64,10 @@ fn solve_to(
     bar.finish_and_clear();
     let mut record = recorder.finish();
     record.unstable_mode = match &solution {
-        Ok(solution) => solution.summary.instability.as_ref().map(|found| found.mode.clone()),
-        Err(Error::Unstable { instability, .. }) => Some(instability.mode.clone()),
-        Err(_) => None,
-    };
+        Ok(solution) => solution.summary.instability.as_ref(),
+        Err(error) => error.instability(),
+    }
+    .map(|found| found.mode.clone());
     match solution {
         Ok(solution) => {
             let solved = Solved::new(prepared, solution);

@@ -137,7 +137,9 @@ impl Outcome {
         match error {
             Error::NotConverged { .. } | Error::NoEquilibrium { .. } => Outcome::NotConverged,
             Error::Diverged { .. } | Error::Inverted { .. } => Outcome::Diverged,
-            Error::Unstable { then, .. } | Error::NotHeld { then, .. } => Outcome::of_error(then),
+            Error::Unstable { then, .. }
+            | Error::NotHeld { then, .. }
+            | Error::NeitherSolver { then, .. } => Outcome::of_error(then),
             _ => Outcome::Failed,
         }
     }

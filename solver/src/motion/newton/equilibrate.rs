@@ -57,6 +57,7 @@ pub(crate) fn equilibrate(
                     return Err(Error::NoEquilibrium {
                         reached,
                         iterations: solver.counts.iterations,
+                        evaluations: solver.counts.evaluations,
                         residual,
                         indefinite,
                     });
