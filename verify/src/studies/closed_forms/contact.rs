@@ -109,7 +109,7 @@ fn hertz_problem(bench: &Workbench) -> Result<Problem> {
     let hertz = half_space();
     let approach = CONTACT * CONTACT / SPHERE;
     let far = Field::of(move |at| {
-        Vector3::z() * approach + point_force(&at, hertz.force(approach), young, poisson)
+        Vector3::z() * approach + point_force(at, hertz.force(approach), young, poisson)
     });
     for (axis, end) in [(0, -BLOCK), (0, BLOCK), (1, -BLOCK), (1, BLOCK), (2, -BLOCK)] {
         problem.conditions.push(moved_face(axis, end, far.clone()));
