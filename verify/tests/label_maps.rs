@@ -44,7 +44,7 @@ fn weight_and_force(label: impl Fn([f64; 3]) -> u8) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
     let case = read_case(&write_case(folder.path(), label)).unwrap();
     let (solved, _) = solve_case(&case).unwrap();
-    let results = contact_results(&case, &solved.prepared, &solved.state).unwrap();
+    let results = contact_results(&case.problem, &solved.prepared, &solved.state).unwrap();
     assert!(results[0].nodes > 20 && results[0].area > 0.0 && results[0].largest_pressure > 0.0);
     assert!(results[0].force.xy().norm() < 1e-3 * results[0].force.z);
     // The mould is a millimetre away, and nodes are 4 mm apart.

@@ -112,7 +112,7 @@ fn finish(
     out: &Path,
     common: &Common,
 ) -> anyhow::Result<u8> {
-    let contacts = contact_results(case, &solved.prepared, &solved.state)?;
+    let contacts = contact_results(&case.problem, &solved.prepared, &solved.state)?;
     let result = write_outputs(case, solved, record, &contacts, bars, out)?;
     common.print_summary(&|| Ok(result.clone()), &|| {
         let summary = summary_text(case, solved, record, &contacts, bars);

@@ -9,13 +9,14 @@ use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
 use mtled::model::contact::{ContactResult, ContactSurface, gap};
 use mtled::motion::state::State;
+use mtled::problem::Problem;
 use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
 use serde_json::{Value, json};
 
 /// What each obstacle does at the end of a run; nothing without obstacles.
 pub fn contact_results(
-    case: &Case,
+    problem: &Problem,
     prepared: &Prepared,
     state: &State,
 ) -> Result<Vec<ContactResult>, Error> {
@@ -23,7 +24,7 @@ pub fn contact_results(
     if plan.obstacles.is_empty() {
         return Ok(Vec::new());
     }
-    let surface = ContactSurface::new(&case.problem, discretisation)?;
+    let surface = ContactSurface::new(problem, discretisation)?;
     surface.results(plan, discretisation, &state.contact_forces(), &state.displacement)
 }
 

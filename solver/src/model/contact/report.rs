@@ -69,13 +69,12 @@ impl ContactSurface {
         forces: &[ContactForce],
         u: &[f64],
     ) -> Result<Vec<f64>, Error> {
-        let normals = normals(plan, discretisation, forces, u)?;
         let near = self.near(discretisation, forces, u)?;
-        let areas = near.areas(plan, forces);
+        let along = along_normals(plan, discretisation, forces, u)?;
         let mut pressures = vec![0.0; self.nodes];
-        for ((force, normal), area) in forces.iter().zip(&normals).zip(areas) {
+        for ((force, along), area) in forces.iter().zip(along).zip(near.areas(plan, forces)) {
             if area > 0.0 {
-                pressures[force.node as usize] += force.force.dot(normal) / area;
+                pressures[force.node as usize] += along / area;
             }
         }
         Ok(pressures)
@@ -90,12 +89,10 @@ impl ContactSurface {
         u: &[f64],
     ) -> Result<Vec<ContactResult>, Error> {
         let mut results = vec![ContactResult::default(); plan.obstacles.len()];
-        let normals = normals(plan, discretisation, forces, u)?;
         let near = self.near(discretisation, forces, u)?;
-        let areas = near.areas(plan, forces);
-        for ((force, normal), area) in forces.iter().zip(&normals).zip(areas) {
+        let along = along_normals(plan, discretisation, forces, u)?;
+        for ((force, along), area) in forces.iter().zip(along).zip(near.areas(plan, forces)) {
             let result = &mut results[force.obstacle as usize];
-            let along = force.force.dot(normal);
             result.nodes += 1;
             result.force += force.force;
             result.normal_force += along;
@@ -180,20 +177,22 @@ impl NearPanels<'_> {
     }
 }
 
-/// Normals where the nodes that touch are, by the values of the displacement.
-fn normals(
+/// The parts of the forces along the normals \[N\], where the nodes that touch are by the values
+/// of the displacement.
+fn along_normals(
     plan: &ContactPlan,
     discretisation: &Discretisation,
     forces: &[ContactForce],
     u: &[f64],
-) -> Result<Vec<Vector3>, Error> {
+) -> Result<Vec<f64>, Error> {
     let positions = &discretisation.cloud.positions;
     let components = u.len() / positions.len();
     let touching: Vec<Vector3> =
         forces.iter().map(|force| positions[force.node as usize]).collect();
     let rows = discretisation.rows_at(&touching)?;
     let places = touching.iter().enumerate().map(|(i, X)| X + rows.interpolate(i, u, components));
-    Ok(plan.normals(forces, places, components).collect())
+    let normals = plan.normals(forces, places, components);
+    Ok(forces.iter().zip(normals).map(|(force, normal)| force.force.dot(&normal)).collect())
 }
 
 impl ContactPlan {

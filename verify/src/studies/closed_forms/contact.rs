@@ -4,14 +4,14 @@
 
 use super::results::Results;
 use crate::exact::hertz;
-use crate::run::{Solved, integrate, prepare};
+use crate::run::{Solved, contact_results, integrate, prepare};
 use crate::specimens::simple::{free_body, recipe, tissue};
 use crate::studies::workbench::Workbench;
 use anyhow::{Context, Result};
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Extent, Selector, Shape};
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
-use mtled::model::contact::{ContactResult, ContactSurface};
+use mtled::model::contact::ContactResult;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{
     Amplitude, BodyForce, Cloud, Dimension, EssentialCondition, Field, Friction, Gradients, Motion,
@@ -69,11 +69,7 @@ struct Rest {
 impl Rest {
     fn of(problem: &Problem) -> Result<Rest> {
         let solved = integrate(problem, prepare(problem)?, &mut Unobserved)?;
-        let (discretisation, plan) =
-            (&solved.prepared.discretisation, &solved.prepared.model.contact);
-        let surface = ContactSurface::new(problem, discretisation)?;
-        let (forces, u) = (solved.state.contact_forces(), &solved.state.displacement);
-        let contact = surface.results(plan, discretisation, &forces, u)?.into_iter().next();
+        let contact = contact_results(problem, &solved.prepared, &solved.state)?.into_iter().next();
         Ok(Rest { contact: contact.context("there is no obstacle")?, solved })
     }
 
