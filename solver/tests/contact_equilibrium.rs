@@ -84,6 +84,26 @@ fn what_obstacles_exert_balances_the_loads() {
 }
 
 /// A ball in a larger hollow one, which it touches nowhere at first.
+#[test]
+fn nodes_on_planes_of_symmetry_touch_obstacles() {
+    let relaxation = Relaxation { tolerance: 1e-6, ..Relaxation::default() };
+    // Relaxation holds parameters of nodes, not values.
+    for (motion, deepest) in [(newton(), 1e-9), (Motion::Static(relaxation), 2e-4 * EDGE)] {
+        let mut problem = Problem { motion, ..resting(0.3) };
+        for axis in [0, 1] {
+            let sideways = [0, 1, 2].map(|k| (k == axis).then_some(0.0));
+            problem.conditions.push(condition("symmetry", face(axis, 0.0), sideways));
+        }
+        let solved = solve(&problem);
+        let forces = solved.state.contact_forces();
+        let force: Vector3 = forces.iter().map(|contact| contact.force).sum();
+        let on_floor = solved.model.positions.iter().filter(|X| X.z == 0.0).count();
+        assert_eq!(forces.len(), on_floor);
+        assert!(smallest_gap(&solved) > -deepest, "{:e} m", smallest_gap(&solved));
+        assert!((force / weight(&solved.model) - Vector3::z()).norm() < 1e-4, "{force:?}");
+    }
+}
+
 fn ball_in_a_ball(friction: Friction) -> Problem {
     let mut problem = with_law(cube(10), neo_hookean(3000.0, 0.45));
     problem.body = Shape::Sphere { centre: Vector3::zeros(), radius: 0.5 * EDGE };

@@ -141,9 +141,9 @@ fn a_condition_that_drives_nodes_into_an_obstacle_is_refused_with_the_time() {
 }
 
 #[test]
-fn nodes_that_contact_does_not_see_are_reported_where_they_end_inside_an_obstacle() {
+fn nodes_that_an_obstacle_cannot_push_are_reported_where_they_end_inside_it() {
     let mut problem = stretched(0.0);
-    problem.conditions[1] = condition("guide", face(1, EDGE), [Some(0.0), None, None]);
+    problem.conditions[1] = condition("guide", face(1, EDGE), [None, Some(0.0), None]);
     problem.obstacles.push(floor(-(EDGE + 0.01), -Vector3::y(), Friction::Frictionless));
     let (_, model) = build(&problem);
     let moved = |by: f64| field(&model, |X| Vector3::y() * (X.y / EDGE * by));

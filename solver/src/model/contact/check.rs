@@ -134,12 +134,12 @@ fn is_empty(obstacle: &Obstacle) -> bool {
 
 impl ContactPlan {
     /// Warnings of nodes that are inside an obstacle at nodal parameters `u` \[component of
-    /// node\] \[m\] because conditions constrain them and contact does not see them.
+    /// node\] \[m\] because conditions hold them in the way in which the obstacle would push.
     pub fn penetrations(&self, positions: &[Vector3], u: &[f64]) -> Vec<Warning> {
         let components = u.len() / positions.len();
         let spacing = vec![self.skin; positions.len()];
         let warning = |obstacle: &Obstacle| {
-            let gaps = self.excluded.iter().map(|&node| {
+            let gaps = self.held.iter().map(|&node| {
                 let node = node as usize;
                 (node, gap(obstacle, &(positions[node] + vector_at(u, node, components))))
             });

@@ -5,6 +5,6 @@ mod plan;
 mod report;
 
 pub(crate) use check::check_obstacles;
+pub(crate) use plan::{Components, normal, onto_surface};
 pub use plan::{ContactForce, ContactPlan, ContactState, gap};
-pub(crate) use plan::{normal, onto_surface};
 pub use report::{ContactResult, ContactSurface};

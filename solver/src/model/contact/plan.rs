@@ -8,19 +8,25 @@ use crate::model::essential::Constraints;
 use crate::problem::{Friction, Obstacle, ObstacleSide, Problem};
 
 /// The obstacles of a problem and the nodes that may touch them: boundary nodes of
-/// which no component is prescribed for ever. A node with a single component that
-/// is never released may therefore enter an obstacle ([`ContactPlan::penetrations`]).
+/// which some component is not prescribed for ever. Obstacles push them in such components
+/// only, as on a plane of symmetry; where an obstacle faces along the others, a node may
+/// therefore enter it ([`ContactPlan::penetrations`]).
 #[derive(Debug, Clone, Default)]
 pub struct ContactPlan {
     /// As stated in the problem; in a plane their sections.
     pub obstacles: Vec<Obstacle>,
-    /// Boundary nodes without a permanently prescribed component.
+    /// Boundary nodes with a component that is not prescribed for ever.
     pub nodes: Vec<u32>,
-    /// The other boundary nodes.
-    pub excluded: Vec<u32>,
+    /// Boundary nodes with a component that is.
+    pub held: Vec<u32>,
+    /// Which components obstacles may push \[node\]\[component\].
+    free: Vec<Components>,
     /// Candidates are searched again when the body may have moved so far \[m\].
     pub skin: f64,
 }
+
+/// A choice of components.
+pub(crate) type Components = [bool; 3];
 
 /// The state of contact, which evolves from step to step.
 #[derive(Debug, Clone, Default)]
@@ -61,8 +67,17 @@ impl ContactPlan {
         if problem.obstacles.is_empty() {
             return Ok(ContactPlan::default());
         }
-        let boundary = (0..cloud.positions.len() as u32).filter(|n| cloud.on_boundary[*n as usize]);
-        let (excluded, nodes) = boundary.partition(|node| constraints.always_constrained(*node));
+        let components = problem.dimension.components();
+        let all = 0..cloud.positions.len() as u32;
+        let free: Vec<Components> = (all.clone())
+            .map(|node| {
+                [0, 1, 2].map(|k| k < components && !constraints.always_prescribes(node, k))
+            })
+            .collect();
+        let boundary = || all.clone().filter(|node| cloud.on_boundary[*node as usize]);
+        let count = |node: u32| free[node as usize].iter().filter(|free| **free).count();
+        let nodes = boundary().filter(|node| count(*node) > 0).collect();
+        let held = boundary().filter(|node| count(*node) < components).collect();
         let skin = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
         let section = |obstacle: &Obstacle| -> Result<Obstacle, Error> {
             let shape = obstacle.shape.section(&problem.dimension)?;
@@ -71,9 +86,15 @@ impl ContactPlan {
         Ok(ContactPlan {
             obstacles: problem.obstacles.iter().map(section).collect::<Result<_, _>>()?,
             nodes,
-            excluded,
+            held,
+            free,
             skin,
         })
+    }
+
+    /// Which components of a node obstacles may push.
+    pub(crate) fn free(&self, node: u32) -> Components {
+        self.free[node as usize]
     }
 }
 
@@ -93,10 +114,12 @@ impl ContactPlan {
                 if gap(obstacle, &x) < CLOSED * self.skin {
                     match obstacle.friction {
                         Friction::Frictionless => {
-                            closed.push((X, normal(obstacle, &x, components)));
+                            closed.push((X, normal(obstacle, &x, self.free(node))));
                         }
                         Friction::NoSlip => {
-                            closed.extend((0..components).map(|k| (X, Vector3::ith(k, 1.0))));
+                            let free = self.free(node);
+                            let along = (0..3).filter(|k| free[*k]);
+                            closed.extend(along.map(|k| (X, Vector3::ith(k, 1.0))));
                         }
                     }
                 }
@@ -116,16 +139,20 @@ pub fn gap(obstacle: &Obstacle, x: &Vector3) -> f64 {
     }
 }
 
-/// The unit normal that points out of the obstacle towards the body.
-pub(crate) fn normal(obstacle: &Obstacle, x: &Vector3, components: usize) -> Vector3 {
-    let mut normal = obstacle.shape.gradient(x);
-    if obstacle.side == ObstacleSide::Inside {
-        normal = -normal;
-    }
-    if components == 2 {
-        normal.z = 0.0;
-    }
-    normal.try_normalize(1e-12).unwrap_or_else(Vector3::zeros)
+/// Least part of a normal in the free components, over its length, with which an obstacle
+/// pushes \[–\].
+const PUSHES: f64 = 0.1;
+
+/// The unit normal that points out of the obstacle towards the body, in the free components
+/// (method book, eq. 16.3); zero where the obstacle faces along the others.
+pub(crate) fn normal(obstacle: &Obstacle, x: &Vector3, free: Components) -> Vector3 {
+    let outward = match obstacle.side {
+        ObstacleSide::Outside => obstacle.shape.gradient(x),
+        ObstacleSide::Inside => -obstacle.shape.gradient(x),
+    };
+    let part = Vector3::from_fn(|k, _| if free[k] { outward[k] } else { 0.0 });
+    let least = (PUSHES * outward.norm()).max(1e-12);
+    part.try_normalize(least).unwrap_or_else(Vector3::zeros)
 }
 
 /// Gap left after a node is moved to the surface, over the depth of its entry \[–\].
@@ -133,17 +160,17 @@ const LEFT_OPEN: f64 = 1e-6;
 /// Secants towards the surface; a gap that is a distance needs none.
 const MOST_SECANTS: usize = 6;
 
-/// Moves `x` \[m\], where the gap is `opening` \[m\], along the normal to the surface. A gap
-/// that is not a distance, as between the samples of a label map, would leave it beside
+/// Moves `x` \[m\], where the gap is `opening` \[m\], along the normal to the surface; where that
+/// is zero, `x` stays. A gap that is not a distance, as between the samples of a label map, would leave it beside
 /// the surface by a length in proportion to its last move, and each change of the step or
 /// of the damping would strike all nodes in contact.
 pub(crate) fn onto_surface(
     obstacle: &Obstacle,
     x: &Vector3,
     opening: f64,
-    components: usize,
+    free: Components,
 ) -> Vector3 {
-    let n = normal(obstacle, x, components);
+    let n = normal(obstacle, x, free);
     let (mut last, mut moved) = ((0.0, opening), -opening);
     for _ in 0..MOST_SECANTS {
         let left = gap(obstacle, &(x + n * moved));
@@ -181,7 +208,7 @@ impl ContactState {
             let (index, node) = self.candidates[i];
             let obstacle = &plan.obstacles[index as usize];
             let x = positions[node as usize] + vector_at(u, node as usize, components);
-            let Some(target) = self.target(obstacle, index, node, &x, components) else {
+            let Some(target) = self.target(obstacle, (index, node), &x, plan.free(node)) else {
                 continue;
             };
             self.touching.push(node);
@@ -195,27 +222,32 @@ impl ContactState {
     }
 
     /// Where a node at `x` that has entered the obstacle is moved to: the nearest
-    /// point of the surface, or the place where it sticks.
+    /// point of the surface, or the place where it sticks. None if the obstacle cannot push it.
     fn target(
         &mut self,
         obstacle: &Obstacle,
-        index: u32,
-        node: u32,
+        pair: (u32, u32),
         x: &Vector3,
-        components: usize,
+        free: Components,
     ) -> Option<Vector3> {
         let opening = gap(obstacle, x);
-        let stuck = self.anchors.iter().position(|anchor| (anchor.0, anchor.1) == (index, node));
+        let stuck = self.anchors.iter().position(|anchor| (anchor.0, anchor.1) == pair);
         if opening >= 0.0 {
             stuck.map(|index| self.anchors.swap_remove(index));
             return None;
         }
-        let nearest = onto_surface(obstacle, x, opening, components);
+        let nearest = onto_surface(obstacle, x, opening, free);
+        if nearest == *x {
+            return None;
+        }
         match (obstacle.friction, stuck) {
             (Friction::Frictionless, _) => Some(nearest),
-            (Friction::NoSlip, Some(index)) => Some(self.anchors[index].2),
+            (Friction::NoSlip, Some(index)) => {
+                let anchor = &self.anchors[index].2;
+                Some(Vector3::from_fn(|k, _| if free[k] { anchor[k] } else { x[k] }))
+            }
             (Friction::NoSlip, None) => {
-                self.anchors.push((index, node, nearest));
+                self.anchors.push((pair.0, pair.1, nearest));
                 Some(nearest)
             }
         }

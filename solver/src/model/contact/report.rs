@@ -128,7 +128,7 @@ impl ContactSurface {
                 normal: (cofactor(&F) * panel.normal).normalize(),
             }
         };
-        Ok(NearPanels { panels: panels.into_iter().enumerate().map(now).collect(), components })
+        Ok(NearPanels { panels: panels.into_iter().enumerate().map(now).collect() })
     }
 }
 
@@ -144,7 +144,6 @@ struct NearPanel<'a> {
 
 struct NearPanels<'a> {
     panels: Vec<NearPanel<'a>>,
-    components: usize,
 }
 
 impl NearPanels<'_> {
@@ -155,7 +154,7 @@ impl NearPanels<'_> {
         let area = |force: &ContactForce| {
             let obstacle = &plan.obstacles[force.obstacle as usize];
             let faces = |near: &&&NearPanel| {
-                let towards = normal(obstacle, &near.place, self.components);
+                let towards = normal(obstacle, &near.place, plan.free(force.node));
                 near.normal.dot(&towards) <= -FACING
             };
             let own = panels_of.get(&force.node).into_iter().flatten();
@@ -191,7 +190,7 @@ fn along_normals(
         forces.iter().map(|force| positions[force.node as usize]).collect();
     let rows = discretisation.rows_at(&touching)?;
     let places = touching.iter().enumerate().map(|(i, X)| X + rows.interpolate(i, u, components));
-    let normals = plan.normals(forces, places, components);
+    let normals = plan.normals(forces, places);
     Ok(forces.iter().zip(normals).map(|(force, normal)| force.force.dot(&normal)).collect())
 }
 
@@ -202,9 +201,9 @@ impl ContactPlan {
         &self,
         forces: &[ContactForce],
         places: impl Iterator<Item = Vector3>,
-        components: usize,
     ) -> impl Iterator<Item = Vector3> {
-        let obstacle = |force: &ContactForce| &self.obstacles[force.obstacle as usize];
-        forces.iter().zip(places).map(move |(force, x)| normal(obstacle(force), &x, components))
+        forces.iter().zip(places).map(|(force, x)| {
+            normal(&self.obstacles[force.obstacle as usize], &x, self.free(force.node))
+        })
     }
 }

@@ -139,11 +139,6 @@ impl Constraints {
         self.stage(from) == self.stage(to) && self.conditions.iter().all(still)
     }
 
-    /// Whether a component of a node is prescribed and never released.
-    pub fn always_constrained(&self, node: u32) -> bool {
-        self.last().iter().any(|set| set.constrains(node))
-    }
-
     /// Whether one component of a node is prescribed and never released.
     pub fn always_prescribes(&self, node: u32, component: usize) -> bool {
         self.last().iter().any(|set| set.component == component && set.constrains(node))

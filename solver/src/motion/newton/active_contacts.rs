@@ -4,7 +4,7 @@
 use super::free_space::{ContactRow, place};
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::model::Model;
-use crate::model::contact::{ContactForce, gap, normal, onto_surface};
+use crate::model::contact::{Components, ContactForce, gap, normal, onto_surface};
 use crate::problem::{Friction, Obstacle};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -73,15 +73,17 @@ impl ActiveContacts {
         u: &[f64],
         known: &BTreeSet<(u32, u32)>,
     ) -> usize {
-        let d = model.components;
         let count = self.contacts.len();
         for (obstacle, shape) in (0..).zip(&model.contact.obstacles) {
             for &node in &model.contact.nodes {
-                let x = place(model, node, u);
+                let (x, free) = (place(model, node, u), model.contact.free(node));
                 let depth = -gap(shape, &x);
-                if depth > ENTERED * model.contact.skin && !known.contains(&(obstacle, node)) {
+                let entered = depth > ENTERED * model.contact.skin
+                    && !known.contains(&(obstacle, node))
+                    && normal(shape, &x, free) != Vector3::zeros();
+                if entered {
                     let anchor = (shape.friction == Friction::NoSlip)
-                        .then(|| crossing(shape, &place(model, node, before), &x, d));
+                        .then(|| crossing(shape, &place(model, node, before), &x, free));
                     self.contacts.push(Contact { obstacle, node, anchor });
                 }
             }
@@ -92,20 +94,20 @@ impl ActiveContacts {
 
     /// What the closed contacts prescribe at displacements `u` \[m\].
     pub fn rows(&self, model: &Model, u: &[f64]) -> Vec<ContactRow> {
-        let d = model.components;
         let mut rows = Vec::new();
         for (index, contact) in self.contacts.iter().enumerate() {
             let obstacle = &model.contact.obstacles[contact.obstacle as usize];
-            let x = place(model, contact.node, u);
+            let (x, free) = (place(model, contact.node, u), model.contact.free(contact.node));
             let row =
                 |along: Vector3, way| ContactRow { contact: index, node: contact.node, along, way };
             match contact.anchor {
                 Some(anchor) => {
-                    rows.extend((0..d).map(|k| row(Vector3::ith(k, 1.0), anchor[k] - x[k])))
+                    let along = (0..3).filter(|k| free[*k]);
+                    rows.extend(along.map(|k| row(Vector3::ith(k, 1.0), anchor[k] - x[k])))
                 }
                 None => {
-                    let along = normal(obstacle, &x, d);
-                    let target = onto_surface(obstacle, &x, gap(obstacle, &x), d);
+                    let along = normal(obstacle, &x, free);
+                    let target = onto_surface(obstacle, &x, gap(obstacle, &x), free);
                     rows.push(row(along, (target - x).dot(&along)));
                 }
             }
@@ -138,21 +140,21 @@ impl ActiveContacts {
         forces: &[ContactForce],
         only_resisting: bool,
     ) -> Vec<(u32, Matrix3)> {
-        let (d, step) = (model.components, SLIDING_STEP * model.contact.skin);
+        let step = SLIDING_STEP * model.contact.skin;
         let mut found = Vec::new();
         for (contact, force) in self.contacts.iter().zip(forces) {
             if contact.anchor.is_some() {
                 continue;
             }
             let obstacle = &model.contact.obstacles[contact.obstacle as usize];
-            let x = place(model, contact.node, u);
-            let n = normal(obstacle, &x, d);
+            let (x, free) = (place(model, contact.node, u), model.contact.free(contact.node));
+            let n = normal(obstacle, &x, free);
             let lambda = force.force.dot(&n).max(0.0);
-            let turn = Matrix3::from_columns(&[0, 1, 2].map(|k| match k < d {
+            let turn = Matrix3::from_columns(&[0, 1, 2].map(|k| match free[k] {
                 true => {
                     let aside = step * Vector3::ith(k, 1.0);
-                    let ahead = normal(obstacle, &(x + aside), d);
-                    (ahead - normal(obstacle, &(x - aside), d)) / (2.0 * step)
+                    let ahead = normal(obstacle, &(x + aside), free);
+                    (ahead - normal(obstacle, &(x - aside), free)) / (2.0 * step)
                 }
                 false => Vector3::zeros(),
             }));
@@ -172,18 +174,13 @@ impl ActiveContacts {
     /// The parts of forces along the normals, positive where the obstacle pushes \[N\].
     pub fn normal_forces(&self, model: &Model, u: &[f64], forces: &[ContactForce]) -> Vec<f64> {
         let places = forces.iter().map(|force| place(model, force.node, u));
-        let normals = model.contact.normals(forces, places, model.components);
+        let normals = model.contact.normals(forces, places);
         normals.zip(forces).map(|(normal, force)| normal.dot(&force.force)).collect()
     }
 }
 
 /// Where the way from `outside` to `inside` \[m\] enters an obstacle.
-fn crossing(
-    obstacle: &Obstacle,
-    outside: &Vector3,
-    inside: &Vector3,
-    components: usize,
-) -> Vector3 {
+fn crossing(obstacle: &Obstacle, outside: &Vector3, inside: &Vector3, free: Components) -> Vector3 {
     let (mut low, mut high) = (0.0, 1.0);
     if gap(obstacle, outside) > 0.0 {
         for _ in 0..40 {
@@ -195,5 +192,5 @@ fn crossing(
         }
     }
     let x = outside.lerp(inside, high);
-    onto_surface(obstacle, &x, gap(obstacle, &x), components)
+    onto_surface(obstacle, &x, gap(obstacle, &x), free)
 }
