@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use mtled_checks::report::{bound_text, four_digits, read_report};
-use mtled_checks::study::{Check, Report};
+use mtled_checks::study::{Check, Outcome, Report};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -31,7 +31,11 @@ fn to_markdown(report: &Report) -> String {
         text,
         "\nSuite {}: {}, in {:.0} s on {} with {} threads, mtled {} ({}), {}.",
         report.suite,
-        if report.passed() { "passed" } else { "failed" },
+        match report.outcome() {
+            Outcome::Passed => "passed",
+            Outcome::Inconclusive => "inconclusive",
+            Outcome::Failed | Outcome::CouldNotRun => "failed",
+        },
         report.wall_seconds,
         p.processor,
         p.threads,

@@ -43,6 +43,7 @@ pub fn from_own_runs(
             four_digits(*fine),
             four_digits(*coarse)
         ),
+        disagreements: Vec::new(),
     })
 }
 

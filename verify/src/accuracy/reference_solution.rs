@@ -5,8 +5,11 @@ use super::finest::{FinestField, finest};
 use super::group::Group;
 use crate::bundled::REFERENCES;
 use crate::reference::agreement::rms_of_points;
-use crate::reference::{ReferenceError, ReferenceValues, agreements, read_reference};
+use crate::reference::{
+    Agreement, Quantity, ReferenceError, ReferenceValues, agreements, read_reference,
+};
 use crate::scene::Case;
+use mtled_checks::report::four_digits;
 
 /// Values with error bars that a run is compared with.
 #[derive(Debug, Clone)]
@@ -17,6 +20,8 @@ pub struct ReferenceSolution {
     pub quantities: Vec<ReferenceValues>,
     /// Where they come from, for reports.
     pub source: String,
+    /// Quantities in which its codes differ by more than their error bars, each with by how much.
+    pub disagreements: Vec<(Quantity, String)>,
 }
 
 impl ReferenceSolution {
@@ -29,10 +34,19 @@ impl ReferenceSolution {
     ) -> Result<ReferenceSolution, ReferenceError> {
         let file = read_reference(case, text)?;
         let codes: Vec<&str> = file.solutions.iter().map(|s| s.code.as_str()).collect();
+        let agreements = agreements(case, &file);
+        let apart = agreements.iter().filter(|agreement| !agreement.agrees());
+        let disagreement = |agreement: &Agreement| {
+            let (name, times) = (&agreement.quantity.name, four_digits(agreement.ratio()));
+            let codes = codes.join(" and ");
+            let text = format!("{codes} differ in {name} by {times} times their error bars");
+            (agreement.quantity.clone(), text)
+        };
         Ok(ReferenceSolution {
             times: file.times_s.clone(),
-            quantities: agreements(case, &file).iter().map(|a| a.reference()).collect(),
+            quantities: agreements.iter().map(|a| a.reference()).collect(),
             source: format!("finite elements ({}), {name}", codes.join(" and ")),
+            disagreements: apart.map(disagreement).collect(),
         })
     }
 
@@ -58,6 +72,12 @@ impl ReferenceSolution {
         known.values = finest.values;
         known.errors = finest.errors;
         self.source += &format!("; {} on a finer mesh ({})", finest.quantity, finest.source);
+    }
+
+    /// How the codes of the reference disagree in quantities of a group.
+    pub fn disagreements(&self, case: &Case, group: Group) -> Vec<&str> {
+        let own = self.disagreements.iter().filter(|(quantity, _)| group.holds(case, quantity));
+        own.map(|(_, text)| text.as_str()).collect()
     }
 
     /// What is compared where the user names nothing: the first group with a reference.

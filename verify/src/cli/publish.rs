@@ -22,7 +22,7 @@ pub fn report_of(suite: &str, study: Study, start: Instant) -> Report {
 }
 
 /// Writes a report to `out` and prints it as JSON or as `text` and the path of its page.
-/// The exit code is 0 if all checks pass, else 1.
+/// The exit code is that of its outcome.
 pub fn publish(
     report: &Report,
     out: &Path,
@@ -34,7 +34,7 @@ pub fn publish(
     common.print_summary(&|| Ok(json::to_json(report)), &|| {
         format!("{}\nreport: {}\n", text(), page.display())
     })?;
-    Ok(u8::from(!report.passed()))
+    Ok(report.outcome().exit_code())
 }
 
 /// The tables of the report of a single study as Markdown.

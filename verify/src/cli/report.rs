@@ -51,7 +51,10 @@ fn rebuild(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
         let table = human::to_table(&report, common.colours(), arguments.verbose);
         format!("{table}\nreport: {}\n", out.join("index.html").display())
     })?;
-    Ok(u8::from(arguments.baseline.is_some() && !report.passed()))
+    Ok(match arguments.baseline.is_some() {
+        true => report.outcome().exit_code(),
+        false => 0,
+    })
 }
 
 fn compare(arguments: &ReportArgs, later: &Path, common: &Common) -> anyhow::Result<u8> {

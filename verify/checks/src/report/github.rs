@@ -17,6 +17,10 @@ pub fn annotations(report: &Report, folder: &Path) -> Vec<String> {
             lines.push(command("error", &format!("{} could not run", study.id), reason));
         }
     }
+    for study in &report.studies {
+        let title = format!("{} is inconclusive", study.id);
+        lines.extend(study.undecided.iter().map(|question| command("warning", &title, question)));
+    }
     for check in report.checks().filter(|check| !check.pass) {
         let title = format!("{} fails", check.id);
         lines.push(command("error", &title, &failure(report, check, folder)));

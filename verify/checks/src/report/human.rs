@@ -4,7 +4,7 @@ use super::change::{band_text, change_text, remark_text, verdict_counts};
 use super::labels::{duration, failure_text, result_line, study_counts, unit_text};
 use super::number::{bound_text, four_digits};
 use crate::escape::printable;
-use crate::study::{Check, Comparison, Report, Study, Verdict};
+use crate::study::{Check, Comparison, Outcome, Report, Study, Verdict};
 use comfy_table::{
     Attribute, Cell, CellAlignment, Color, ContentArrangement, LineStyle, Table, presets,
 };
@@ -34,7 +34,7 @@ fn render(report: &Report, colour: bool, verbose: bool, width: u16) -> String {
         let _ = writeln!(text, "{}\n", study_table(report, colour, width));
     }
     text += &attention(report, colour, width);
-    let code = if report.passed() { "1;32" } else { "1;31" };
+    let code = colour_of(report.outcome()).1;
     let _ = writeln!(text, "{}", paint(&result_line(report), colour.then_some(code)));
     text
 }
@@ -48,6 +48,13 @@ fn attention(report: &Report, colour: bool, width: u16) -> String {
             let line = format!("COULD NOT RUN {}: {reason}", study.id);
             paragraph(&mut text, &printable(&line), width, red);
         }
+    }
+    for (study, question) in
+        report.studies.iter().flat_map(|s| s.undecided.iter().map(move |q| (s, q)))
+    {
+        let line = format!("INCONCLUSIVE {}: {question}", study.id);
+        let amber = colour_of(Outcome::Inconclusive).1;
+        paragraph(&mut text, &printable(&line), width, colour.then_some(amber));
     }
     for check in report.checks().filter(|check| !check.pass) {
         let line = format!("FAIL {}: {}", check.id, failure_text(check));
@@ -134,16 +141,11 @@ fn study_table(report: &Report, colour: bool, width: u16) -> Table {
     let row = |study: &Study| {
         let (passed, all) = study_counts(study);
         let counts = if all == 0 { "–".to_string() } else { format!("{passed} of {all}") };
-        let label = match (&study.failure, study.passed()) {
-            (Some(_), _) => "COULD NOT RUN",
-            (_, true) => "pass",
-            (_, false) => "FAIL",
-        };
         vec![
             Cell::new(printable(&study.title)),
             Cell::new(counts),
             Cell::new(duration(study.wall_seconds)),
-            verdict(label, study.passed(), colour),
+            verdict(study.outcome(), colour),
         ]
     };
     let rows = report.studies.iter().map(row).collect();
@@ -157,12 +159,20 @@ fn check_table(study: &Study, colour: bool, width: u16) -> Table {
     table(width, colour, &columns, rows, &[3, 4])
 }
 
-fn verdict(label: &str, pass: bool, colour: bool) -> Cell {
-    let cell = Cell::new(label);
-    match (colour, pass) {
-        (false, _) => cell,
-        (true, true) => cell.fg(Color::Green).add_attribute(Attribute::Bold),
-        (true, false) => cell.fg(Color::Red).add_attribute(Attribute::Bold),
+fn verdict(outcome: Outcome, colour: bool) -> Cell {
+    let cell = Cell::new(outcome.word());
+    match colour {
+        false => cell,
+        true => cell.fg(colour_of(outcome).0).add_attribute(Attribute::Bold),
+    }
+}
+
+/// Colour in tables, and its ANSI code.
+fn colour_of(outcome: Outcome) -> (Color, &'static str) {
+    match outcome {
+        Outcome::Passed => (Color::Green, "1;32"),
+        Outcome::Inconclusive => (Color::Yellow, "1;33"),
+        Outcome::Failed | Outcome::CouldNotRun => (Color::Red, "1;31"),
     }
 }
 
@@ -174,7 +184,7 @@ fn row(check: &Check, colour: bool) -> Vec<Cell> {
         Cell::new(four_digits(check.value)),
         Cell::new(bound_text(&check.bound)),
         Cell::new(printable(unit_text(&check.unit))),
-        verdict(if check.pass { "pass" } else { "FAIL" }, check.pass, colour),
+        verdict(check.outcome(), colour),
     ]
 }
 

@@ -1,7 +1,7 @@
 //! results.json: the whole report, one check and one study per line.
 
 use crate::escape::printable_json;
-use crate::study::{Comparison, Figure, Report, Study, Table};
+use crate::study::{Comparison, Figure, Outcome, Report, Study, Table};
 use serde::Serialize;
 
 /// Version of the file, stored in every [`Report`].
@@ -15,6 +15,8 @@ struct StudyLine<'a> {
     claim: &'a str,
     command: &'a str,
     passed: bool,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    undecided: &'a [String],
     failure: &'a Option<String>,
     wall_seconds: f64,
     notes: &'a [String],
@@ -32,6 +34,7 @@ pub fn to_json(report: &Report) -> String {
         ("suite", value(&report.suite)),
         ("provenance", value(&report.provenance)),
         ("passed", value(&report.passed())),
+        ("outcome", value(&report.outcome().word().to_lowercase())),
         ("wall_seconds", value(&report.wall_seconds)),
         ("checks", list(&checks)),
         ("studies", list(&studies)),
@@ -56,7 +59,8 @@ fn line(study: &Study) -> StudyLine<'_> {
         title: &study.title,
         claim: &study.claim,
         command: &study.command,
-        passed: study.passed(),
+        passed: study.outcome() == Outcome::Passed,
+        undecided: &study.undecided,
         failure: &study.failure,
         wall_seconds: study.wall_seconds,
         notes: &study.notes,

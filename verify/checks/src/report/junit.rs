@@ -34,9 +34,10 @@ pub fn to_junit(report: &Report) -> String {
     let mut xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n".to_string();
     let _ = writeln!(
         xml,
-        r#"<testsuites name="mtled {}" tests="{}" skipped="0" failures="{}" errors="{}"{}>"#,
+        r#"<testsuites name="mtled {}" tests="{}" skipped="{}" failures="{}" errors="{}"{}>"#,
         escape(&report.suite),
         all().count(),
+        count(all(), "skipped"),
         count(all(), "failure"),
         count(all(), "error"),
         time(report.wall_seconds)
@@ -55,11 +56,20 @@ fn cases(study: &Study) -> Vec<Case> {
             description: String::new(),
         }),
     });
+    let open = study.undecided.iter().enumerate().map(|(number, question)| Case {
+        name: format!("{}/inconclusive/{}", study.id, number + 1),
+        failure: Some(Failure {
+            element: "skipped",
+            kind: "inconclusive",
+            message: format!("inconclusive: {question}"),
+            description: String::new(),
+        }),
+    });
     let checks = study.checks.iter().map(|check| Case {
         name: check.id.clone(),
         failure: (!check.pass).then(|| failure(check)),
     });
-    broken.chain(checks).collect()
+    broken.chain(open).chain(checks).collect()
 }
 
 fn failure(check: &Check) -> Failure {
@@ -102,8 +112,9 @@ fn write_suite(xml: &mut String, (name, seconds, cases): &Suite) {
     let name = escape(name);
     let _ = writeln!(
         xml,
-        r#"    <testsuite name="{name}" tests="{}" skipped="0" errors="{}" failures="{}"{}>"#,
+        r#"    <testsuite name="{name}" tests="{}" skipped="{}" errors="{}" failures="{}"{}>"#,
         cases.len(),
+        count(cases.iter(), "skipped"),
         count(cases.iter(), "error"),
         count(cases.iter(), "failure"),
         time(*seconds)

@@ -15,6 +15,10 @@ pub(super) fn result_line(report: &Report) -> String {
     if broken > 0 {
         line += &format!(", {broken} {} could not run", plural(broken, "study", "studies"));
     }
+    let open = report.studies.iter().map(|study| study.undecided.len()).sum::<usize>();
+    if open > 0 {
+        line += &format!(", {open} {} inconclusive", plural(open, "question", "questions"));
+    }
     for (verdict, label) in [(Verdict::Worse, "got worse"), (Verdict::Missing, "missing")] {
         match report.comparison.as_ref().map_or(0, |comparison| comparison.count(verdict)) {
             0 => {}

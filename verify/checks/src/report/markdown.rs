@@ -4,7 +4,7 @@ use super::change::verdict_counts;
 use super::labels::{duration, failure_text, result_line, study_counts, unit_text};
 use super::markdown_table::{cell, change_table, code, code_cell, inline};
 use super::number::{bound_text, four_digits};
-use crate::study::{Cell, Check, Comparison, Provenance, Report, Study, Verdict};
+use crate::study::{Cell, Check, Comparison, Outcome, Provenance, Report, Study, Verdict};
 use std::fmt::Write;
 
 const DETAILS: &str = "<details>";
@@ -13,7 +13,7 @@ const DETAILS_END: &str = "</details>";
 /// Result, failures, changes, one line per study, and all checks in a folded block.
 pub fn to_markdown(report: &Report) -> String {
     let mut text = String::new();
-    let mark = mark(report.passed());
+    let mark = mark(report.outcome());
     let _ = writeln!(text, "## {mark} mtled {}: {}\n", inline(&report.suite), result_line(report));
     failures(&mut text, report);
     if let Some(comparison) = &report.comparison {
@@ -49,7 +49,7 @@ pub(super) fn without_details(text: &str) -> String {
 
 /// Changes compared with a baseline, the most urgent first.
 fn compared(text: &mut String, comparison: &Comparison) {
-    let mark = mark(comparison.holds());
+    let mark = mark(if comparison.holds() { Outcome::Passed } else { Outcome::Failed });
     let (with, counts) = (inline(&comparison.with), verdict_counts(comparison));
     let _ = writeln!(text, "### {mark} Beside {with}: {counts}\n");
     let changes = || comparison.changes.iter().filter(|c| c.verdict != Verdict::Same);
@@ -66,6 +66,16 @@ fn failures(text: &mut String, report: &Report) {
                 writeln!(text, "- ❌ **{}** could not run: {}", inline(&study.id), inline(reason));
         }
     }
+    for study in &report.studies {
+        for question in &study.undecided {
+            let _ = writeln!(
+                text,
+                "- ❔ **{}** is inconclusive: {}",
+                inline(&study.id),
+                inline(question)
+            );
+        }
+    }
     for check in report.checks().filter(|check| !check.pass) {
         let _ = writeln!(text, "- ❌ {}: {}", code(&check.id), inline(&failure_text(check)));
         if let Some(file) = check.failure_file() {
@@ -77,7 +87,7 @@ fn failures(text: &mut String, report: &Report) {
             );
         }
     }
-    if !report.bounds_hold() {
+    if report.studies.iter().any(|study| study.outcome() != Outcome::Passed) {
         text.push('\n');
     }
 }
@@ -94,7 +104,7 @@ fn studies(text: &mut String, report: &Report) {
         let _ = writeln!(
             text,
             "| {} | {} | {passed} of {all} | {} |",
-            mark(study.passed()),
+            mark(study.outcome()),
             cell(&study.title),
             duration(study.wall_seconds)
         );
@@ -109,7 +119,7 @@ fn checks<'a>(text: &mut String, checks: impl Iterator<Item = &'a Check>) {
         let _ = writeln!(
             text,
             "| {} | {} | {} | {} | {} | {} | {} |",
-            mark(check.pass),
+            mark(check.outcome()),
             code_cell(&check.id),
             cell(&check.quantity),
             check.kind.name(),
@@ -120,13 +130,20 @@ fn checks<'a>(text: &mut String, checks: impl Iterator<Item = &'a Check>) {
     }
 }
 
-fn mark(pass: bool) -> &'static str {
-    if pass { "✅" } else { "❌" }
+fn mark(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Passed => "✅",
+        Outcome::Inconclusive => "❔",
+        Outcome::Failed | Outcome::CouldNotRun => "❌",
+    }
 }
 
 /// The tables and notes of a study.
 pub fn markdown_tables(study: &Study, provenance: &Provenance) -> String {
     let mut text = format!("# {}\n\n{}\n", inline(&study.title), inline(&study.claim));
+    for question in &study.undecided {
+        let _ = write!(text, "\n**Inconclusive:** {}\n", inline(question));
+    }
     for table in &study.tables {
         let _ = write!(text, "\n## {}\n\n", inline(&table.title));
         let headings = table.columns.iter().map(|column| match column.unit.as_str() {

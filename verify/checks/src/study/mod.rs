@@ -4,6 +4,7 @@ mod check;
 mod comparison;
 mod figure;
 mod nan_as_null;
+mod outcome;
 mod report;
 mod table;
 
@@ -13,5 +14,6 @@ pub use figure::{
     Axis, ColourScale, Drawing, Figure, Layer, LayerStyle, Panels, Plot, Series, SeriesStyle, axis,
     curve, line, names_axis, styled,
 };
+pub use outcome::Outcome;
 pub use report::{Provenance, Report, Study};
 pub use table::{Cell, Column, Table, number, text};

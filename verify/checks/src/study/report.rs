@@ -31,6 +31,9 @@ pub struct Study {
     pub leading: usize,
     /// Findings that are not gated, a paragraph each.
     pub notes: Vec<String>,
+    /// Questions that it could not decide, each with the reason and what would decide it.
+    #[serde(default)]
+    pub undecided: Vec<String>,
     /// Why it could not run; a skip is not a pass.
     pub failure: Option<String>,
     /// \[s\]
@@ -75,26 +78,9 @@ pub struct Provenance {
     pub date: String,
 }
 
-impl Study {
-    /// Whether it ran and all its checks passed.
-    pub fn passed(&self) -> bool {
-        self.failure.is_none() && self.checks.iter().all(|check| check.pass)
-    }
-}
-
 impl Report {
     /// All checks of all studies.
     pub fn checks(&self) -> impl Iterator<Item = &Check> {
         self.studies.iter().flat_map(|study| &study.checks)
-    }
-
-    /// Whether every study ran, every bound is kept and nothing got worse.
-    pub fn passed(&self) -> bool {
-        self.bounds_hold() && self.comparison.as_ref().is_none_or(Comparison::holds)
-    }
-
-    /// Whether every study ran and every bound is kept.
-    pub fn bounds_hold(&self) -> bool {
-        self.studies.iter().all(Study::passed)
     }
 }

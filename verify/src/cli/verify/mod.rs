@@ -3,7 +3,7 @@
 mod gate;
 mod progress;
 
-use super::common::{COULD_NOT_RUN, Common, STOPPED};
+use super::common::{Common, STOPPED};
 use crate::machine::provenance;
 use crate::studies::workbench::{Suite, Workbench};
 use crate::studies::{Definition, STUDIES};
@@ -72,12 +72,7 @@ pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
         let table = human::to_table(&report, common.colours(), arguments.verbose);
         format!("{table}\nreport: {}\n", arguments.out.join("index.html").display())
     })?;
-    let could_run = report.studies.iter().all(|study| study.failure.is_none());
-    Ok(match (report.passed(), could_run) {
-        (true, _) => 0,
-        (false, true) => 1,
-        (false, false) => COULD_NOT_RUN,
-    })
+    Ok(report.outcome().exit_code())
 }
 
 fn chosen(only: Option<&str>) -> anyhow::Result<Vec<&'static Definition>> {

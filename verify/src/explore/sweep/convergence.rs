@@ -6,8 +6,9 @@ use super::tables::{OUTCOME, ending};
 use crate::explore::label::{optional, percent};
 use crate::explore::store::RunRecord;
 use crate::scene::Knob;
-use mtled_checks::measure::log_log_fit;
+use mtled_checks::measure::{LogLogFit, log_log_fit};
 use mtled_checks::study::{Cell, Figure, Plot, Study, Table, axis, line, number, text};
+use std::collections::BTreeSet;
 
 /// A fitted order is reported only above this many times its standard deviation.
 const SIGNIFICANT: f64 = 2.0;
@@ -50,6 +51,14 @@ pub fn add_convergence(study: &mut Study, sweep: &Sweep, case: &MeasuredCase) {
     let families = families(sweep, case, &|record| error(record).map(|error| error.rms));
     let bar = case.records.iter().find_map(|record| Some(error(record)?.bar)).unwrap_or(0.0);
     study.tables.push(orders(case, &families, bar));
+    study.undecided.extend(reference.disagreements(&case.source.case, *group).into_iter().map(
+        |disagreement| {
+            format!("{}: {disagreement}; errors against it decide nothing", case.source.name)
+        },
+    ));
+    study.undecided.extend(families.iter().filter_map(|family| {
+        Some(format!("{}, {}: {}", case.source.name, family.0, undecided(sweep, family, bar)?))
+    }));
     study.figures.push(Figure::Plot(figure(case, group.label(), &families, bar)));
     study.notes.push(format!(
         "{}: errors are rms differences from the reference, over the largest value of their kind. \
@@ -80,10 +89,10 @@ fn families(
 
 fn orders(case: &MeasuredCase, families: &[Family], bar: f64) -> Table {
     let row = |(name, samples): &Family| {
-        let above: Vec<(f64, f64)> = samples.iter().copied().filter(|s| s.1 > bar).collect();
-        let fit = log_log_fit(&above).filter(|fit| fit.standard_deviation.is_finite());
+        let above = above(samples, bar);
+        let fit = fit(&above);
         let order = match fit {
-            Some(fit) if fit.slope > SIGNIFICANT * fit.standard_deviation => {
+            Some(fit) if is_order(&fit) => {
                 format!("{:.2} ± {:.2}", fit.slope, fit.standard_deviation)
             }
             Some(_) => "none: scatter".into(),
@@ -107,6 +116,53 @@ fn orders(case: &MeasuredCase, families: &[Family], bar: f64) -> Table {
             text("order"),
         ],
         rows: families.iter().map(row).collect(),
+    }
+}
+
+/// Errors that are larger than that of the reference.
+fn above(samples: &[(f64, f64)], bar: f64) -> Vec<(f64, f64)> {
+    samples.iter().copied().filter(|sample| sample.1 > bar).collect()
+}
+
+fn fit(above: &[(f64, f64)]) -> Option<LogLogFit> {
+    log_log_fit(above).filter(|fit| fit.standard_deviation.is_finite())
+}
+
+fn is_order(fit: &LogLogFit) -> bool {
+    fit.slope > SIGNIFICANT * fit.standard_deviation
+}
+
+/// Why the errors of a family show no order, and what would.
+fn undecided(sweep: &Sweep, (_, samples): &Family, bar: f64) -> Option<String> {
+    let above = above(samples, bar);
+    let spacings: BTreeSet<u64> = above.iter().map(|sample| sample.0.to_bits()).collect();
+    if above.is_empty() {
+        return Some(format!(
+            "no error is larger than that of the reference ({}), so no order can be told: take \
+             coarser spacings (--spacing) or a better reference (--reference)",
+            percent(bar)
+        ));
+    }
+    if spacings.len() < 2 {
+        return Some(format!(
+            "one spacing has errors above that of the reference ({}), and an order needs two: take \
+             more and coarser spacings (--spacing)",
+            percent(bar)
+        ));
+    }
+    match fit(&above) {
+        Some(fit) if is_order(&fit) && sweep.clouds == 1 => Some(
+            "the order of one cloud says nothing about its scatter over clouds: take three \
+             (--clouds 3)"
+                .into(),
+        ),
+        Some(fit) if is_order(&fit) => None,
+        Some(fit) => Some(format!(
+            "the fitted order, {:.2} ± {:.2}, scatters by more than half of itself: take more clouds \
+             (--clouds) or a wider range of spacings (--spacing)",
+            fit.slope, fit.standard_deviation
+        )),
+        None => Some("two errors show no scatter: take a third spacing (--spacing)".into()),
     }
 }
 

@@ -8,7 +8,8 @@ use super::number::{bound_text, four_digits};
 use super::svg;
 use crate::escape::printable_lines;
 use crate::study::{
-    Bound, Cell, Change, Check, Comparison, Kind, Provenance, Report, Study, Table, Verdict,
+    Bound, Cell, Change, Check, Comparison, Kind, Outcome, Provenance, Report, Study, Table,
+    Verdict,
 };
 use figures::{figure_value, leading_figures};
 use minijinja::{Environment, Value, context};
@@ -39,8 +40,10 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
         style => Value::from_safe_string(format!("{STYLE}{}", svg::STYLE)),
         script => Value::from_safe_string(SCRIPT.to_string()),
         suite => report.suite.as_str(),
-        passed => report.passed(),
+        outcome => class(report.outcome()),
+        mark => mark(report.outcome()),
         failed => !report.bounds_hold(),
+        open => report.studies.iter().any(|study| !study.undecided.is_empty()),
         compared => report.comparison.as_ref().map(comparison_value),
         verdict => result_line(report),
         judged => report.checks().next().is_some(),
@@ -59,6 +62,24 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
     Ok(printable_lines(&pages()?.get_template("index.html")?.render(page)?))
 }
 
+/// Class of the elements that show an outcome.
+fn class(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Passed => "pass",
+        Outcome::Inconclusive => "open",
+        Outcome::Failed | Outcome::CouldNotRun => "fail",
+    }
+}
+
+/// Sign of an outcome.
+fn mark(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Passed => "✓",
+        Outcome::Inconclusive => "?",
+        Outcome::Failed | Outcome::CouldNotRun => "✗",
+    }
+}
+
 fn study_value(study: &Study) -> Value {
     let (passed, all) = study_counts(study);
     let below = study.figures.iter().skip(study.leading);
@@ -71,7 +92,9 @@ fn study_value(study: &Study) -> Value {
         claim => study.claim.as_str(),
         command => study.command.as_str(),
         failure => study.failure.as_deref(),
-        pass => study.passed(),
+        outcome => class(study.outcome()),
+        word => study.outcome().word(),
+        undecided => study.undecided.iter().map(Value::from).collect::<Vec<_>>(),
         counts => if all == 0 { "figures only".into() } else { format!("{passed} of {all}") },
         failing => values(failing),
         passing => values(passing),

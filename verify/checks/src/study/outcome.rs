@@ -1,0 +1,116 @@
+//! How a study or a run of many ended.
+
+use super::check::Check;
+use super::report::{Report, Study};
+
+/// How a study or a run of many ended, the worst last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcome {
+    /// Every study ran, every bound is kept and nothing got worse.
+    Passed,
+    /// Nothing failed, but a question could not be decided.
+    Inconclusive,
+    /// A bound is broken, or a figure got worse or is missing.
+    Failed,
+    /// A study could not run; a skip is not a pass.
+    CouldNotRun,
+}
+
+impl Outcome {
+    /// As it is written in reports.
+    pub fn word(self) -> &'static str {
+        match self {
+            Outcome::Passed => "pass",
+            Outcome::Inconclusive => "inconclusive",
+            Outcome::Failed => "FAIL",
+            Outcome::CouldNotRun => "COULD NOT RUN",
+        }
+    }
+
+    /// Exit code of a program that ends so.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Outcome::Passed => 0,
+            Outcome::Failed => 1,
+            Outcome::CouldNotRun => 2,
+            Outcome::Inconclusive => 3,
+        }
+    }
+}
+
+impl Check {
+    /// Whether it passed or failed.
+    pub fn outcome(&self) -> Outcome {
+        if self.pass { Outcome::Passed } else { Outcome::Failed }
+    }
+}
+
+impl Study {
+    /// How it ended.
+    pub fn outcome(&self) -> Outcome {
+        if self.failure.is_some() {
+            Outcome::CouldNotRun
+        } else if self.checks.iter().any(|check| !check.pass) {
+            Outcome::Failed
+        } else if !self.undecided.is_empty() {
+            Outcome::Inconclusive
+        } else {
+            Outcome::Passed
+        }
+    }
+}
+
+impl Report {
+    /// How it ended, beside the baseline too.
+    pub fn outcome(&self) -> Outcome {
+        let studies = self.studies.iter().map(Study::outcome).max().unwrap_or(Outcome::Passed);
+        match self.comparison.as_ref().is_none_or(|comparison| comparison.holds()) {
+            true => studies,
+            false => studies.max(Outcome::Failed),
+        }
+    }
+
+    /// Whether every study ran, every question was decided, every bound is kept and nothing got
+    /// worse.
+    pub fn passed(&self) -> bool {
+        self.outcome() == Outcome::Passed
+    }
+
+    /// Whether every study ran and every bound is kept.
+    pub fn bounds_hold(&self) -> bool {
+        self.studies.iter().all(|study| study.outcome() < Outcome::Failed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::{Bound, Kind};
+
+    fn study(value: f64, undecided: &[&str], failure: Option<&str>) -> Study {
+        let bound = Bound::AtMost(1.0);
+        Study {
+            checks: vec![Check::new("a/b", "", Kind::Exact, value, bound, "1", "")],
+            undecided: undecided.iter().map(|text| text.to_string()).collect(),
+            failure: failure.map(String::from),
+            ..Study::default()
+        }
+    }
+
+    #[test]
+    fn an_open_question_is_no_pass_and_hides_no_failure() {
+        assert_eq!(study(0.5, &[], None).outcome(), Outcome::Passed);
+        assert_eq!(study(0.5, &["which is better"], None).outcome(), Outcome::Inconclusive);
+        assert_eq!(study(1.5, &["which is better"], None).outcome(), Outcome::Failed);
+        assert_eq!(
+            study(0.5, &["which is better"], Some("no file")).outcome(),
+            Outcome::CouldNotRun
+        );
+    }
+
+    #[test]
+    fn each_outcome_has_an_exit_code_of_its_own() {
+        let all = [Outcome::Passed, Outcome::Failed, Outcome::CouldNotRun, Outcome::Inconclusive];
+        assert_eq!(all.map(Outcome::exit_code), [0, 1, 2, 3]);
+    }
+}
