@@ -1,6 +1,6 @@
 //! Verification harness of the meshless solver `mtled`: case files
 //! ([`scene`]) become problems, runs ([`run`]) become results, studies
-//! ([`studies`], [`explore`], [`speed`]) become the plain data of [`mtled_checks::study`],
+//! ([`studies`], [`explore`], [`speed`], [`suite`]) become the plain data of [`mtled_checks::study`],
 //! and [`mtled_checks::report`] turns those into pages and files.
 
 // A module uses only modules above it.
@@ -22,5 +22,6 @@ pub mod studies;
 
 pub mod explore;
 pub mod speed;
+pub mod suite;
 
 pub mod cli;

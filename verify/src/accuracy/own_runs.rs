@@ -49,7 +49,7 @@ pub fn from_own_runs(
 
 /// The largest number of each family; moments against the largest force times the
 /// size of the body.
-fn scales(case: &Case, values: &[Vec<f64>]) -> BTreeMap<Family, f64> {
+pub(super) fn scales(case: &Case, values: &[Vec<f64>]) -> BTreeMap<Family, f64> {
     let mut largest: BTreeMap<Family, f64> = BTreeMap::new();
     for (quantity, values) in quantities(case).iter().zip(values) {
         let entry = largest.entry(quantity.family).or_default();

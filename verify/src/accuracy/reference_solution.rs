@@ -3,6 +3,7 @@
 use super::difference::{Difference, difference};
 use super::finest::{FinestField, finest};
 use super::group::Group;
+use super::own_reference::{is_own_reference, read_own_reference};
 use crate::bundled::REFERENCES;
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{
@@ -25,13 +26,16 @@ pub struct ReferenceSolution {
 }
 
 impl ReferenceSolution {
-    /// From a stored reference of two finite-element codes; the error says why it cannot
-    /// be used.
+    /// From a stored reference of two finite-element codes or of finer runs of this solver; the
+    /// error says why it cannot be used.
     pub fn from_file(
         case: &Case,
         text: &str,
         name: &str,
     ) -> Result<ReferenceSolution, ReferenceError> {
+        if is_own_reference(text) {
+            return read_own_reference(case, text, name);
+        }
         let file = read_reference(case, text)?;
         let codes: Vec<&str> = file.solutions.iter().map(|s| s.code.as_str()).collect();
         let agreements = agreements(case, &file);
@@ -80,12 +84,15 @@ impl ReferenceSolution {
         own.map(|(_, text)| text.as_str()).collect()
     }
 
+    /// Whether it has something of a group.
+    pub fn has(&self, case: &Case, group: Group) -> bool {
+        let own: Vec<Vec<f64>> = self.quantities.iter().map(|q| q.values.clone()).collect();
+        difference(case, group, &self.quantities, &own).is_some()
+    }
+
     /// What is compared where the user names nothing: the first group with a reference.
     pub fn group(&self, case: &Case) -> Option<Group> {
-        let own: Vec<Vec<f64>> = self.quantities.iter().map(|q| q.values.clone()).collect();
-        Group::ALL
-            .into_iter()
-            .find(|group| difference(case, *group, &self.quantities, &own).is_some())
+        Group::ALL.into_iter().find(|group| self.has(case, *group))
     }
 
     /// The difference of computed values.

@@ -4,6 +4,7 @@ mod bench;
 mod case;
 mod common;
 mod explore;
+mod init;
 mod inspect;
 mod load;
 mod messages;
@@ -28,7 +29,7 @@ use streams::{or_reader_has_ended, print_data};
 
 /// Meshless soft-tissue solver with its verification.
 ///
-/// Exit codes: 0 success, 1 a check failed, 2 could not run, 130 stopped by Ctrl-C (files are
+/// Exit codes: 0 success, 1 a check failed, 2 could not run, 3 inconclusive, 130 stopped by Ctrl-C (files are
 /// complete up to that moment). Data go to standard output, progress and messages to standard
 /// error; with --format json the first is one JSON document, the second one JSON object per line.
 #[derive(Debug, Parser)]
@@ -44,6 +45,8 @@ const EXAMPLES: &str = "Examples:
   mtled verify                                  check the solver, write reports/verify/index.html
   mtled verify --only brain --out brain_report  run one study
   mtled verify --baseline baseline.json         has anything got worse?
+  mtled init my_cases                           a gate for your own cases: suite, baseline, CI
+  mtled verify --suite my_cases/suite.toml      have errors or answers of these got worse?
   mtled report last_week reports/verify         compare two runs
   mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON files
   mtled warp reports/brain_slice --image t1.nii deform an image by the result of a run
@@ -68,6 +71,8 @@ enum Command {
     Inspect(inspect::InspectArgs),
     /// Run the verification studies and write their report.
     Verify(verify::VerifyArgs),
+    /// Write a suite of your own cases with references, bounds and a baseline, for a gate in CI.
+    Init(init::InitArgs),
     /// Estimate the error of a case, its parts, and the cost of reducing each.
     Budget(budget::BudgetArgs),
     /// Find the cheapest recipe with at most a given error, or the most accurate one for a given
@@ -161,6 +166,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Warp(arguments) => warp::warp(arguments, &cli.common),
         Command::Inspect(arguments) => inspect::inspect(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
+        Command::Init(arguments) => init::init(arguments, &cli.common),
         Command::Budget(arguments) => budget::budget(arguments, &cli.common),
         Command::Tune(arguments) => tune::tune_cases(arguments, &cli.common),
         Command::Report(arguments) => report::report(arguments, &cli.common),

@@ -3,15 +3,14 @@
 
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::document::Document;
-use crate::scene::format::CaseFormat;
 use crate::scene::nearest::nearest;
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use std::ops::Range;
 
 /// Reads the tables; the first mistake of a key or type is returned.
-pub fn deserialise(document: &Document) -> Result<CaseFormat, Diagnostic> {
+pub fn deserialise<T: DeserializeOwned>(document: &Document) -> Result<T, Diagnostic> {
     let reader = toml_edit::de::Deserializer::from(document.tree().clone());
-    CaseFormat::deserialize(reader).map_err(|error| located(document, &error))
+    T::deserialize(reader).map_err(|error| located(document, &error))
 }
 
 fn located(document: &Document, error: &toml_edit::de::Error) -> Diagnostic {

@@ -16,7 +16,9 @@ mod problem_hash;
 mod read;
 
 pub use case::{Case, Outputs, Probe, ProbeKind};
+pub(crate) use deserialise::deserialise;
 pub use diagnostic::{Diagnostic, Location, Mistakes, one_error};
+pub(crate) use document::Document;
 pub use edit::{EditError, NotAnOverride, Override, edited, with_absolute_paths};
 pub use knob::{Knob, Level, Levels, Setting};
 pub use migrate::migrated;

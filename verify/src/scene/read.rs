@@ -60,7 +60,7 @@ pub fn parse_overridden(
             return Err(mistakes);
         }
     }
-    let format = deserialise(&document).map_err(|mistake| vec![mistake])?;
+    let format: CaseFormat = deserialise(&document).map_err(|mistake| vec![mistake])?;
     build(&format, document, file_name, base_dir)
 }
 

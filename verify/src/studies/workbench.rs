@@ -18,6 +18,16 @@ pub enum Suite {
     Full,
 }
 
+impl Suite {
+    /// As it is written on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Suite::Quick => "quick",
+            Suite::Full => "full",
+        }
+    }
+}
+
 /// Distance between the random seeds of two families of clouds.
 const SEEDS_PER_FAMILY: u64 = 1000;
 /// Jitter of the lattices of bundled cases in other families \[spacing\].

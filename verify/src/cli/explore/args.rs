@@ -2,7 +2,7 @@
 
 use crate::accuracy::Group;
 use crate::explore::store::Store;
-use crate::explore::sweep::ReferenceSource;
+use crate::explore::sweep::{REFINEMENT, ReferenceSource};
 use anyhow::{Context, Result};
 use clap::Args;
 use mtled_checks::escape::file_name;
@@ -52,7 +52,7 @@ impl ErrorArgs {
     pub fn reference(&self) -> ReferenceSource {
         match self.reference.as_str() {
             "any" => ReferenceSource::Any,
-            "own" => ReferenceSource::Own,
+            "own" => ReferenceSource::Own(REFINEMENT),
             file => ReferenceSource::File(PathBuf::from(file)),
         }
     }
@@ -63,4 +63,24 @@ impl ErrorArgs {
             || path.iter().fold(PathBuf::from("reports"), |to, part| to.join(file_name(part)));
         self.out.clone().unwrap_or_else(preset)
     }
+}
+
+/// `1%` or `0.01`.
+pub fn fraction(text: &str) -> Result<f64, String> {
+    let fraction = with_unit(text, &[("%", 0.01)]).filter(|fraction| *fraction < 1.0);
+    fraction.ok_or_else(|| format!("{text} is not a fraction such as 1% or 0.01"))
+}
+
+/// `2s`, `500ms`, `3min` or `2`.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    let time = with_unit(text, &[("ms", 1e-3), ("min", 60.0), ("s", 1.0)]);
+    time.ok_or_else(|| format!("{text} is not a time such as 2s, 500ms or 3min"))
+}
+
+/// A positive number with the first unit that fits, or without one.
+fn with_unit(text: &str, units: &[(&str, f64)]) -> Option<f64> {
+    let mut parts = units.iter().filter_map(|(unit, size)| Some((text.strip_suffix(unit)?, *size)));
+    let (number, size) = parts.next().unwrap_or((text, 1.0));
+    let value = number.trim().parse::<f64>().ok()? * size;
+    (value > 0.0 && value.is_finite()).then_some(value)
 }

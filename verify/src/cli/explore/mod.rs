@@ -8,3 +8,5 @@ mod ranges;
 pub mod runs;
 pub mod sweep;
 pub mod tune;
+
+pub use args::{StoreArgs, seconds};

@@ -1,6 +1,6 @@
 //! `mtled tune`.
 
-use super::args::ErrorArgs;
+use super::args::{ErrorArgs, fraction, seconds};
 use super::ranges::Ranges;
 use crate::bundled::small_cases;
 use crate::cli::common::{Common, command_line};
@@ -60,26 +60,6 @@ const FRESH: usize = 3;
 
 /// The goal where the user gives none.
 const DEFAULT_GOAL: Goal = Goal::Error(0.02);
-
-/// `1%` or `0.01`.
-fn fraction(text: &str) -> Result<f64, String> {
-    let fraction = with_unit(text, &[("%", 0.01)]).filter(|fraction| *fraction < 1.0);
-    fraction.ok_or_else(|| format!("{text} is not a fraction such as 1% or 0.01"))
-}
-
-/// `2s`, `500ms` or `2`.
-fn seconds(text: &str) -> Result<f64, String> {
-    let time = with_unit(text, &[("ms", 1e-3), ("s", 1.0)]);
-    time.ok_or_else(|| format!("{text} is not a time such as 2s or 500ms"))
-}
-
-/// A positive number with the first unit that fits, or without one.
-fn with_unit(text: &str, units: &[(&str, f64)]) -> Option<f64> {
-    let mut parts = units.iter().filter_map(|(unit, size)| Some((text.strip_suffix(unit)?, *size)));
-    let (number, size) = parts.next().unwrap_or((text, 1.0));
-    let value = number.trim().parse::<f64>().ok()? * size;
-    (value > 0.0 && value.is_finite()).then_some(value)
-}
 
 pub fn tune_cases(arguments: &TuneArgs, common: &Common) -> Result<u8> {
     let store = arguments.error.store.open()?;

@@ -17,18 +17,19 @@ const BASELINE: &str = "reports/baseline.json";
 
 #[derive(Debug, Args)]
 pub struct GateArgs {
-    /// Compare every check with this file; exit code 1 if one got worse or is missing.
+    /// Compare every check with this file; exit code 1 if one got worse or is missing [default for a
+    /// suite of your own: the baseline that it names].
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
-    /// Update the baseline from this run instead [default file: reports/baseline.json]; lines of
-    /// unchanged checks stay as they are.
+    /// Update the baseline from this run instead [default file: reports/baseline.json, or that
+    /// of your own suite]; lines of unchanged checks stay as they are.
     #[arg(long, requires = "reason")]
     update_baseline: bool,
     /// Why the figures may change, for readers of the diff.
     #[arg(long, value_name = "TEXT", requires = "update_baseline")]
     reason: Option<String>,
     /// Runs of the same code on other node clouds (`mtled verify --seed`), whose scatter gives
-    /// the bands.
+    /// the bands. A suite of your own runs on some itself.
     #[arg(long, value_name = "RESULTS", num_args = 1.., requires = "update_baseline")]
     scatter: Vec<PathBuf>,
 }
@@ -48,15 +49,16 @@ pub enum Gate {
 }
 
 impl GateArgs {
-    /// What is to be done with a run of a suite.
-    pub fn read(&self, suite: &str) -> anyhow::Result<Gate> {
+    /// What is to be done with a run of a suite, which may name a baseline itself.
+    pub fn read(&self, suite: &str, named: Option<&Path>) -> anyhow::Result<Gate> {
+        let named = self.baseline.as_deref().or(named);
         if !self.update_baseline {
-            let Some(path) = &self.baseline else { return Ok(Gate::None) };
+            let Some(path) = named else { return Ok(Gate::None) };
             let baseline = read_baseline(path)?;
             baseline.check_suite(suite).with_context(|| path.display().to_string())?;
             return Ok(Gate::Compare(baseline));
         }
-        let path = self.baseline.clone().unwrap_or_else(|| BASELINE.into());
+        let path = named.unwrap_or(Path::new(BASELINE)).to_path_buf();
         let old = match read_baseline(&path) {
             Ok(baseline) => Some(baseline),
             Err(GateError::Absent { .. } | GateError::Version { .. }) => None,
@@ -74,6 +76,22 @@ impl GateArgs {
 }
 
 impl Gate {
+    /// Whether a baseline is to be written whose bands need runs on other clouds.
+    pub fn needs_clouds(&self) -> bool {
+        matches!(self, Gate::Update { clouds, .. } if clouds.is_empty())
+    }
+
+    /// Takes the scatter from these runs on other clouds.
+    pub fn with_clouds(self, runs: Vec<Report>) -> Gate {
+        match self {
+            Gate::Update { path, old, reason, .. } => {
+                let paths = (1..=runs.len()).map(|n| format!("cloud {n}").into()).collect();
+                Gate::Update { path, old, reason, clouds: runs, paths }
+            }
+            other => other,
+        }
+    }
+
     /// Adds the comparison to the report; `whole` means that all studies were run.
     pub fn judge(&self, report: &mut Report, whole: bool) -> Result<(), GateError> {
         if let Gate::Compare(baseline) = self {

@@ -1,28 +1,36 @@
 //! `mtled verify`.
 
 mod gate;
+mod own_suite;
 mod progress;
 
+pub use own_suite::{OTHER_CLOUDS, report};
+
 use super::common::{Common, STOPPED};
+use super::explore::StoreArgs;
 use crate::machine::provenance;
 use crate::studies::workbench::{Suite, Workbench};
 use crate::studies::{Definition, STUDIES};
 use anyhow::bail;
-use clap::{Args, ValueEnum};
-use gate::{GateArgs, report_to_github};
+use clap::Args;
+use gate::{Gate, GateArgs, report_to_github};
 use mtled_checks::report::{ensure_writable, human, json, read, read_report, write_report};
 use mtled_checks::study::{Report, Study};
 use progress::Progress;
 use rayon::prelude::*;
+use std::convert::Infallible;
 use std::path::PathBuf;
+use std::str::FromStr;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub struct VerifyArgs {
-    /// Which suite to run: quick takes about two minutes, full about a quarter of an hour.
-    #[arg(long, value_enum, default_value_t = SuiteName::Quick)]
-    suite: SuiteName,
-    /// Run only the studies whose name contains this text.
+    /// Which suite to run: quick takes about two minutes, full about a quarter of an hour, both
+    /// with the studies of the solver; a file such as those that `mtled init` writes has cases of
+    /// your own.
+    #[arg(long, value_name = "quick|full|FILE", default_value = "quick")]
+    suite: SuiteChoice,
+    /// Run only the studies, of a suite of your own the cases, whose name contains this text.
     #[arg(long, value_name = "PATTERN")]
     only: Option<String>,
     /// Family of node clouds; the baseline belongs to family 0. In another family random and graded
@@ -37,27 +45,53 @@ pub struct VerifyArgs {
     #[arg(long)]
     verbose: bool,
     #[command(flatten)]
+    store: StoreArgs,
+    #[command(flatten)]
     gate: GateArgs,
 }
 
-impl VerifyArgs {
-    fn suite_name(&self) -> String {
-        format!("{:?}", self.suite).to_lowercase()
+#[derive(Debug, Clone)]
+enum SuiteChoice {
+    Solver(Suite),
+    Own(PathBuf),
+}
+
+impl FromStr for SuiteChoice {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<SuiteChoice, Infallible> {
+        Ok(match text {
+            "quick" => SuiteChoice::Solver(Suite::Quick),
+            "full" => SuiteChoice::Solver(Suite::Full),
+            file => SuiteChoice::Own(file.into()),
+        })
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SuiteName {
-    Quick,
-    Full,
+pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
+    match &arguments.suite {
+        SuiteChoice::Solver(suite) => verify_solver(*suite, arguments, common),
+        SuiteChoice::Own(file) => own_suite::verify_own(file, arguments, common),
+    }
 }
 
-pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
+fn verify_solver(suite: Suite, arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
     let chosen = chosen(arguments.only.as_deref())?;
-    let gate = arguments.gate.read(&arguments.suite_name())?;
+    let gate = arguments.gate.read(suite.name(), None)?;
     ensure_writable(&arguments.out)?;
     let whole = chosen.len() == STUDIES.len();
-    let mut report = run(&chosen, arguments, common)?;
+    let report = run(suite, &chosen, arguments, common)?;
+    finish(report, gate, whole, arguments, common)
+}
+
+/// Judges a run by the baseline, or updates that, and writes the report.
+fn finish(
+    mut report: Report,
+    gate: Gate,
+    whole: bool,
+    arguments: &VerifyArgs,
+    common: &Common,
+) -> anyhow::Result<u8> {
     if crate::run::interrupted() {
         return Ok(STOPPED);
     }
@@ -86,13 +120,14 @@ fn chosen(only: Option<&str>) -> anyhow::Result<Vec<&'static Definition>> {
 }
 
 /// Runs the studies in parallel.
-fn run(chosen: &[&Definition], arguments: &VerifyArgs, common: &Common) -> anyhow::Result<Report> {
+fn run(
+    suite: Suite,
+    chosen: &[&Definition],
+    arguments: &VerifyArgs,
+    common: &Common,
+) -> anyhow::Result<Report> {
     let start = Instant::now();
-    let suite = match arguments.suite {
-        SuiteName::Quick => Suite::Quick,
-        SuiteName::Full => Suite::Full,
-    };
-    let name = arguments.suite_name();
+    let name = suite.name();
     let bench = Workbench::new(suite, arguments.seed, &arguments.out)?;
     let ids: Vec<&str> = chosen.iter().map(|study| study.id).collect();
     let earlier = read_report(&arguments.out).ok().filter(|earlier| earlier.suite == name);
@@ -107,7 +142,7 @@ fn run(chosen: &[&Definition], arguments: &VerifyArgs, common: &Common) -> anyho
     progress.clear();
     Ok(Report {
         schema_version: json::SCHEMA_VERSION,
-        suite: name,
+        suite: name.into(),
         provenance: provenance(),
         studies,
         wall_seconds: start.elapsed().as_secs_f64(),

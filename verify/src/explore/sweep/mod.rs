@@ -14,5 +14,5 @@ mod tables;
 pub use axis::{Axis, AxisError, combinations, equal, refuse_too_many_runs};
 pub use definition::Sweep;
 pub use plan::{Plan, PlanError};
-pub use reference::{ReferenceSource, find_reference};
+pub use reference::{REFINEMENT, ReferenceSource, find_reference};
 pub use subject::Subject;

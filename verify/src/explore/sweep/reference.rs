@@ -9,9 +9,11 @@ use mtled::problem::Motion;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Spacings of the solver's own reference runs over the finest spacing of the study; the
-/// finest comes first.
-const FINER: [f64; 2] = [1.0 / 2.0, 1.0 / 1.5];
+/// The finest spacing of a study over the smallest of the solver's own reference runs where
+/// nothing else is asked for \[–\].
+pub const REFINEMENT: f64 = 2.0;
+/// Spacing of the finer of the two reference runs over that of the other \[–\].
+const LAST_REFINEMENT: f64 = 0.75;
 
 /// Where the reference solution comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,16 +22,16 @@ pub enum ReferenceSource {
     Any,
     /// A reference file in the layout of `reference/data`.
     File(PathBuf),
-    /// Finer runs of the solver in any case.
-    Own,
+    /// Finer runs of the solver in any case, refined by this factor.
+    Own(f64),
 }
 
 impl ReferenceSource {
     /// The stored reference of a case, if there is one and it may be used.
-    fn stored(&self, source: &Source) -> Result<Option<ReferenceSolution>> {
+    pub fn stored(&self, source: &Source) -> Result<Option<ReferenceSolution>> {
         match self {
             ReferenceSource::Any => Ok(ReferenceSolution::bundled(&source.case)),
-            ReferenceSource::Own => Ok(None),
+            ReferenceSource::Own(_) => Ok(None),
             ReferenceSource::File(file) => {
                 let name = file.display().to_string();
                 let text = std::fs::read_to_string(file)
@@ -56,8 +58,9 @@ impl ReferenceSource {
             settings: vec![Setting::word(Knob::Spacing, &format!("x{factor:.6}"))],
             times: times.clone(),
         };
-        let finest = finest(axes, source);
-        FINER.iter().map(|finer| task(finer * finest)).collect()
+        let refinement = if let ReferenceSource::Own(own) = self { *own } else { REFINEMENT };
+        let smallest = finest(axes, source) / refinement;
+        vec![task(smallest), task(smallest / LAST_REFINEMENT)]
     }
 }
 

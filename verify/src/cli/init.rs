@@ -1,0 +1,178 @@
+//! `mtled init`.
+
+use super::common::Common;
+use super::explore::{StoreArgs, seconds};
+use super::progress::ManyRuns;
+use super::verify::{OTHER_CLOUDS, report};
+use crate::explore::store::TaskRunner;
+use crate::suite::{Draft, Limits, Suite, draft, find_cases};
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use mtled_checks::gate::{Clouds, Reason, update};
+use mtled_checks::report::{ensure_writable, write_atomically};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Names of the files that are written.
+const SUITE: &str = "suite.toml";
+const BASELINE: &str = "baseline.json";
+const WORKFLOW: &str = ".github/workflows/accuracy.yml";
+const WORKFLOW_TEXT: &str = include_str!("init/accuracy.yml");
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct InitArgs {
+    /// Folder of the case files, in which the suite is written.
+    #[arg(default_value = ".")]
+    folder: PathBuf,
+    /// Case files, relative to the folder [default: all in it and in folders below].
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    cases: Vec<PathBuf>,
+    /// CPU time that the finer runs of a case may take that its errors are measured against, such
+    /// as 90s or 5min; where it is short they are refined less.
+    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "100s")]
+    truth_budget: f64,
+    /// Spacing of the case over that of the finest run, instead of a choice by the time it takes.
+    #[arg(long, value_name = "FACTOR", value_parser = refinement)]
+    refine: Option<f64>,
+    /// Make the references of an existing suite again, and nothing else.
+    #[arg(long, conflicts_with = "cases")]
+    references: bool,
+    #[command(flatten)]
+    store: StoreArgs,
+}
+
+const EXAMPLES: &str = "Writes suite.toml, references/, baseline.json and .github/workflows/accuracy.yml. Bounds of errors
+are 1.25 times the largest over five clouds of nodes, and the error of the reference; bands of the
+baseline follow from the scatter over these clouds. A file that is there is not written over.
+
+Examples:
+  mtled init my_cases                              # then commit what it wrote
+  mtled verify --suite my_cases/suite.toml         # in CI: has anything got worse?
+  mtled verify --suite my_cases/suite.toml --update-baseline --reason \"softer tissue\"";
+
+/// A factor above 1.
+fn refinement(text: &str) -> Result<f64, String> {
+    let factor = text.parse::<f64>().ok().filter(|factor| *factor > 1.0 && *factor <= 8.0);
+    factor.ok_or_else(|| format!("{text} is not a factor above 1 and at most 8, such as 2"))
+}
+
+pub fn init(arguments: &InitArgs, common: &Common) -> Result<u8> {
+    let start = Instant::now();
+    let folder = &arguments.folder;
+    let suite_file = folder.join(SUITE);
+    let files = cases(arguments, &suite_file)?;
+    ensure_writable(folder)?;
+    let store = arguments.store.open()?;
+    let runs = ManyRuns::new(common);
+    let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress) };
+    let limits = Limits {
+        cpu_s: arguments.truth_budget,
+        refinement: arguments.refine,
+        clouds: 1 + OTHER_CLOUDS,
+    };
+    let draft = match runs.finish(draft(folder, &files, &limits, &runner))? {
+        Ok(draft) => draft,
+        Err(code) => return Ok(code),
+    };
+    let mut written = references(folder, &draft)?;
+    draft.cases.iter().flat_map(|case| &case.notes).for_each(|note| common.note(note));
+    if !arguments.references {
+        write_atomically(&suite_file, draft.text(Path::new(BASELINE))?.as_bytes())?;
+        written.push(suite_file.clone());
+        let code = baseline(&suite_file, start, &runner, &runs)?;
+        let (path, text) = match code {
+            Ok(text) => (folder.join(BASELINE), text),
+            Err(code) => return Ok(code),
+        };
+        write_atomically(&path, text.as_bytes())?;
+        written.push(path);
+        let workflow = folder.join(WORKFLOW);
+        if !workflow.exists() {
+            write_atomically(&workflow, WORKFLOW_TEXT.as_bytes())?;
+            written.push(workflow);
+        }
+    }
+    let shown: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+    common.print_summary(&|| Ok(format!("{}\n", json!({ "written": shown }))), &|| {
+        let cases: Vec<String> = draft.cases.iter().map(|case| case.summary()).collect();
+        format!(
+            "{}\nwritten: {}\nnext: commit them, and run in CI: mtled verify --suite {}\n",
+            cases.join("\n"),
+            shown.join(", "),
+            suite_file.display()
+        )
+    })?;
+    Ok(0)
+}
+
+/// The case files, relative to the folder.
+fn cases(arguments: &InitArgs, suite_file: &Path) -> Result<Vec<PathBuf>> {
+    let folder = &arguments.folder;
+    if arguments.references {
+        let suite = Suite::files(suite_file)?;
+        return Ok(suite);
+    }
+    for file in [SUITE, BASELINE].map(|name| folder.join(name)) {
+        if file.exists() {
+            bail!(
+                "{} is there already: edit it, or remove it and run this again (`mtled init \
+                 --references` makes its references again, `mtled verify --suite {} \
+                 --update-baseline` its baseline)",
+                file.display(),
+                suite_file.display()
+            );
+        }
+    }
+    if !arguments.cases.is_empty() {
+        return Ok(arguments.cases.clone());
+    }
+    let found = find_cases(folder)?;
+    if found.is_empty() {
+        bail!(
+            "there is no case file in {}: `mtled case show cube_compression > {}` writes one to \
+             start from",
+            folder.display(),
+            folder.join("my_case.toml").display()
+        );
+    }
+    let relative = |path: &PathBuf| Ok(path.strip_prefix(folder)?.to_path_buf());
+    found.iter().map(relative).collect()
+}
+
+/// Writes the references and returns their paths.
+fn references(folder: &Path, draft: &Draft) -> Result<Vec<PathBuf>> {
+    let mut written = Vec::new();
+    for case in &draft.cases {
+        let (Some(path), Some(text)) = (case.reference_path(), &case.reference) else { continue };
+        let path = folder.join(path);
+        write_atomically(&path, text.as_bytes())?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+/// The text of the first baseline of a suite, with bands from other clouds; the exit code where
+/// the user has stopped it.
+fn baseline(
+    suite_file: &Path,
+    start: Instant,
+    runner: &TaskRunner,
+    runs: &ManyRuns,
+) -> Result<Result<String, u8>> {
+    let suite = Suite::read(suite_file).context("the suite that was just written")?;
+    let clouds = match runs.finish(suite.studies("", 0..OTHER_CLOUDS + 1, runner))? {
+        Ok(clouds) => clouds,
+        Err(code) => return Ok(Err(code)),
+    };
+    let mut reports: Vec<_> =
+        clouds.into_iter().map(|studies| report(&suite, studies, start)).collect();
+    let own = reports.remove(0);
+    reports.retain(|report| report.studies.iter().all(|study| study.failure.is_none()));
+    if reports.len() < 2 {
+        reports.clear();
+    }
+    let (clouds, reason) = (Clouds::new(&reports)?, Reason::new("first baseline")?);
+    Ok(Ok(update(&own, None, &clouds, &reason, true)?.to_json()))
+}
