@@ -60,10 +60,10 @@ fn refinement(text: &str) -> Result<f64, String> {
 
 pub fn init(arguments: &InitArgs, common: &Common) -> Result<u8> {
     let start = Instant::now();
-    let folder = &arguments.folder;
+    let folder = arguments.folder.strip_prefix(".").unwrap_or(&arguments.folder);
     let suite_file = folder.join(SUITE);
-    let files = cases(arguments, &suite_file)?;
-    ensure_writable(folder)?;
+    let files = cases(arguments, folder, &suite_file)?;
+    ensure_writable(&arguments.folder)?;
     let store = arguments.store.open()?;
     let runs = ManyRuns::new(common);
     let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress) };
@@ -108,8 +108,7 @@ pub fn init(arguments: &InitArgs, common: &Common) -> Result<u8> {
 }
 
 /// The case files, relative to the folder.
-fn cases(arguments: &InitArgs, suite_file: &Path) -> Result<Vec<PathBuf>> {
-    let folder = &arguments.folder;
+fn cases(arguments: &InitArgs, folder: &Path, suite_file: &Path) -> Result<Vec<PathBuf>> {
     if arguments.references {
         let suite = Suite::files(suite_file)?;
         return Ok(suite);
@@ -128,16 +127,16 @@ fn cases(arguments: &InitArgs, suite_file: &Path) -> Result<Vec<PathBuf>> {
     if !arguments.cases.is_empty() {
         return Ok(arguments.cases.clone());
     }
-    let found = find_cases(folder)?;
+    let found = find_cases(&arguments.folder)?;
     if found.is_empty() {
         bail!(
             "there is no case file in {}: `mtled case show cube_compression > {}` writes one to \
              start from",
-            folder.display(),
+            arguments.folder.display(),
             folder.join("my_case.toml").display()
         );
     }
-    let relative = |path: &PathBuf| Ok(path.strip_prefix(folder)?.to_path_buf());
+    let relative = |path: &PathBuf| Ok(path.strip_prefix(&arguments.folder)?.to_path_buf());
     found.iter().map(relative).collect()
 }
 

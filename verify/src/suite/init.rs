@@ -93,11 +93,13 @@ pub fn draft(
     limits: &Limits,
     runner: &TaskRunner,
 ) -> Result<Draft> {
-    let of = |file: &PathBuf| {
-        let source = Source::find(&folder.join(file).display().to_string(), folder, &[])?;
-        draft_case(file, &source, limits, runner)
-    };
-    Ok(Draft { cases: files.iter().map(of).collect::<Result<_>>()? })
+    // All mistakes come before the first run.
+    let source =
+        |file: &PathBuf| Source::find(&folder.join(file).display().to_string(), folder, &[]);
+    let sources: Vec<Arc<Source>> = files.iter().map(source).collect::<Result<_>>()?;
+    let cases = files.iter().zip(&sources);
+    let drafted = cases.map(|(file, source)| draft_case(file, source, limits, runner));
+    Ok(Draft { cases: drafted.collect::<Result<_>>()? })
 }
 
 fn draft_case(

@@ -32,6 +32,7 @@ pub fn case_study(suite: &Suite, case: &SuiteCase, runs: &CaseRuns) -> Study {
         claim: claim(case),
         command: format!("mtled verify --suite {file} --only {name}"),
         failure: runs.solve.failure().map(String::from),
+        wall_seconds: runs.solve.cpu_s() + runs.patch.as_ref().map_or(0.0, RunRecord::cpu_s),
         ..Study::default()
     };
     if let Some(reason) = runs.patch.as_ref().and_then(RunRecord::failure) {

@@ -32,6 +32,10 @@ pub struct TuneArgs {
     /// Find the most accurate recipe within this CPU time of one run, such as 2s or 500ms.
     #[arg(long, value_name = "TIME", value_parser = seconds)]
     budget: Option<f64>,
+    /// CPU time that finer runs of the case may take where the reference cannot decide the goal,
+    /// such as 90s or 5min; without it the search ends before it begins, as inconclusive.
+    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "60s")]
+    truth_budget: f64,
     /// Search for one recipe for all bundled cases.
     #[arg(long, conflicts_with = "cases")]
     all_cases: bool,
@@ -47,7 +51,7 @@ pub struct TuneArgs {
 }
 
 const EXAMPLES: &str = "The case file with the recipe written in, comments kept, is <case>.tuned.toml in the folder of the
-report. Exit code 1: no recipe that was tried meets the goal. Ranges that are given replace the
+report. Exit code 1: no recipe that was tried meets the goal; 3: the reference cannot tell. Ranges that are given replace the
 built-in design; spacings are always found by the search.
 
 Examples:
@@ -97,6 +101,7 @@ fn request(name: &str, arguments: &TuneArgs, store: &Store) -> Result<TuneReques
         group: arguments.error.quantity,
         clouds: arguments.clouds.into(),
         fresh: FRESH,
+        truth_budget_s: arguments.truth_budget,
         axes,
         command: command_line(),
     })
@@ -119,12 +124,12 @@ fn tune_one(
     };
     let report = report_of("tune", tune_study(request, &tuned), start);
     let file = write_case(request, &tuned, &out)?;
-    publish(&report, &out, common, &|| {
+    let code = publish(&report, &out, common, &|| {
         let case = file.iter().map(|file| format!("case with this recipe: {}\n", file.display()));
         let text = tune_text(request, &tuned);
         format!("{text}\n\n{}{:.0} s", case.collect::<String>(), report.wall_seconds)
     })?;
-    Ok(u8::from(tuned.winner.is_none()))
+    Ok(code)
 }
 
 /// Writes the case file with the recipe of the winner.

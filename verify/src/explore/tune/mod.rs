@@ -10,6 +10,7 @@ mod report;
 mod score;
 mod search;
 mod trial;
+mod truth;
 
 pub use design::{Candidate, candidates};
 pub use recommend::{Recommendation, recommend};

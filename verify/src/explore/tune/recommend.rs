@@ -3,6 +3,7 @@
 use super::design::{Candidate, candidates};
 use super::score::{expected, order};
 use super::trial::{Goal, Trial, TrialRunner, TuneRequest};
+use super::truth::reference;
 use crate::explore::store::{Stopped, TaskRunner};
 use crate::explore::sweep::refuse_too_many_runs;
 use anyhow::{Context, Result, bail};
@@ -111,7 +112,8 @@ fn row(candidate: usize, all: &[Candidate], columns: &Columns) -> Option<Row> {
 /// Every candidate on one case: its cost over that of the case's own recipe.
 fn column(request: &TuneRequest, tasks: TaskRunner) -> Result<(Vec<Candidate>, Vec<f64>)> {
     let case = &request.source.case;
-    let mut runner = TrialRunner::new(request, tasks)?;
+    let (solution, group) = reference(request, &request.reference, &tasks)?;
+    let mut runner = TrialRunner::new(request, solution, group, tasks);
     runner.candidates = candidates(case, &request.axes);
     let count = runner.candidates.len();
     let at = |factor: f64| (0..count).map(|n| (n, factor)).collect::<Vec<_>>();

@@ -21,6 +21,9 @@ fn goal_label(goal: Goal) -> String {
 /// The result on one screen.
 pub fn tune_text(request: &TuneRequest, tuned: &Tuned) -> String {
     let mut lines = head(request, tuned);
+    if tuned.trials.is_empty() {
+        return lines.join("\n");
+    }
     lines.push(String::new());
     lines.push("  error      CPU s    recipe (no other is both cheaper and more accurate)".into());
     for trial in front(&tuned.trials) {
@@ -56,7 +59,10 @@ fn head(request: &TuneRequest, tuned: &Tuned) -> Vec<String> {
         ),
     ];
     match &tuned.winner {
-        None => lines.push("  no recipe that was tried meets the goal".into()),
+        None => lines.push(match &tuned.undecided {
+            Some(reason) => format!("  inconclusive: {reason}"),
+            None => "  no recipe that was tried meets the goal".into(),
+        }),
         Some(winner) => {
             lines.push(format!("  recipe: {}", recipe(tuned, winner)));
             lines.push(measured(winner, "of the search"));
@@ -90,6 +96,10 @@ pub fn tune_study(request: &TuneRequest, tuned: &Tuned) -> Study {
         command: request.command.clone(),
         ..Study::default()
     };
+    study.undecided.extend(tuned.undecided.clone());
+    if tuned.trials.is_empty() {
+        return study;
+    }
     study.checks.extend(confirmation(request, tuned));
     study.figures.push(Figure::Plot(pareto(request, tuned)));
     study.leading = 1;
@@ -118,6 +128,7 @@ fn confirmation(request: &TuneRequest, tuned: &Tuned) -> Option<Check> {
     let (value, limit, unit) = match (&tuned.confirmed, request.goal) {
         (Some(trial), Goal::Error(target)) => (100.0 * trial.worst(), 100.0 * target, "%"),
         (Some(_), Goal::Budget(_)) => return None,
+        (None, Goal::Error(_)) if tuned.undecided.is_some() => return None,
         (None, Goal::Error(target)) => (f64::INFINITY, 100.0 * target, "%"),
         (None, Goal::Budget(cpu_s)) => (f64::INFINITY, cpu_s, "s"),
     };

@@ -5,7 +5,9 @@ use super::design::{Candidate, candidates, solvers};
 use super::effects::one_at_a_time;
 use super::score::{expected, expected_factor, order};
 use super::trial::{Goal, Trial, TrialRunner, TuneRequest};
+use super::truth::{Truth, truth};
 use crate::accuracy::Group;
+use crate::explore::label::percent;
 use crate::explore::store::TaskRunner;
 use crate::explore::sweep::refuse_too_many_runs;
 use anyhow::{Result, bail};
@@ -47,6 +49,9 @@ pub struct Tuned {
     pub reference: String,
     /// Quantities whose error is measured.
     pub group: Group,
+    /// Why the reference solution cannot decide whether a recipe meets the goal; then nothing was
+    /// tried.
+    pub undecided: Option<String>,
     /// Trials that were refused before the first step or failed.
     pub failed: usize,
 }
@@ -54,8 +59,12 @@ pub struct Tuned {
 /// Searches; runs that are stored are not repeated.
 pub fn tune(request: &TuneRequest, tasks: TaskRunner) -> Result<Tuned> {
     refuse_too_many_runs(&request.axes, ROUNDS.len())?;
-    let mut runner = TrialRunner::new(request, tasks)?;
+    let Truth { reference, group, undecided } = truth(request, &tasks)?;
+    let mut runner = TrialRunner::new(request, reference, group, tasks);
     let mut trials = Vec::new();
+    if undecided.is_some() {
+        return Ok(Tuned { undecided, ..found(runner, trials) });
+    }
     let solver = best_solver(&mut runner, &mut trials)?;
     let offset = runner.candidates.len();
     runner.candidates.extend(candidates(&request.source.case, &request.axes).into_iter().map(
@@ -70,17 +79,41 @@ pub fn tune(request: &TuneRequest, tasks: TaskRunner) -> Result<Tuned> {
         Some(winner) => one_at_a_time(&mut runner, winner)?,
         None => Vec::new(),
     };
-    let failed = trials.iter().filter(|trial| trial.failure.is_some()).count();
-    Ok(Tuned {
+    let undecided = match (&winner, request.goal) {
+        (None, Goal::Error(target)) => hidden_by_the_reference(&runner, &trials, target),
+        _ => None,
+    };
+    Ok(Tuned { winner, confirmed, changes, undecided, ..found(runner, trials) })
+}
+
+/// What was tried, without a winner.
+fn found(runner: TrialRunner, trials: Vec<Trial>) -> Tuned {
+    Tuned {
         bar: runner.bar(),
         reference: runner.reference.source.clone(),
         group: runner.group,
         candidates: runner.candidates,
+        failed: trials.iter().filter(|trial| trial.failure.is_some()).count(),
         trials,
-        winner,
-        confirmed,
-        changes,
-        failed,
+        winner: None,
+        confirmed: None,
+        changes: Vec::new(),
+        undecided: None,
+    }
+}
+
+/// Where recipes would meet the goal but for the error of the reference.
+fn hidden_by_the_reference(runner: &TrialRunner, trials: &[Trial], target: f64) -> Option<String> {
+    let bar = runner.bar();
+    let close = trials.iter().filter(|trial| trial.worst() <= target).count();
+    (close > 0 && bar > 0.0).then(|| {
+        format!(
+            "{close} trials differ from the reference by no more than the goal of {}, but not with \
+             its own error of {} added: a better reference is needed (--reference FILE, or \
+             --truth-budget for finer runs)",
+            percent(target),
+            percent(bar)
+        )
     })
 }
 

@@ -1,11 +1,12 @@
 //! What is searched for, and recipes tried on several clouds.
 
 use super::design::Candidate;
+use super::truth::bar;
 use crate::accuracy::{Group, ReferenceSolution};
 use crate::explore::store::{Job, RunRecord, Source, Task, TaskRunner};
-use crate::explore::sweep::{Axis, ReferenceSource, find_reference};
+use crate::explore::sweep::{Axis, ReferenceSource};
 use crate::scene::{Knob, Setting};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use mtled_checks::measure::median;
 use std::sync::Arc;
 
@@ -33,6 +34,8 @@ pub struct TuneRequest {
     pub clouds: usize,
     /// Clouds that the search does not use, on which the winner is confirmed.
     pub fresh: usize,
+    /// CPU time that finer reference runs may take where the reference cannot decide the goal \[s\].
+    pub truth_budget_s: f64,
     /// Ranges that replace the built-in design.
     pub axes: Vec<Axis>,
     /// The command that reproduces it.
@@ -79,14 +82,14 @@ pub struct TrialRunner<'a> {
 }
 
 impl<'a> TrialRunner<'a> {
-    /// Finds the reference solution; the candidates are still to be added.
-    pub fn new(request: &'a TuneRequest, tasks: TaskRunner<'a>) -> Result<TrialRunner<'a>> {
-        let source = &request.source;
-        let reference = find_reference(&request.reference, source, &[], &tasks)?;
-        let Some(group) = request.group.or_else(|| reference.group(&source.case)) else {
-            bail!("{}: has no probe and no support whose error can be measured", source.name);
-        };
-        Ok(TrialRunner { request, candidates: Vec::new(), reference, group, tasks })
+    /// The candidates are still to be added.
+    pub fn new(
+        request: &'a TuneRequest,
+        reference: ReferenceSolution,
+        group: Group,
+        tasks: TaskRunner<'a>,
+    ) -> TrialRunner<'a> {
+        TrialRunner { request, candidates: Vec::new(), reference, group, tasks }
     }
 
     fn task(&self, candidate: usize, factor: f64, cloud: u64) -> Task {
@@ -125,9 +128,6 @@ impl<'a> TrialRunner<'a> {
 
     /// Error of the reference solution itself \[–\].
     pub fn bar(&self) -> f64 {
-        let own: Vec<Vec<f64>> =
-            self.reference.quantities.iter().map(|q| q.values.clone()).collect();
-        let difference = self.reference.difference(&self.request.source.case, self.group, &own);
-        difference.map_or(0.0, |difference| difference.bar)
+        bar(&self.reference, self.request, self.group)
     }
 }
