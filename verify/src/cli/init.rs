@@ -66,7 +66,7 @@ pub fn init(arguments: &InitArgs, common: &Common) -> Result<u8> {
     ensure_writable(&arguments.folder)?;
     let store = arguments.store.open()?;
     let runs = ManyRuns::new(common);
-    let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress) };
+    let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress), plan: None };
     let limits = Limits {
         cpu_s: arguments.truth_budget,
         refinement: arguments.refine,

@@ -1,7 +1,7 @@
 //! Progress bars on a terminal, and a line of progress now and then elsewhere.
 
 use super::common::{Common, STOPPED};
-use crate::explore::store::{Progress, Stopped};
+use crate::explore::store::{Planned, Progress, Stopped};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use mtled_checks::escape::printable;
 use std::sync::Mutex;
@@ -57,7 +57,8 @@ impl ManyRuns {
         }
     }
 
-    /// Clears the bar. Ok(Err(exit code)) where the user stopped the runs.
+    /// Clears the bar. Ok(Err(exit code)) where the user stopped the runs, or where they are
+    /// planned for other machines.
     pub fn finish<T>(&self, result: anyhow::Result<T>) -> anyhow::Result<Result<T, u8>> {
         self.bar.finish_and_clear();
         match result {
@@ -65,6 +66,11 @@ impl ManyRuns {
             Err(error) if error.is::<Stopped>() => {
                 self.common.complain(error);
                 Ok(Err(STOPPED))
+            }
+            // What was asked for: the workflow goes on from here.
+            Err(error) if error.is::<Planned>() => {
+                self.common.note(&error.to_string());
+                Ok(Err(0))
             }
             Err(error) => Err(error),
         }

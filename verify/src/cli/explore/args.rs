@@ -1,7 +1,7 @@
 //! Options that several commands share.
 
 use crate::accuracy::Group;
-use crate::explore::store::Store;
+use crate::explore::store::{JobPlan, Store};
 use crate::explore::sweep::{REFINEMENT, ReferenceSource};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -29,6 +29,27 @@ impl StoreArgs {
     }
 }
 
+/// Runs that other machines perform.
+#[derive(Debug, Args)]
+pub struct JobArgs {
+    /// Write the runs that are not stored yet into this folder, in parts, with workflows for
+    /// Snakemake and Slurm that perform them, and end; the same command goes on afterwards.
+    #[arg(long, value_name = "DIR", help_heading = "Files")]
+    plan_jobs: Option<PathBuf>,
+    /// Parts into which the runs are dealt, at most.
+    #[arg(long, value_name = "N", default_value_t = 32, requires = "plan_jobs",
+          value_parser = clap::value_parser!(u16).range(1..=9999), help_heading = "Files")]
+    parts: u16,
+}
+
+impl JobArgs {
+    /// Where runs are planned, if they are.
+    pub fn plan(&self) -> Option<JobPlan> {
+        let folder = self.plan_jobs.clone()?;
+        Some(JobPlan { folder, parts: self.parts.into() })
+    }
+}
+
 /// How errors are measured and where files go.
 #[derive(Debug, Args)]
 pub struct ErrorArgs {
@@ -41,6 +62,8 @@ pub struct ErrorArgs {
     pub quantity: Option<Group>,
     #[command(flatten)]
     pub store: StoreArgs,
+    #[command(flatten)]
+    pub jobs: JobArgs,
     /// Folder for index.html, results.json and figures
     /// [default: reports/ and the name of the study or of the command and the case].
     #[arg(long, value_name = "DIR", help_heading = "Files")]

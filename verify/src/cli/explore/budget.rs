@@ -38,7 +38,9 @@ pub fn budget(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
     let out = arguments.error.out(&["budget", &source.name]);
     ensure_writable(&out)?;
     let runs = ManyRuns::new(common);
-    let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress) };
+    let plan = arguments.error.jobs.plan();
+    let runner =
+        TaskRunner { store: &store, notify: &|progress| runs.show(progress), plan: plan.as_ref() };
     let budget = match runs.finish(measure_budget(&request, &runner))? {
         Ok(budget) => budget,
         Err(code) => return Ok(code),

@@ -4,8 +4,12 @@ use super::args::StoreArgs;
 use super::export::{ExportArgs, export};
 use super::filter::{Chosen, FilterArgs, name_corrupt};
 use crate::cli::common::{COULD_NOT_RUN, Common};
+use crate::cli::progress::ManyRuns;
 use crate::cli::streams::print_json;
-use crate::explore::store::{Contents, Corrupt, RunOutcome, RunRecord, Store, solver_identity};
+use crate::explore::store::{
+    Contents, Corrupt, Progress, RunOutcome, RunRecord, Store, TaskRunner, read_part,
+    solver_identity,
+};
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
 use comfy_table::{Table, presets};
@@ -23,6 +27,14 @@ pub enum RunsCommand {
     Show {
         /// Key of the record, or its first digits.
         key: String,
+        #[command(flatten)]
+        store: StoreArgs,
+    },
+    /// Perform planned runs (`--plan-jobs`) that the store does not have.
+    Perform {
+        /// Parts of a plan, such as jobs/part-0001.json.
+        #[arg(required = true)]
+        parts: Vec<PathBuf>,
         #[command(flatten)]
         store: StoreArgs,
     },
@@ -54,10 +66,31 @@ pub fn runs(command: &RunsCommand, common: &Common) -> Result<u8> {
     match command {
         RunsCommand::List(filter) => list(filter, common),
         RunsCommand::Export(arguments) => export(arguments, common),
+        RunsCommand::Perform { parts, store } => perform(parts, store, common),
         RunsCommand::Show { key, store } => show(&Store::new(&store.store), key),
         RunsCommand::Prune { all, corrupt, store } => {
             prune(&Store::new(&store.store), *all, *corrupt, common)
         }
+    }
+}
+
+fn perform(parts: &[PathBuf], store: &StoreArgs, common: &Common) -> Result<u8> {
+    let store = store.open()?;
+    let mut tasks = Vec::new();
+    for part in parts {
+        tasks.extend(read_part(part)?);
+    }
+    let runs = ManyRuns::new(common);
+    let notify = |progress: Progress| runs.show(progress);
+    let runner = TaskRunner { store: &store, notify: &notify, plan: None };
+    match runs.finish(runner.records(&tasks))? {
+        Ok(records) => {
+            let count = records.len();
+            let json = || Ok(format!("{}\n", json!({ "stored": count })));
+            common.print_summary(&json, &|| format!("{count} runs are stored\n"))?;
+            Ok(0)
+        }
+        Err(code) => Ok(code),
     }
 }
 

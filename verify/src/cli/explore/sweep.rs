@@ -64,7 +64,9 @@ pub fn sweep(subject: Subject, arguments: &SweepArgs, common: &Common) -> Result
     let store = arguments.error.store.open()?;
     let sweep = definition(subject, arguments, &store)?;
     let runs = ManyRuns::new(common);
-    let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress) };
+    let plan = arguments.error.jobs.plan();
+    let runner =
+        TaskRunner { store: &store, notify: &|progress| runs.show(progress), plan: plan.as_ref() };
     if let Some(part) = arguments.shard {
         return Ok(match runs.finish(sweep.run_part(&runner, part))? {
             Ok(count) => {

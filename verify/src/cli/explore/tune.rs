@@ -115,7 +115,8 @@ fn tune_one(
 ) -> Result<u8> {
     let start = Instant::now();
     let runs = ManyRuns::new(common);
-    let runner = TaskRunner { store, notify: &|progress| runs.show(progress) };
+    let plan = arguments.error.jobs.plan();
+    let runner = TaskRunner { store, notify: &|progress| runs.show(progress), plan: plan.as_ref() };
     let out = arguments.error.out(&["tune", &request.source.name]);
     ensure_writable(&out)?;
     let tuned = match runs.finish(tune(request, runner))? {
@@ -152,7 +153,8 @@ fn tune_many(
 ) -> Result<u8> {
     let start = Instant::now();
     let runs = ManyRuns::new(common);
-    let runner = TaskRunner { store, notify: &|progress| runs.show(progress) };
+    let plan = arguments.error.jobs.plan();
+    let runner = TaskRunner { store, notify: &|progress| runs.show(progress), plan: plan.as_ref() };
     let out = arguments.error.out(&["tune"]);
     ensure_writable(&out)?;
     let recommendation = match runs.finish(recommend(requests, runner))? {

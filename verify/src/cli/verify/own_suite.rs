@@ -28,7 +28,7 @@ pub fn verify_own(file: &Path, arguments: &VerifyArgs, common: &Common) -> anyho
     ensure_writable(&arguments.out)?;
     let store = arguments.store.open()?;
     let runs = ManyRuns::new(common);
-    let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress) };
+    let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress), plan: None };
     let first = arguments.seed;
     let last = if gate.needs_clouds() { first + OTHER_CLOUDS } else { first };
     let reports = match runs.finish(suite.studies(only, first..last + 1, &runner))? {

@@ -8,6 +8,7 @@
 
 mod boundary_misfit;
 mod disk;
+mod jobs;
 mod patch_test;
 mod perform;
 mod record;
@@ -15,6 +16,7 @@ mod runs;
 mod task;
 
 pub use disk::{Contents, Corrupt, Store, StoreError};
+pub use jobs::{JobPlan, Planned, read_part};
 pub use perform::COMPRESSIONS;
 pub use record::{Figures, RunOutcome, RunRecord, Stage, Timings};
 pub use runs::{Progress, Stopped, TaskRunner};

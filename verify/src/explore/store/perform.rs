@@ -21,15 +21,24 @@ use mtled::error::Error;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
 
+/// A run that came to an end.
+pub struct Performed {
+    pub record: RunRecord,
+    /// Whether it would end like this elsewhere too: where there was too little memory it would not.
+    pub lasts: bool,
+}
+
 /// Runs a task on this thread alone. None where the user has stopped it.
-pub fn perform(task: &Task) -> Result<Option<RunRecord>> {
+pub fn perform(task: &Task) -> Result<Option<Performed>> {
     let mut case = task.source.with(&task.settings)?;
     if is_dynamic(&case) {
         case.outputs.history = case.outputs.history.max(SAMPLES);
     }
     let start = ThreadTime::now();
     let mut set_up_cpu_s = None;
-    let prepared = match refuse_beyond_memory(&case) {
+    let fits = refuse_beyond_memory(&case);
+    let lasts = fits.is_ok();
+    let prepared = match fits {
         Err(shortage) => Err(shortage.to_string()),
         Ok(()) => prepare_to_run(&case.problem).map_err(|error| error.to_string()),
     };
@@ -44,7 +53,7 @@ pub fn perform(task: &Task) -> Result<Option<RunRecord>> {
     let set_up_cpu_s = set_up_cpu_s.unwrap_or(cpu_s);
     let provenance = provenance();
     let outcome = outcome.map(with_finite_figures);
-    Ok(outcome.map(|outcome| RunRecord {
+    let record = outcome.map(|outcome| RunRecord {
         schema_version: SCHEMA_VERSION,
         key: String::new(),
         job: task.job,
@@ -60,7 +69,8 @@ pub fn perform(task: &Task) -> Result<Option<RunRecord>> {
             processor: provenance.processor,
             date: provenance.date,
         },
-    }))
+    });
+    Ok(record.map(|record| Performed { record, lasts }))
 }
 
 /// JSON has no infinity and no NaN: a record with one could not be read again.
@@ -222,7 +232,7 @@ mod tests {
             Setting::number(Knob::CellsPerSpacing, 1.0),
         ];
         let task = Task { job: Job::Solve, source, settings, times: vec![0.2] };
-        let record = perform(&task).unwrap().unwrap();
+        let record = perform(&task).unwrap().unwrap().record;
         let reason = record.failure().unwrap();
         assert!(reason.contains("correction of the gradients diverges"), "{reason}");
     }

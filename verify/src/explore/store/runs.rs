@@ -1,7 +1,8 @@
 //! Many runs, several at a time, each on one thread.
 
 use super::disk::Store;
-use super::perform::perform;
+use super::jobs::JobPlan;
+use super::perform::{Performed, perform};
 use super::record::RunRecord;
 use super::task::Task;
 use crate::run::interrupted;
@@ -42,12 +43,15 @@ pub struct TaskRunner<'a> {
     pub store: &'a Store,
     /// Called after each run.
     pub notify: &'a (dyn Fn(Progress) + Sync),
+    /// Where runs are planned instead of being performed here.
+    pub plan: Option<&'a JobPlan>,
 }
 
 impl TaskRunner<'_> {
     /// The records of `tasks`, in their order. Tasks that are not in the store are run, as
     /// many at a time as there are threads, each on one thread so that its CPU time is its
-    /// own. Equal tasks are run once.
+    /// own. Equal tasks are run once. With a plan, tasks that are not in the store are planned,
+    /// and the error is [`Planned`](super::Planned).
     pub fn records(&self, tasks: &[Task]) -> Result<Vec<RunRecord>> {
         let (mut different, mut places) = (Vec::new(), HashMap::new());
         let mut order = Vec::with_capacity(tasks.len());
@@ -61,6 +65,9 @@ impl TaskRunner<'_> {
                 different.len() - 1
             }));
         }
+        if let Some(plan) = self.plan {
+            self.plan_missing(plan, &different)?;
+        }
         let records = self.different(&different)?;
         // A record may have been made for a case of another name, or for other words that
         // mean the same.
@@ -71,6 +78,19 @@ impl TaskRunner<'_> {
             ..records[place].clone()
         };
         Ok(order.into_iter().zip(tasks).map(label).collect())
+    }
+
+    fn plan_missing(&self, plan: &JobPlan, tasks: &[(String, &Task)]) -> Result<()> {
+        let mut missing = Vec::new();
+        for (key, task) in tasks {
+            if self.store.find(key)?.is_none() {
+                missing.push((key.clone(), *task));
+            }
+        }
+        match missing.is_empty() {
+            true => plan.clear(),
+            false => Err(plan.write(&missing, self.store)?.into()),
+        }
     }
 
     /// The records of tasks with different keys.
@@ -117,9 +137,11 @@ fn record(store: &Store, key: &str, task: &Task) -> Result<Option<(RunRecord, bo
     if let Some(record) = store.find(key)? {
         return Ok(Some((record, true)));
     }
-    let Some(mut record) = perform(task)? else { return Ok(None) };
+    let Some(Performed { mut record, lasts }) = perform(task)? else { return Ok(None) };
     record.key = key.to_string();
-    store.write(&record)?;
+    if lasts {
+        store.write(&record)?;
+    }
     Ok(Some((record, false)))
 }
 
@@ -144,7 +166,7 @@ mod tests {
         let notify = |progress: Progress| {
             counted.lock().unwrap().push((progress.of, progress.stored));
         };
-        let runner = TaskRunner { store: &store, notify: &notify };
+        let runner = TaskRunner { store: &store, notify: &notify, plan: None };
         let tasks = [task("x2"), task("x1.6"), task("x2"), task("x2.0"), task("x2")];
         let records = runner.records(&tasks).unwrap();
         assert_eq!(*counted.lock().unwrap(), [(2, false); 2]);

@@ -15,20 +15,35 @@ impl Sweep {
     /// its runs.
     pub fn run_part(&self, runner: &TaskRunner, (part, parts): (usize, usize)) -> Result<usize> {
         refuse_too_many_runs(&self.axes, self.clouds)?;
-        let mut tasks = Vec::new();
-        for source in &self.sources {
-            tasks.extend(self.reference.tasks(source, &self.axes));
-            let times = self.reference.times(source)?;
-            tasks.extend(self.tasks(source, &times));
-        }
+        let tasks = self.all_tasks()?;
         let own: Vec<Task> = tasks.into_iter().skip(part - 1).step_by(parts).collect();
         runner.records(&own)?;
         Ok(own.len())
     }
 
+    /// Every run of the study, those of its reference included.
+    fn all_tasks(&self) -> Result<Vec<Task>> {
+        let mut tasks = Vec::new();
+        for source in &self.sources {
+            let times = match self.subject.job() {
+                Job::Solve => {
+                    tasks.extend(self.reference.tasks(source, &self.axes));
+                    self.reference.times(source)?
+                }
+                _ => Vec::new(),
+            };
+            tasks.extend(self.tasks(source, &times));
+        }
+        Ok(tasks)
+    }
+
     /// Runs what is not stored yet and builds the study.
     pub fn run(&self, runner: &TaskRunner) -> Result<Study> {
         refuse_too_many_runs(&self.axes, self.clouds)?;
+        if runner.plan.is_some() {
+            // All at once, and not those of each case one after the other.
+            runner.records(&self.all_tasks()?)?;
+        }
         let mut cases = Vec::new();
         for source in &self.sources {
             let reference = match self.subject.job() {
