@@ -57,7 +57,12 @@ pub fn add_convergence(study: &mut Study, sweep: &Sweep, case: &MeasuredCase) {
         },
     ));
     study.undecided.extend(families.iter().filter_map(|family| {
-        Some(format!("{}, {}: {}", case.source.name, family.0, undecided(sweep, family, bar)?))
+        Some(format!(
+            "{}, {}: {}",
+            case.source.name,
+            family.0,
+            undecided(sweep.clouds, family, bar)?
+        ))
     }));
     study.figures.push(Figure::Plot(figure(case, group.label(), &families, bar)));
     study.notes.push(format!(
@@ -133,7 +138,7 @@ fn is_order(fit: &LogLogFit) -> bool {
 }
 
 /// Why the errors of a family show no order, and what would.
-fn undecided(sweep: &Sweep, (_, samples): &Family, bar: f64) -> Option<String> {
+fn undecided(clouds: usize, (_, samples): &Family, bar: f64) -> Option<String> {
     let above = above(samples, bar);
     let spacings: BTreeSet<u64> = above.iter().map(|sample| sample.0.to_bits()).collect();
     if above.is_empty() {
@@ -151,7 +156,7 @@ fn undecided(sweep: &Sweep, (_, samples): &Family, bar: f64) -> Option<String> {
         ));
     }
     match fit(&above) {
-        Some(fit) if is_order(&fit) && sweep.clouds == 1 => Some(
+        Some(fit) if is_order(&fit) && clouds == 1 => Some(
             "the order of one cloud says nothing about its scatter over clouds: take three \
              (--clouds 3)"
                 .into(),
@@ -183,5 +188,29 @@ fn figure(case: &MeasuredCase, group: &str, families: &[Family], bar: f64) -> Pl
         y: axis("rms error over the largest value", "1", true),
         series,
         slopes: vec![1.0, 2.0],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn why(clouds: usize, samples: &[(f64, f64)]) -> Option<String> {
+        undecided(clouds, &("recipe".into(), samples.to_vec()), 1e-3)
+    }
+
+    #[test]
+    fn errors_show_an_order_or_it_is_said_why_not() {
+        let second = |factor: f64| [1.0, 0.5, 0.25].map(|h| (h, factor * h * h)).to_vec();
+        assert_eq!(why(3, &second(1.0)), None);
+        let with = |clouds: usize, samples: &[(f64, f64)], reason: &str| {
+            let why = why(clouds, samples).unwrap();
+            assert!(why.contains(reason) && why.contains("--"), "{why}");
+        };
+        with(3, &second(1e-4), "no error is larger than that of the reference (0.100 %)");
+        with(3, &second(0.003), "one spacing");
+        with(1, &second(1.0), "one cloud");
+        with(3, &[(1.0, 0.5), (0.5, 0.1), (0.5, 0.6), (0.25, 0.2)], "scatters");
+        with(3, &[(1.0, 0.5), (0.5, 0.1)], "two errors");
     }
 }
