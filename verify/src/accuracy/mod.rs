@@ -15,7 +15,7 @@ pub use difference::{Difference, difference};
 pub use equal_error::{Cost, cost_at};
 pub use finest::{FinestField, finest};
 pub use group::Group;
-pub use own_reference::own_reference_text;
+pub use own_reference::{own_reference_text, stored_reference};
 pub use own_runs::from_own_runs;
 pub use reference_solution::ReferenceSolution;
 pub use values::{SAMPLES, values};

@@ -68,13 +68,21 @@ pub fn own_reference_text(case: &Case, reference: &ReferenceSolution) -> String 
     serde_json::to_string_pretty(&file).unwrap_or_default() + "\n"
 }
 
-/// Whether a JSON text is such a file.
-pub(super) fn is_own_reference(text: &str) -> bool {
-    serde_json::from_str::<serde_json::Value>(text).is_ok_and(|value| value["made_by"] == MADE_BY)
+/// The reference solution of a file called `name`, of finer runs or of finite elements; refused
+/// where it belongs to another problem.
+pub fn stored_reference(
+    case: &Case,
+    text: &str,
+    name: &str,
+) -> Result<ReferenceSolution, ReferenceError> {
+    let json = serde_json::from_str::<serde_json::Value>(text);
+    match json.is_ok_and(|value| value["made_by"] == MADE_BY) {
+        true => read_own_reference(case, text, name),
+        false => ReferenceSolution::from_file(case, text, name),
+    }
 }
 
-/// Reads such a file, called `name`, and refuses one of another problem.
-pub(super) fn read_own_reference(
+fn read_own_reference(
     case: &Case,
     text: &str,
     name: &str,

@@ -3,7 +3,6 @@
 use super::difference::{Difference, difference};
 use super::finest::{FinestField, finest};
 use super::group::Group;
-use super::own_reference::{is_own_reference, read_own_reference};
 use crate::bundled::REFERENCES;
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{
@@ -26,16 +25,13 @@ pub struct ReferenceSolution {
 }
 
 impl ReferenceSolution {
-    /// From a stored reference of two finite-element codes or of finer runs of this solver; the
-    /// error says why it cannot be used.
+    /// From a stored reference of two finite-element codes; the error says why it cannot
+    /// be used.
     pub fn from_file(
         case: &Case,
         text: &str,
         name: &str,
     ) -> Result<ReferenceSolution, ReferenceError> {
-        if is_own_reference(text) {
-            return read_own_reference(case, text, name);
-        }
         let file = read_reference(case, text)?;
         let codes: Vec<&str> = file.solutions.iter().map(|s| s.code.as_str()).collect();
         let agreements = agreements(case, &file);
@@ -82,6 +78,12 @@ impl ReferenceSolution {
     pub fn disagreements(&self, case: &Case, group: Group) -> Vec<&str> {
         let own = self.disagreements.iter().filter(|(quantity, _)| group.holds(case, quantity));
         own.map(|(_, text)| text.as_str()).collect()
+    }
+
+    /// Its own error in a group, over the largest value \[–\].
+    pub fn bar(&self, case: &Case, group: Group) -> f64 {
+        let own: Vec<Vec<f64>> = self.quantities.iter().map(|q| q.values.clone()).collect();
+        self.difference(case, group, &own).map_or(0.0, |difference| difference.bar)
     }
 
     /// Whether it has something of a group.

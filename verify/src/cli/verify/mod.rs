@@ -5,6 +5,7 @@ mod own_suite;
 mod progress;
 
 pub use own_suite::{OTHER_CLOUDS, report};
+use own_suite::{OwnRun, run_own};
 
 use super::common::{Common, STOPPED};
 use super::explore::StoreArgs;
@@ -71,7 +72,16 @@ impl FromStr for SuiteChoice {
 pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
     match &arguments.suite {
         SuiteChoice::Solver(suite) => verify_solver(*suite, arguments, common),
-        SuiteChoice::Own(file) => own_suite::verify_own(file, arguments, common),
+        SuiteChoice::Own(file) => {
+            ensure_writable(&arguments.out)?;
+            let cases = (arguments.only.as_deref().unwrap_or_default(), arguments.seed);
+            match run_own(file, cases, &arguments.gate, &arguments.store, common)? {
+                Ok(OwnRun { report, gate, whole }) => {
+                    finish(report, gate, whole, arguments, common)
+                }
+                Err(code) => Ok(code),
+            }
+        }
     }
 }
 

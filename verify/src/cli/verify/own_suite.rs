@@ -1,13 +1,14 @@
-//! `mtled verify --suite FILE`: a user's own cases.
+//! A user's own cases for `mtled verify --suite FILE`.
 
-use super::{VerifyArgs, finish};
+use super::gate::{Gate, GateArgs};
 use crate::cli::common::Common;
+use crate::cli::explore::StoreArgs;
 use crate::cli::progress::ManyRuns;
 use crate::explore::store::TaskRunner;
 use crate::machine::provenance;
 use crate::suite::Suite;
 use anyhow::bail;
-use mtled_checks::report::{ensure_writable, json};
+use mtled_checks::report::json;
 use mtled_checks::study::{Report, Study};
 use std::path::Path;
 use std::time::Instant;
@@ -15,31 +16,43 @@ use std::time::Instant;
 /// Clouds besides that of the case from whose scatter the bands of a baseline follow.
 pub const OTHER_CLOUDS: u64 = 4;
 
-pub fn verify_own(file: &Path, arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
+/// A suite that was run.
+pub struct OwnRun {
+    pub report: Report,
+    pub gate: Gate,
+    /// Whether all its cases were run.
+    pub whole: bool,
+}
+
+/// Runs the cases whose names contain `only` on a cloud; the exit code where the user stopped it.
+pub fn run_own(
+    file: &Path,
+    (only, cloud): (&str, u64),
+    gate: &GateArgs,
+    store: &StoreArgs,
+    common: &Common,
+) -> anyhow::Result<Result<OwnRun, u8>> {
     let start = Instant::now();
     let suite = Suite::read(file)?;
-    let only = arguments.only.as_deref().unwrap_or_default();
     let names: Vec<&str> = suite.cases.iter().map(|case| case.source.name.as_str()).collect();
     let whole = names.iter().all(|name| name.contains(only));
     if !names.iter().any(|name| name.contains(only)) {
         bail!("no case matches; the cases of {} are {}", file.display(), names.join(", "));
     }
-    let gate = arguments.gate.read(&suite.name, suite.baseline.as_deref())?;
-    ensure_writable(&arguments.out)?;
-    let store = arguments.store.open()?;
+    let gate = gate.read(&suite.name, suite.baseline.as_deref())?;
+    let store = store.open()?;
     let runs = ManyRuns::new(common);
     let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress), plan: None };
-    let first = arguments.seed;
-    let last = if gate.needs_clouds() { first + OTHER_CLOUDS } else { first };
-    let reports = match runs.finish(suite.studies(only, first..last + 1, &runner))? {
+    let last = if gate.needs_clouds() { cloud + OTHER_CLOUDS } else { cloud };
+    let reports = match runs.finish(suite.studies(only, cloud..last + 1, &runner))? {
         Ok(clouds) => clouds,
-        Err(code) => return Ok(code),
+        Err(code) => return Ok(Err(code)),
     };
     let mut reports = reports.into_iter().map(|studies| report(&suite, studies, start));
     let Some(own) = reports.next() else { bail!("{} has no case", file.display()) };
     let others: Vec<Report> = reports.filter(ran).collect();
     let gate = if others.len() > 1 { gate.with_clouds(others) } else { gate };
-    finish(own, gate, whole, arguments, common)
+    Ok(Ok(OwnRun { report: own, gate, whole }))
 }
 
 /// Whether every case ran: some clouds of others cannot be varied.

@@ -1,7 +1,7 @@
 //! The reference solution that the errors of a study are measured against.
 
 use super::axis::{Axis, number_of};
-use crate::accuracy::{ReferenceSolution, from_own_runs};
+use crate::accuracy::{ReferenceSolution, from_own_runs, stored_reference};
 use crate::explore::store::{Job, Source, Task, TaskRunner};
 use crate::scene::{Knob, Level, Setting};
 use anyhow::{Context, Result, bail};
@@ -36,7 +36,7 @@ impl ReferenceSource {
                 let name = file.display().to_string();
                 let text = std::fs::read_to_string(file)
                     .with_context(|| format!("cannot read the reference {name}"))?;
-                Ok(Some(ReferenceSolution::from_file(&source.case, &text, &name)?))
+                Ok(Some(stored_reference(&source.case, &text, &name)?))
             }
         }
     }

@@ -1,7 +1,6 @@
 //! What is searched for, and recipes tried on several clouds.
 
 use super::design::Candidate;
-use super::truth::bar;
 use crate::accuracy::{Group, ReferenceSolution};
 use crate::explore::store::{Job, RunRecord, Source, Task, TaskRunner};
 use crate::explore::sweep::{Axis, ReferenceSource};
@@ -128,6 +127,6 @@ impl<'a> TrialRunner<'a> {
 
     /// Error of the reference solution itself \[–\].
     pub fn bar(&self) -> f64 {
-        bar(&self.reference, self.request, self.group)
+        self.reference.bar(&self.request.source.case, self.group)
     }
 }

@@ -30,7 +30,7 @@ pub fn truth(request: &TuneRequest, tasks: &TaskRunner) -> Result<Truth> {
     let mut from = request.reference.clone();
     loop {
         let (reference, group) = reference(request, &from, tasks)?;
-        let bar = bar(&reference, request, group);
+        let bar = reference.bar(&source.case, group);
         let Goal::Error(target) = request.goal else {
             return Ok(Truth { reference, group, undecided: None });
         };
@@ -95,11 +95,4 @@ pub fn reference(
 fn cost(request: &TuneRequest, runs: &[RunRecord], factor: f64) -> f64 {
     let components = request.source.case.problem.dimension.components() as f64;
     runs.iter().map(RunRecord::cpu_s).sum::<f64>() * factor.powf(GROWTH * components)
-}
-
-/// Error of the reference solution itself \[–\].
-pub fn bar(reference: &ReferenceSolution, request: &TuneRequest, group: Group) -> f64 {
-    let own: Vec<Vec<f64>> = reference.quantities.iter().map(|q| q.values.clone()).collect();
-    let difference = reference.difference(&request.source.case, group, &own);
-    difference.map_or(0.0, |difference| difference.bar)
 }

@@ -1,9 +1,9 @@
 //! `mtled init`.
 
-use super::common::Common;
-use super::explore::{StoreArgs, seconds};
-use super::progress::ManyRuns;
-use super::verify::{OTHER_CLOUDS, report};
+use crate::cli::common::Common;
+use crate::cli::explore::{StoreArgs, seconds};
+use crate::cli::progress::ManyRuns;
+use crate::cli::verify::{OTHER_CLOUDS, report};
 use crate::explore::store::TaskRunner;
 use crate::suite::{Draft, Limits, Suite, draft, find_cases};
 use anyhow::{Context, Result, bail};
@@ -18,7 +18,7 @@ use std::time::Instant;
 const SUITE: &str = "suite.toml";
 const BASELINE: &str = "baseline.json";
 const WORKFLOW: &str = ".github/workflows/accuracy.yml";
-const WORKFLOW_TEXT: &str = include_str!("init/accuracy.yml");
+const WORKFLOW_TEXT: &str = include_str!("accuracy.yml");
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
