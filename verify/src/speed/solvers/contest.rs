@@ -146,7 +146,9 @@ impl CaseRuns<'_> {
         let runs = &self.runs[entrant];
         let answers = runs.iter().filter_map(|run| run.outcome.answered());
         let units = answers.map(|answer| wrong_units(answer, &self.of.reference.quantities));
-        units.flatten().take(1).chain(about_series(runs)).collect()
+        let mut errors = runs.iter().filter_map(|run| self.error(run));
+        let differs = errors.any(|error| error.rms > error.bar);
+        units.flatten().take(1).chain(about_series(runs, differs)).collect()
     }
 
     /// CPU time \[s\] and error \[–\] of the runs of a program, from coarse to fine; none where

@@ -55,13 +55,14 @@ pub fn wrong_units(answered: &Answered, reference: &[ReferenceValues]) -> Option
     })
 }
 
-/// Whether a series of runs from coarse to fine looks as if no system had been solved.
-pub fn about_series(runs: &[SolverRun]) -> Vec<Doubt> {
+/// Whether a series of runs from coarse to fine looks as if no system had been solved. Answers
+/// that are the same are right where none `differs` from the reference.
+pub fn about_series(runs: &[SolverRun], differs: bool) -> Vec<Doubt> {
     let answered: Vec<(usize, &Answered)> =
         runs.iter().filter_map(|run| Some((run.level, run.outcome.answered()?))).collect();
     let [(coarse, first), .., (fine, last)] = answered[..] else { return Vec::new() };
     let mut doubts = Vec::new();
-    if answered.windows(2).all(|pair| pair[0].1.values == pair[1].1.values) {
+    if differs && answered.windows(2).all(|pair| pair[0].1.values == pair[1].1.values) {
         doubts.push(Doubt::SameAnswers);
     }
     if last.unknowns <= first.unknowns {

@@ -12,7 +12,8 @@ use mtled_checks::study::{
 const TIMING: &str = "Every run is a process of its own, with one thread asked for. CPU \
     time and peak memory are those that the system counts for the process and the children that it has \
     waited for, from its start to its end: the start of an interpreter, imports, compilation of kernels and \
-    writing the answer are included. The programs run in turn, once each.";
+    writing the answer are included; the shortest run of a program is an upper bound of its start. The \
+    programs run in turn, once each.";
 
 const ERRORS: &str = "Errors are root mean square differences from the reference over the largest value \
     of its kind. Differences that are not larger than the error bar of the reference are inconclusive: \
@@ -140,7 +141,7 @@ fn notes(contest: &Contest, all: &[CaseRuns], load_before: Option<f64>) -> Vec<S
             more => format!("{}; and {} more", methods[..8].join("; "), more - 8),
         };
         notes.push(printable(&format!(
-            "{}: `{}`. Method, in its own words: {methods}.",
+            "{}: {}. Method, in its own words: {methods}.",
             entrant.name,
             entrant.command_line()
         )));

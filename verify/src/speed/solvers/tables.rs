@@ -57,6 +57,7 @@ pub fn robustness(contest: &Contest, all: &[CaseRuns]) -> Table {
         let solver = runs().find_map(|run| run.outcome.solver());
         let usages = || runs().filter_map(|run| run.usage);
         let memory = usages().map(|usage| usage.peak_memory_bytes).max();
+        let least = usages().map(|usage| usage.cpu_s).reduce(f64::min);
         let count = |count: usize| Cell::Number(count as f64);
         vec![
             label(printable(&entrant.name)),
@@ -70,6 +71,7 @@ pub fn robustness(contest: &Contest, all: &[CaseRuns]) -> Table {
             count(counts.faulty),
             count(counts.doubtful),
             Cell::Number(usages().map(|usage| usage.cpu_s).sum()),
+            optional(least),
             optional(memory.map(|bytes| bytes as f64 / 1e6)),
         ]
     };
@@ -85,6 +87,7 @@ pub fn robustness(contest: &Contest, all: &[CaseRuns]) -> Table {
             text("faulty"),
             text("cases with doubtful answers"),
             number("CPU time of all runs", "s"),
+            number("of the shortest", "s"),
             number("largest peak memory", "MB"),
         ],
         rows: contest.entrants.iter().enumerate().map(row).collect(),
