@@ -1,6 +1,6 @@
 //! `mtled study solvers` and `mtled protocol` with made-up solvers: every way to break the
 //! protocol is reported by its name.
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 
 mod common;
 #[path = "solvers/fake.rs"]
@@ -12,6 +12,8 @@ use mtled_verify::explore::store::Source;
 use mtled_verify::protocol::{Job, Resolution, parse_job};
 use mtled_verify::speed::solvers::absolute;
 use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -29,6 +31,20 @@ fn doubtful(body: &str, text: &str) {
     let said = arena.about(body);
     assert!(said.tables.contains(text), "{text} in\n{}{}", said.tables, said.err);
     assert!(!said.tables.contains("FAULT") && said.code == 1, "{}", said.tables);
+}
+
+/// Whether the process whose number is in a file has ended, reaped or not.
+fn is_dead(pid: &Path) -> bool {
+    let pid = std::fs::read_to_string(pid).unwrap();
+    let end = Instant::now() + Duration::from_secs(10);
+    let dead = || {
+        let state = std::fs::read_to_string(format!("/proc/{}/stat", pid.trim()));
+        state.map_or(true, |state| state.contains(") Z "))
+    };
+    while !dead() && Instant::now() < end {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    dead()
 }
 
 #[test]
@@ -199,10 +215,7 @@ fn a_program_that_takes_too_long_is_killed_with_its_children() {
     assert!(start.elapsed() < Duration::from_secs(60));
     assert_eq!(said.code, 0, "{}", said.err);
     assert!(said.tables.contains("timed out"), "{}", said.tables);
-    let pid = std::fs::read_to_string(pid).unwrap();
-    let state = std::fs::read_to_string(format!("/proc/{}/stat", pid.trim()));
-    // One that nobody has reaped yet is dead too.
-    assert!(state.is_err() || state.unwrap().contains(") Z "), "{pid} lives");
+    assert!(is_dead(&pid));
 }
 
 #[test]
@@ -210,9 +223,27 @@ fn children_that_are_left_behind_are_killed() {
     let arena = Arena::new();
     let pid = arena.path("pid");
     arena.about(&format!("sleep 300 & echo $! >'{}'; reply", pid.display()));
-    let pid = std::fs::read_to_string(pid).unwrap();
-    let state = std::fs::read_to_string(format!("/proc/{}/stat", pid.trim()));
-    assert!(state.is_err() || state.unwrap().contains(") Z "), "{pid} lives");
+    assert!(is_dead(&pid));
+}
+
+#[test]
+fn ctrl_c_ends_the_study_and_the_solver_that_runs() {
+    let arena = Arena::new();
+    let pid = arena.path("pid");
+    let fake = arena.fake("slow", &format!("echo $$ >'{}'; sleep 300", pid.display()));
+    let mut study = Command::new(env!("CARGO_BIN_EXE_mtled"));
+    study.current_dir(arena.dir.path()).args(["study", "solvers", "block.toml", "--quiet"]);
+    study.args(["--without-mtled", "--reference", "reference.json", "--solver", &fake]);
+    let mut study = study.spawn().unwrap();
+    let written = || std::fs::read_to_string(&pid).is_ok_and(|text| text.ends_with('\n'));
+    let start = Instant::now();
+    while !written() {
+        assert!(start.elapsed() < Duration::from_secs(60), "the solver was not started");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    Command::new("kill").args(["-INT", &study.id().to_string()]).status().unwrap();
+    assert_eq!(study.wait().unwrap().code(), Some(130));
+    assert!(is_dead(&pid));
 }
 
 #[test]
@@ -284,7 +315,7 @@ fn a_job_can_be_written_solved_and_checked_by_hand() {
 #[test]
 fn the_schemas_of_both_files_are_printed() {
     for (file, key) in [("job", "spacing_m"), ("answer", "displacements_m")] {
-        let (code, out, _) = mtled(std::path::Path::new("."), &["protocol", "schema", file]);
+        let (code, out, _) = mtled(Path::new("."), &["protocol", "schema", file]);
         let schema: Value = serde_json::from_str(&out).unwrap();
         assert!(code == 0 && schema.to_string().contains(key), "{out}");
     }
@@ -305,7 +336,7 @@ fn every_bundled_case_has_a_job_that_reads_back_the_same_and_names_files_that_ex
         assert_eq!(case.problem_hash, source.case.problem_hash, "{name}");
         for part in text.split("\"file\":\"").skip(1) {
             let file = part.split('"').next().unwrap();
-            assert!(file.starts_with('/') && std::path::Path::new(file).is_file(), "{file}");
+            assert!(file.starts_with('/') && Path::new(file).is_file(), "{file}");
         }
     }
 }

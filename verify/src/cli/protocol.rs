@@ -73,7 +73,8 @@ pub fn protocol(command: &ProtocolCommand, common: &Common) -> Result<u8> {
         ProtocolCommand::Job { case, out, spacing } => write_job(case, out, *spacing, common),
         ProtocolCommand::Check { job, answer } => check(job, answer, common),
         ProtocolCommand::Solve { job, answer } => {
-            let reply = solve_job(&read_job(job)?)?;
+            let solved = solve_job(&read_job(job)?);
+            let reply = solved.with_context(|| format!("cannot solve {}", job.display()))?;
             write_atomically(answer, (serde_json::to_string(&reply)? + "\n").as_bytes())?;
             Ok(0)
         }
@@ -118,8 +119,10 @@ fn write_job(case: &str, out: &Path, spacing: Spacing, common: &Common) -> Resul
 
 /// Exit code 1 says that the answer breaks the protocol.
 fn check(job: &Path, answer: &Path, common: &Common) -> Result<u8> {
-    let job = read_job(job)?;
-    let case = read_case(&job.case_file).map_err(one_error)?;
+    let path = job;
+    let job = read_job(path)?;
+    let case = read_case(&job.case_file).map_err(one_error);
+    let case = case.with_context(|| format!("the case of {}", path.display()))?;
     let text = match read_reply(answer, &case, job.instants_s.len()) {
         Err(fault) => {
             common.complain(format!("{}: {fault}", answer.display()));

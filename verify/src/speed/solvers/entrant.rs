@@ -15,6 +15,8 @@ pub struct Entrant {
     pub name: String,
     /// The program and its arguments, with placeholders for the two files.
     pub command: Vec<String>,
+    /// The command for reports.
+    pub shown: String,
 }
 
 /// Why a text names no program.
@@ -37,6 +39,7 @@ impl FromStr for Entrant {
         let named = parts.filter(|(name, command)| !name.is_empty() && !command.is_empty());
         let (name, command) = named.ok_or(NotAnEntrant::NoName { text: text.into() })?;
         let name = name.to_string();
+        let shown = command.to_string();
         let Some(command) = shlex::split(command) else {
             return Err(NotAnEntrant::Quotation { name });
         };
@@ -45,7 +48,7 @@ impl FromStr for Entrant {
                 return Err(NotAnEntrant::Placeholder { name, placeholder });
             }
         }
-        Ok(Entrant { name, command })
+        Ok(Entrant { name, command, shown })
     }
 }
 
@@ -54,7 +57,9 @@ impl Entrant {
     pub fn own(program: &Path) -> Entrant {
         let program = program.to_string_lossy();
         let words = [&program, "protocol", "solve", JOB, ANSWER, "--threads", "1"];
-        Entrant { name: "mtled".into(), command: words.map(str::to_string).into() }
+        let command = words.map(str::to_string).to_vec();
+        let shown = format!("mtled {}", command[1..].join(" "));
+        Entrant { name: "mtled".into(), command, shown }
     }
 
     /// The command with the two files in place.
@@ -62,15 +67,6 @@ impl Entrant {
         let (job, answer) = (job.to_string_lossy(), answer.to_string_lossy());
         let filled = |word: &String| word.replace(JOB, &job).replace(ANSWER, &answer);
         self.command.iter().map(filled).collect()
-    }
-
-    /// The command as it was given.
-    pub fn command_line(&self) -> String {
-        let words = self.command.iter().map(|word| match word.contains(' ') {
-            true => format!("\"{word}\""),
-            false => word.clone(),
-        });
-        words.collect::<Vec<_>>().join(" ")
     }
 }
 

@@ -6,7 +6,7 @@ use crate::protocol::{Answer, Job, PROTOCOL, Refusal, RefusalReason, Refused, Re
 use crate::reference::{Family, is_dynamic, quantities};
 use crate::run::{Recorder, integrate, prepare_to_run, refuse_beyond_memory};
 use crate::scene::{Case, Knob, Setting, edited, one_error, parse_case, read_text};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -25,8 +25,10 @@ pub fn solve_job(job: &Job) -> Result<Reply> {
     };
     let unknowns = prepared.model.size() as u64;
     let mut recorder = Recorder::new(&case, &prepared, 0)?;
-    if let Err(error) = integrate(&case.problem, prepared, &mut recorder) {
-        return Ok(refusal(RefusalReason::NotConverged, error.to_string()));
+    match integrate(&case.problem, prepared, &mut recorder) {
+        Ok(solved) if solved.summary.stopped => bail!("stopped"),
+        Ok(_) => {}
+        Err(error) => return Ok(refusal(RefusalReason::NotConverged, error.to_string())),
     }
     let values = values(&case, &recorder.finish(), &job.instants_s)?;
     Ok(Reply::Answer(answer(&case, &values, unknowns)))

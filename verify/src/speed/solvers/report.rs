@@ -73,9 +73,10 @@ fn overview(contest: &Contest, all: &[CaseRuns]) -> Figure {
     });
     Figure::Panels(Panels {
         title: "Error over CPU time".into(),
-        caption: "rms error over the CPU time of the whole process, one thread, from coarse to fine; \
-                  lower left is better. Shaded: below the error bar of the reference nothing is decided."
-            .into(),
+        caption:
+            "rms error over the CPU time of the whole process, one thread, from coarse to fine; \
+                  lower left is better. Below the error bar of the reference nothing is decided."
+                .into(),
         panels: panels.collect(),
     })
 }
@@ -93,7 +94,7 @@ fn plot(contest: &Contest, case: &CaseRuns) -> Plot {
     let bar = bar_of(case).filter(|bar| *bar > 0.0 && range.1 > 0.0);
     if let Some(bar) = bar {
         let points = vec![(range.0, bar), (range.1, bar)];
-        let floor = styled("error bar of the reference", points, SeriesStyle::Floor);
+        let floor = styled("below the reference's error bar", points, SeriesStyle::Floor);
         series.push(Series { colour: Some(contest.entrants.len()), ..floor });
     }
     Plot {
@@ -142,8 +143,7 @@ fn notes(contest: &Contest, all: &[CaseRuns], load_before: Option<f64>) -> Vec<S
         };
         notes.push(printable(&format!(
             "{}: {}. Method, in its own words: {methods}.",
-            entrant.name,
-            entrant.command_line()
+            entrant.name, entrant.shown
         )));
     }
     notes
