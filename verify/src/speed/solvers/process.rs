@@ -1,5 +1,6 @@
 //! A child process with a time limit, whose processor time and memory the system measures.
 
+use crate::machine::peak_memory;
 use crate::run::interrupted;
 use std::collections::VecDeque;
 use std::io::{self, Read};
@@ -34,6 +35,9 @@ pub struct Usage {
     pub wall_s: f64,
     /// Largest resident memory of one process \[byte\].
     pub peak_memory_bytes: u64,
+    /// The system counts the memory of this program to a process until it has loaded its own
+    /// \[byte\]: a smaller peak is not seen.
+    pub least_memory_bytes: u64,
 }
 
 /// How a process ended.
@@ -68,6 +72,7 @@ pub fn run_child(words: &[String], limit: Duration) -> io::Result<ChildRun> {
     command.envs(ONE_THREAD.map(|name| (name, "1")));
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    let least_memory_bytes = peak_memory().unwrap_or(0);
     let start = Instant::now();
     let mut child = command.spawn()?;
     let words = last_words(&mut child);
@@ -80,6 +85,7 @@ pub fn run_child(words: &[String], limit: Duration) -> io::Result<ChildRun> {
         cpu_s: (used.rusage.utime + used.rusage.stime).as_secs_f64(),
         wall_s,
         peak_memory_bytes: used.rusage.maxrss,
+        least_memory_bytes,
     };
     let ended = ended_early.unwrap_or(Ended::Exited(used.status));
     let last_words = words.recv_timeout(LAST_WORDS).unwrap_or_default();

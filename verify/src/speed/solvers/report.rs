@@ -18,8 +18,8 @@ const TIMING: &str = "Every run is a process of its own, with one thread asked f
 const ERRORS: &str = "Errors are root mean square differences from the reference over the largest value \
     of its kind. Differences that are not larger than the error bar of the reference are inconclusive: \
     they are in no fitted order and below no level of cost. References come from FEniCSx and scikit-fem on \
-    meshes of their own; where adapters of these codes solve on the same meshes, their errors are not \
-    independent of the reference.";
+    meshes of their own, graded and halved by symmetry; where adapters of these codes solve on the same \
+    meshes, their errors are not independent of the reference, and that of the finest mesh can be 0.";
 
 const COSTS: &str = "CPU times at equal error are interpolated logarithmically between two neighbouring \
     resolutions; \"<\" marks an upper bound, since the coarsest run is more accurate already. Nothing is \
@@ -46,7 +46,9 @@ pub fn study(contest: &Contest, all: &[CaseRuns], load_before: Option<f64>) -> S
         study.checks.push(check(contest, all, n));
     }
     study.figures.push(overview(contest, all));
-    study.figures.extend(all.iter().map(|case| Figure::Plot(plot(contest, case))));
+    let plots = all.iter().map(|case| plot(contest, case, SeriesStyle::Line));
+    let drawn = plots.filter(|plot| plot.series.iter().any(|series| !series.points.is_empty()));
+    study.figures.extend(drawn.map(Figure::Plot));
     study.leading = 1;
     study.notes = notes(contest, all, load_before);
     study
@@ -69,7 +71,8 @@ fn check(contest: &Contest, all: &[CaseRuns], entrant: usize) -> Check {
 
 fn overview(contest: &Contest, all: &[CaseRuns]) -> Figure {
     let panels = all.iter().map(|case| {
-        Figure::Plot(Plot { title: case.of.source.name.clone(), ..plot(contest, case) })
+        let plot = plot(contest, case, SeriesStyle::Floor);
+        Figure::Plot(Plot { title: case.of.source.name.clone(), ..plot })
     });
     Figure::Panels(Panels {
         title: "Error over CPU time".into(),
@@ -81,8 +84,8 @@ fn overview(contest: &Contest, all: &[CaseRuns]) -> Figure {
     })
 }
 
-/// Error over CPU time, a curve per program.
-fn plot(contest: &Contest, case: &CaseRuns) -> Plot {
+/// Error over CPU time, a curve per program; the error bar of the reference as a line or a floor.
+fn plot(contest: &Contest, case: &CaseRuns, bar_style: SeriesStyle) -> Plot {
     let mut series: Vec<Series> = Vec::new();
     let mut range = (f64::INFINITY, 0.0f64);
     for (n, entrant) in contest.entrants.iter().enumerate() {
@@ -94,8 +97,12 @@ fn plot(contest: &Contest, case: &CaseRuns) -> Plot {
     let bar = bar_of(case).filter(|bar| *bar > 0.0 && range.1 > 0.0);
     if let Some(bar) = bar {
         let points = vec![(range.0, bar), (range.1, bar)];
-        let floor = styled("below the reference's error bar", points, SeriesStyle::Floor);
-        series.push(Series { colour: Some(contest.entrants.len()), ..floor });
+        let name = match bar_style {
+            SeriesStyle::Floor => "below the reference's error bar",
+            _ => "error bar of the reference",
+        };
+        let bar = styled(name, points, bar_style);
+        series.push(Series { colour: Some(contest.entrants.len()), ..bar });
     }
     Plot {
         title: format!("{}: error of the {}", case.of.source.name, case.of.group.label()),
@@ -126,7 +133,7 @@ fn notes(contest: &Contest, all: &[CaseRuns], load_before: Option<f64>) -> Vec<S
     if let Some(bytes) = peak_memory() {
         notes.push(format!(
             "The system counts the memory of this program, {} MB at its peak, to a process until it \
-             has loaded its own: smaller peaks are not seen.",
+             has loaded its own: smaller peaks are not seen, which \"≤\" marks.",
             four_digits(bytes as f64 / 1e6)
         ));
     }

@@ -3,6 +3,7 @@
 use super::contest::{CaseRuns, Contest};
 use super::doubt::false_claim;
 use super::outcome::{Outcome, SolverRun};
+use super::process::Usage;
 use crate::accuracy::{Cost, Group, cost_at};
 use crate::explore::label::{optional, percent};
 use mtled_checks::escape::printable;
@@ -56,7 +57,7 @@ pub fn robustness(contest: &Contest, all: &[CaseRuns]) -> Table {
         let runs = || all.iter().flat_map(|case| &case.runs[n]);
         let solver = runs().find_map(|run| run.outcome.solver());
         let usages = || runs().filter_map(|run| run.usage);
-        let memory = usages().map(|usage| usage.peak_memory_bytes).max();
+        let memory = usages().max_by_key(|usage| usage.peak_memory_bytes);
         let least = usages().map(|usage| usage.cpu_s).reduce(f64::min);
         let count = |count: usize| Cell::Number(count as f64);
         vec![
@@ -72,7 +73,7 @@ pub fn robustness(contest: &Contest, all: &[CaseRuns]) -> Table {
             count(counts.doubtful),
             Cell::Number(usages().map(|usage| usage.cpu_s).sum()),
             optional(least),
-            optional(memory.map(|bytes| bytes as f64 / 1e6)),
+            memory_cell(memory),
         ]
     };
     Table {
@@ -239,9 +240,19 @@ fn run_row(case: &CaseRuns, run: &SolverRun) -> Vec<Cell> {
         optional(run.cpu_s()),
         optional(answered.and_then(|answered| answered.claimed_cpu_s)),
         optional(usage.map(|usage| usage.wall_s)),
-        optional(usage.map(|usage| usage.peak_memory_bytes as f64 / 1e6)),
+        memory_cell(usage),
         label(outcome),
     ]
+}
+
+/// Peak memory \[MB\]; an upper bound where the system cannot tell it from that of this program.
+fn memory_cell(usage: Option<Usage>) -> Cell {
+    let Some(usage) = usage else { return label("–") };
+    let megabytes = usage.peak_memory_bytes as f64 / 1e6;
+    match usage.peak_memory_bytes <= usage.least_memory_bytes {
+        true => label(format!("≤ {}", four_digits(megabytes))),
+        false => Cell::Number(megabytes),
+    }
 }
 
 /// Orders and doubts of a program, a row per case with an answer.
