@@ -18,6 +18,7 @@ MAY_IMPORT = {
     "race": {"shared", *CODES},
     "whole_brain": {"shared", *CODES, "brain"},
     "": {"shared", *CODES, "brain", "whole_brain", "race"},
+    "adapters": {"", "shared", *CODES},
 }
 """The folders from which the files of a folder may import, beside their own; the root of
 the package is ""."""

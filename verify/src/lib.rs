@@ -12,6 +12,8 @@ pub mod scene;
 
 pub mod reference;
 
+pub mod protocol;
+
 pub mod bundled;
 pub mod run;
 pub mod warp;

@@ -177,7 +177,7 @@ fn judge_end(
             }
             Some(Outcome::Succeeded)
         }
-        Some(1) if matches!(step.arguments[0], "report" | "reference" | "study") => {
+        Some(1) if matches!(step.arguments[0], "report" | "reference" | "study" | "protocol") => {
             Some(Outcome::Succeeded)
         }
         Some(2) => {

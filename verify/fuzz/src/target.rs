@@ -28,6 +28,10 @@ pub enum Target {
     Plan,
     /// Stored references: `mtled reference …`, `--reference`.
     Reference,
+    /// Jobs of the solver protocol: `mtled protocol …`.
+    Job,
+    /// Answers of the solver protocol: `mtled protocol check`.
+    Answer,
     /// Inputs that misbehave on purpose, to test the harness.
     #[value(hide = true)]
     Trap,
@@ -86,10 +90,12 @@ const REFERENCE: &[Step] = &[
     step(&["reference", "check", "cook_membrane", "--data", "data"], "out"),
     step(&["reference", "show", "cook_membrane", "--data", "data", "--format", "json"], "out"),
 ];
+const JOB: &[Step] = &[step(&["protocol", "check", "input.json", "answer.json"], "out")];
+const ANSWER: &[Step] = &[step(&["protocol", "check", "job.json", "input.json"], "out")];
 
 impl Target {
     /// All but the traps.
-    pub const ALL: [Target; 12] = [
+    pub const ALL: [Target; 14] = [
         Target::Case,
         Target::LabelMap,
         Target::Surface,
@@ -102,6 +108,8 @@ impl Target {
         Target::Baseline,
         Target::Plan,
         Target::Reference,
+        Target::Job,
+        Target::Answer,
     ];
 
     /// Its name on the command line and in the corpus.
@@ -119,6 +127,8 @@ impl Target {
             Target::Baseline => "baseline",
             Target::Plan => "plan",
             Target::Reference => "reference",
+            Target::Job => "job",
+            Target::Answer => "answer",
             Target::Trap => "trap",
         }
     }
@@ -146,6 +156,8 @@ impl Target {
             Target::Baseline => Some(BASELINE),
             Target::Plan => Some(PLAN),
             Target::Reference => Some(REFERENCE),
+            Target::Job => Some(JOB),
+            Target::Answer => Some(ANSWER),
         }
     }
 
@@ -155,7 +167,12 @@ impl Target {
             Target::LabelMap => &["nrrd", "nhdr", "nii", "nii.gz"],
             Target::Surface => &["stl"],
             Target::Points => &["csv", "npy", "vtu", "vtk"],
-            Target::Store | Target::Report | Target::Baseline | Target::Reference => &["json"],
+            Target::Store
+            | Target::Report
+            | Target::Baseline
+            | Target::Reference
+            | Target::Job
+            | Target::Answer => &["json"],
             Target::Trap => &["txt"],
             _ => &["toml"],
         }

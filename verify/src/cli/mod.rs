@@ -10,9 +10,9 @@ mod load;
 mod messages;
 mod migrate;
 mod progress;
+mod protocol;
 mod publish;
 mod python;
-mod race;
 mod reference;
 mod report;
 mod solve;
@@ -58,6 +58,8 @@ const EXAMPLES: &str = "Examples:
   mtled case list                               the bundled cases
   mtled runs export -o runs.parquet             the results of stored runs as a table
   mtled bench --quick                           how fast is the solver here?
+  mtled study solvers --solver 'mine=python3 mine.py {job} {answer}'
+                                                how accurate and fast is my own solver?
   mtled reference check                         do the finite-element references agree?";
 
 #[derive(Debug, Subcommand)]
@@ -80,7 +82,7 @@ enum Command {
     Tune(tune::TuneArgs),
     /// Write a report again from its results.json, or compare two reports.
     Report(report::ReportArgs),
-    /// Study a case over ranges of its recipe, or race against finite elements.
+    /// Study a case over ranges of its recipe, or race against finite elements or any solver.
     #[command(subcommand)]
     Study(study::StudyCommand),
     /// List, show or remove the stored records of runs.
@@ -94,6 +96,9 @@ enum Command {
     /// Check, show or recompute the finite-element references.
     #[command(subcommand)]
     Reference(reference::ReferenceCommand),
+    /// Jobs and answers of the solver protocol, by which `mtled study solvers` measures any program.
+    #[command(subcommand)]
+    Protocol(protocol::ProtocolCommand),
     /// Measure the speed of the solver and the limits of this machine, as Markdown tables.
     Bench(bench::BenchArgs),
     /// Print a completion script for a shell.
@@ -175,6 +180,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Merge(arguments) => runs::merge(arguments, &cli.common),
         Command::Case(command) => case::case(command, &cli.common),
         Command::Reference(command) => reference::reference(command, &cli.common),
+        Command::Protocol(command) => protocol::protocol(command, &cli.common),
         Command::Bench(arguments) => bench::bench(arguments, &cli.common),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -64,6 +64,11 @@ pub fn parse_overridden(
     build(&format, document, file_name, base_dir)
 }
 
+/// The tables of a case without mistakes, as they are written.
+pub(crate) fn tables(case: &Case) -> Result<CaseFormat, Diagnostic> {
+    deserialise(&Document::parse(case.text(), case.file())?)
+}
+
 /// The JSON Schema of a case file.
 pub fn schema() -> String {
     let schema = schemars::schema_for!(CaseFormat);

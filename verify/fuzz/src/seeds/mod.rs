@@ -40,7 +40,12 @@ pub fn inputs(target: Target) -> Result<Vec<Input>> {
             all.push(Input::new(text, "json"));
         }
         Target::Trap => all.push(Input::new("a trap", "txt")),
-        Target::Store | Target::Report | Target::Baseline | Target::Plan => {}
+        Target::Store
+        | Target::Report
+        | Target::Baseline
+        | Target::Plan
+        | Target::Job
+        | Target::Answer => {}
     }
     Ok(all)
 }

@@ -20,7 +20,9 @@ macro_rules! choice {
         $($(#[$variant_doc:meta])* $word:literal $variant:ident),+ $(,)?
     }) => {
         $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, schemars::JsonSchema)]
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, Hash, schemars::JsonSchema, serde::Serialize,
+        )]
         pub enum $name {
             $($(#[$variant_doc])* #[serde(rename = $word)] $variant),+
         }

@@ -11,11 +11,11 @@ mod time;
 
 pub use case::{CaseFormat, DimensionFormat};
 pub use conditions::{
-    AmplitudeFormat, BeyondFormat, DataFormat, DisplacementFormat, FormulaFormat, ObstacleFormat,
-    PrescribeFormat, RotationFormat,
+    AmplitudeFormat, BeyondFormat, DataFormat, DisplacementFormat, ExtentFormat, FormulaFormat,
+    FrictionFormat, ObstacleFormat, PrescribeFormat, RotationFormat, SideFormat,
 };
-pub use geometry::{SelectorFormat, ShapeFormat, UnitFormat};
-pub use material::{LawFormat, MaterialFormat};
+pub use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
+pub use material::{LawFormat, MaterialFormat, VolumetricFormat};
 pub use recipe::{
     BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientsFormat, GridFormat,
     MassFormat, VolumetricProjectionFormat, WeightFunctionFormat,

@@ -1,9 +1,9 @@
 //! `mtled study race`.
 
-use super::common::Common;
-use super::publish::{publish, report_of, tables};
-use super::python::{checkout, installed};
-use super::streams::print_data;
+use crate::cli::common::Common;
+use crate::cli::publish::{publish, report_of, tables};
+use crate::cli::python::{checkout, installed};
+use crate::cli::streams::print_data;
 use crate::speed::race::{
     Challenge, Code, FINITE_ELEMENT_CODES, Interpreter, RaceOutcome, RaceSettings, race, run_here,
 };

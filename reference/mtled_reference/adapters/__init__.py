@@ -1,0 +1,1 @@
+"""Adapters of the solver protocol (reference/adapters/README.md)."""

@@ -1,0 +1,33 @@
+"""Which mesh a job gets: an even one of the wanted spacing, or one of those of the references."""
+
+import numpy as np
+
+from .. import LEVELS
+from ..shared.case import Case
+from ..shared.selection import bounding_box
+from .files import Refused
+
+EVEN = {"all", "plane", "half_space", "box"}
+"""Selections whose borders an even mesh of a box can follow."""
+
+
+def is_even(case: Case) -> bool:
+    """Whether the case is the equilibrium of a box whose selections are parallel to it."""
+    selectors = [p.selector for p in case.prescriptions] + [r.selector for r in case.regions]
+    selectors += [traction.selector for traction in case.tractions]
+    kinds = {s if isinstance(s, str) else next(iter(s)) for s in selectors}
+    return case.is_static and case.dimension == 3 and "box" in case.shape and kinds <= EVEN
+
+
+def counts(case: Case, spacing: float, degree: int) -> tuple[np.ndarray, np.ndarray, list[int]]:
+    """Lowest and highest corner of a box [m] and numbers of elements of a degree along its axes
+    whose nodes have the wanted spacing [m]."""
+    low, high = bounding_box(case.shape)
+    return low, high, [max(1, round(length / (degree * spacing))) for length in high - low]
+
+
+def reference_level(job: dict) -> int:
+    """The mesh of the stored reference for a job, from 0, the coarsest."""
+    if job["level"] not in LEVELS:
+        raise Refused("there are three meshes of this case", "resolution")
+    return job["level"]

@@ -1,0 +1,248 @@
+//! Prescribed displacements, loads and obstacles in a job.
+
+use super::geometry::{Selection, Shape};
+use crate::scene::Case;
+use crate::scene::format::{
+    BeyondFormat, CaseFormat, DataFormat, ExtentFormat, FrictionFormat, PrescribeFormat,
+    SelectorFormat, SideFormat, Triple, UnitFormat,
+};
+use mtled::problem::Amplitude;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// A prescribed displacement: `motion` times the factor of each instant.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Support {
+    pub name: String,
+    /// Whether it acts on the boundary of the body only or everywhere in the selection.
+    pub of: ExtentFormat,
+    #[serde(rename = "where")]
+    pub part: Selection,
+    pub motion: SupportMotion,
+    pub history: History,
+    /// It acts before this time only; for ever where it is null.
+    pub release_s: Option<f64>,
+}
+
+/// A displacement at factor 1.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum SupportMotion {
+    /// The same everywhere; a component that is null is free.
+    Displacement { x_m: Option<f64>, y_m: Option<f64>, z_m: Option<f64> },
+    /// About an axis through a point; the factor multiplies the angle.
+    Rotation { point_m: Triple, axis: Triple, angle_rad: f64 },
+    /// Formulas of the reference position x, y, z [m] in + - * / ^, parentheses, sqrt, exp, ln,
+    /// sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, abs and PI, each times `scale_m`.
+    Formula { x: String, y: String, z: String, scale_m: f64 },
+    /// At scattered points in a file (CSV, NPY or VTU); between them the linear function counts
+    /// that fits the nearest 16 best. Points of the body that are farther than `reach_m` are an
+    /// error or free.
+    Data {
+        file: PathBuf,
+        unit: UnitFormat,
+        field: String,
+        reach_m: f64,
+        free_beyond: bool,
+        scale: f64,
+    },
+}
+
+/// A factor over time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct History {
+    pub amplitude: JobAmplitude,
+    /// Its value at each instant of the job.
+    pub factors: Vec<f64>,
+}
+
+/// The formula of a factor over time t.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum JobAmplitude {
+    /// 1 from the start.
+    Constant,
+    /// From 0 to 1 in a straight line, then 1.
+    Linear { duration_s: f64 },
+    /// 10s³ − 15s⁴ + 6s⁵ with s = t/duration, then 1.
+    Smooth { duration_s: f64 },
+    /// Straight lines through rows of time [s] and factor, constant outside.
+    Table { rows: Vec<[f64; 2]> },
+}
+
+/// Forces and initial velocities.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Loads {
+    pub body_forces: Vec<BodyForce>,
+    pub tractions: Vec<Traction>,
+    pub pressures: Vec<Pressure>,
+    pub initial_velocities: Vec<InitialVelocity>,
+}
+
+/// A force per mass.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BodyForce {
+    #[serde(rename = "where")]
+    pub part: Selection,
+    /// At factor 1.
+    pub acceleration_m_per_s2: Triple,
+    pub history: History,
+}
+
+/// A dead traction on a part of the boundary, per reference area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Traction {
+    pub name: String,
+    #[serde(rename = "where")]
+    pub part: Selection,
+    /// At factor 1.
+    pub traction_pa: Triple,
+    pub history: History,
+}
+
+/// A pressure on the deformed surface along its inward normal, per deformed area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Pressure {
+    pub name: String,
+    #[serde(rename = "where")]
+    pub part: Selection,
+    /// At factor 1, positive where it presses on the body.
+    pub pressure_pa: f64,
+    pub history: History,
+}
+
+/// A velocity at t = 0; the first selection that contains a point counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct InitialVelocity {
+    #[serde(rename = "where")]
+    pub part: Selection,
+    pub velocity_m_per_s: Triple,
+}
+
+/// A rigid obstacle that the body may not enter: a shape grown by an offset.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Contact {
+    pub name: String,
+    pub shape: Shape,
+    pub offset_m: f64,
+    pub side: SideFormat,
+    pub friction: FrictionFormat,
+}
+
+impl History {
+    fn new(amplitude: &Amplitude, instants: &[f64]) -> History {
+        History {
+            factors: instants.iter().map(|time| amplitude.at(*time)).collect(),
+            amplitude: match amplitude {
+                Amplitude::Constant => JobAmplitude::Constant,
+                Amplitude::Linear { duration } => JobAmplitude::Linear { duration_s: *duration },
+                Amplitude::Smooth { duration } => JobAmplitude::Smooth { duration_s: *duration },
+                Amplitude::Table(rows) => {
+                    JobAmplitude::Table { rows: rows.iter().map(|&(t, f)| [t, f]).collect() }
+                }
+            },
+        }
+    }
+}
+
+impl SupportMotion {
+    fn new(row: &PrescribeFormat) -> Option<SupportMotion> {
+        if let Some(free) = &row.displacement {
+            return Some(SupportMotion::Displacement { x_m: free.x, y_m: free.y, z_m: free.z });
+        }
+        if let Some(rotation) = &row.rotation {
+            let (point_m, axis) = (rotation.point, rotation.axis);
+            return Some(SupportMotion::Rotation { point_m, axis, angle_rad: rotation.angle });
+        }
+        if let Some(formula) = &row.formula {
+            return Some(SupportMotion::Formula {
+                x: formula.x.clone(),
+                y: formula.y.clone(),
+                z: formula.z.clone().unwrap_or_else(|| "0".into()),
+                scale_m: formula.factor,
+            });
+        }
+        row.data.as_ref().map(|DataFormat { file, unit, field, reach, beyond, factor }| {
+            SupportMotion::Data {
+                file: file.clone(),
+                unit: *unit,
+                field: field.clone(),
+                reach_m: *reach,
+                free_beyond: *beyond == BeyondFormat::Free,
+                scale: *factor,
+            }
+        })
+    }
+}
+
+/// The supports of a sound case; `tolerance_m` is that of selections that state none.
+pub fn supports(
+    format: &CaseFormat,
+    case: &Case,
+    tolerance_m: f64,
+    instants: &[f64],
+) -> Vec<Support> {
+    let pairs = format.prescribe.iter().zip(&case.problem.conditions);
+    let support = |(row, known): (&PrescribeFormat, &mtled::problem::EssentialCondition)| {
+        Some(Support {
+            name: row.name.clone(),
+            of: row.of,
+            part: Selection::new(&row.part, tolerance_m),
+            motion: SupportMotion::new(row)?,
+            history: History::new(&known.amplitude, instants),
+            release_s: row.release,
+        })
+    };
+    pairs.filter_map(support).collect()
+}
+
+/// The loads of a sound case.
+pub fn loads(format: &CaseFormat, case: &Case, tolerance_m: f64, instants: &[f64]) -> Loads {
+    let known = &case.problem.loads;
+    let part = |format: &SelectorFormat| Selection::new(format, tolerance_m);
+    let history = |amplitude: &Amplitude| History::new(amplitude, instants);
+    let body_forces = format.body_force.iter().zip(&known.body_forces);
+    let tractions = format.traction.iter().zip(&known.tractions);
+    let pressures = format.pressure.iter().zip(&known.pressures);
+    Loads {
+        body_forces: body_forces
+            .map(|(row, known)| BodyForce {
+                part: row.part.as_ref().map_or(Selection::All, part),
+                acceleration_m_per_s2: row.acceleration,
+                history: history(&known.amplitude),
+            })
+            .collect(),
+        tractions: tractions
+            .map(|(row, known)| Traction {
+                name: row.name.clone(),
+                part: part(&row.part),
+                traction_pa: row.traction,
+                history: history(&known.amplitude),
+            })
+            .collect(),
+        pressures: pressures
+            .map(|(row, known)| Pressure {
+                name: row.name.clone(),
+                part: part(&row.part),
+                pressure_pa: row.pressure,
+                history: history(&known.amplitude),
+            })
+            .collect(),
+        initial_velocities: (format.initial_velocity.iter())
+            .map(|row| InitialVelocity { part: part(&row.part), velocity_m_per_s: row.velocity })
+            .collect(),
+    }
+}
+
+/// The obstacles of a sound case.
+pub fn obstacles(format: &CaseFormat) -> Vec<Contact> {
+    let contact = |row: &crate::scene::format::ObstacleFormat| Contact {
+        name: row.name.clone(),
+        shape: (&row.shape).into(),
+        offset_m: row.offset,
+        side: row.side,
+        friction: row.friction,
+    };
+    format.obstacle.iter().map(contact).collect()
+}

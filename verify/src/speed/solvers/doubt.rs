@@ -1,0 +1,130 @@
+//! What makes answers that keep to the protocol doubtful.
+
+use super::outcome::SolverRun;
+use crate::protocol::Answered;
+use crate::reference::{Family, ReferenceValues};
+use mtled_checks::report::four_digits;
+
+/// Powers of ten that wrong units make.
+const WRONG_UNITS: [i32; 4] = [-6, -3, 3, 6];
+/// Largest deviation of a factor from such a power, relative \[–\].
+const FACTOR: f64 = 0.1;
+/// Smallest cosine between an answer and the reference for which a factor means something \[–\].
+const COSINE: f64 = 0.98;
+/// A claim is named where it differs by more than this from what was measured, relative \[–\] …
+const CLAIM: f64 = 0.5;
+/// … and by more than this \[s\].
+const CLAIM_S: f64 = 0.2;
+
+/// Why answers are doubtful.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Doubt {
+    #[error(
+        "wrong units? {family} is {factor} times the reference everywhere, close to 10^{power}"
+    )]
+    Units { family: &'static str, factor: String, power: i32 },
+    #[error("the answer does not depend on the resolution")]
+    SameAnswers,
+    #[error(
+        "the unknowns do not grow with the resolution: {first} on level {coarse}, {last} on level {fine}"
+    )]
+    Unknowns { coarse: usize, first: u64, fine: usize, last: u64 },
+}
+
+/// Whether the values of a family are those of the reference times a power of ten. The factor is
+/// that of the least squares.
+pub fn wrong_units(answered: &Answered, reference: &[ReferenceValues]) -> Option<Doubt> {
+    let families = [Family::Displacement, Family::Force, Family::Moment, Family::StrainEnergy];
+    let names = ["the displacement", "the reaction", "the moment", "the strain energy"];
+    families.into_iter().zip(names).find_map(|(family, name)| {
+        let (mut computed, mut known) = (Vec::new(), Vec::new());
+        for (values, reference) in answered.values.iter().zip(reference) {
+            if let Some(values) = values.as_ref().filter(|_| reference.quantity.family == family) {
+                computed.extend_from_slice(values);
+                known.extend_from_slice(&reference.values);
+            }
+        }
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let size = product(&known, &known);
+        let factor = product(&computed, &known) / size;
+        let cosine = product(&computed, &known) / (size * product(&computed, &computed)).sqrt();
+        let power = WRONG_UNITS
+            .into_iter()
+            .find(|power| (factor / 10f64.powi(*power) - 1.0).abs() < FACTOR && cosine > COSINE)?;
+        Some(Doubt::Units { family: name, factor: four_digits(factor), power })
+    })
+}
+
+/// Whether a series of runs from coarse to fine looks as if no system had been solved. Answers
+/// that are the same are right where none `differs` from the reference.
+pub fn about_series(runs: &[SolverRun], differs: bool) -> Vec<Doubt> {
+    let answered: Vec<(usize, &Answered)> =
+        runs.iter().filter_map(|run| Some((run.level, run.outcome.answered()?))).collect();
+    let [(coarse, first), .., (fine, last)] = answered[..] else { return Vec::new() };
+    let mut doubts = Vec::new();
+    if differs && answered.windows(2).all(|pair| pair[0].1.values == pair[1].1.values) {
+        doubts.push(Doubt::SameAnswers);
+    }
+    if last.unknowns <= first.unknowns {
+        let (first, last) = (first.unknowns, last.unknowns);
+        doubts.push(Doubt::Unknowns { coarse, first, fine, last });
+    }
+    doubts
+}
+
+/// What a run claims and what was measured, where they differ strongly.
+pub fn false_claim(run: &SolverRun) -> Option<String> {
+    let (claimed, measured) = (run.outcome.answered()?.claimed_cpu_s?, run.cpu_s()?);
+    let difference = (claimed - measured).abs();
+    (difference > CLAIM * measured && difference > CLAIM_S).then(|| {
+        format!(
+            "claims {} s of CPU time where {} s were measured",
+            four_digits(claimed),
+            four_digits(measured)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::SolverName;
+    use crate::reference::Quantity;
+
+    fn answered(values: &[f64]) -> Answered {
+        Answered {
+            solver: SolverName { name: "s".into(), version: "1".into() },
+            values: vec![Some(values.to_vec())],
+            unknowns: 3,
+            claimed_cpu_s: None,
+            claimed_memory_bytes: None,
+            method: None,
+        }
+    }
+
+    fn reference() -> Vec<ReferenceValues> {
+        let quantity = Quantity {
+            name: "displacement/p".into(),
+            family: Family::Displacement,
+            width: 3,
+            changes: true,
+        };
+        let values = vec![0.01, -0.002, 0.0];
+        vec![ReferenceValues { quantity, errors: vec![0.0; 3], error: 0.0, scale: 0.01, values }]
+    }
+
+    #[test]
+    fn millimetres_are_noticed_also_where_the_answer_is_five_per_cent_off() {
+        let doubt = wrong_units(&answered(&[10.5, -1.9, 0.1]), &reference()).unwrap();
+        assert!(matches!(doubt, Doubt::Units { power: 3, .. }), "{doubt:?}");
+        let doubt = wrong_units(&answered(&[1e-5, -2e-6, 0.0]), &reference()).unwrap();
+        assert!(matches!(doubt, Doubt::Units { power: -3, .. }), "{doubt:?}");
+    }
+
+    #[test]
+    fn an_answer_that_is_only_wrong_has_no_wrong_units() {
+        for values in [[0.01, -0.002, 0.0], [0.0, 0.0, 0.0], [1.0, 10.0, -3.0], [0.1, -0.02, 0.0]] {
+            assert_eq!(wrong_units(&answered(&values), &reference()), None, "{values:?}");
+        }
+    }
+}

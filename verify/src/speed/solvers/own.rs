@@ -1,0 +1,95 @@
+//! The door of the protocol to this solver.
+
+use crate::accuracy::{SAMPLES, values};
+use crate::machine::{cpu_seconds, peak_memory};
+use crate::protocol::{Answer, Job, PROTOCOL, Refusal, RefusalReason, Refused, Reply, SolverName};
+use crate::reference::{Family, is_dynamic, quantities};
+use crate::run::{Recorder, integrate, prepare_to_run, refuse_beyond_memory};
+use crate::scene::{Case, Knob, Setting, edited, one_error, parse_case, read_text};
+use anyhow::{Context, Result, bail};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Solves a job with the recipe of its case file at the wanted spacing.
+pub fn solve_job(job: &Job) -> Result<Reply> {
+    let case = match case_of(job)? {
+        Ok(case) => case,
+        Err(reason) => return Ok(refusal(RefusalReason::Resolution, reason)),
+    };
+    if let Err(shortage) = refuse_beyond_memory(&case) {
+        return Ok(refusal(RefusalReason::Resolution, shortage.to_string()));
+    }
+    let prepared = match prepare_to_run(&case.problem) {
+        Ok(prepared) => prepared,
+        Err(error) => return Ok(refusal(RefusalReason::Resolution, error.to_string())),
+    };
+    let unknowns = prepared.model.size() as u64;
+    let mut recorder = Recorder::new(&case, &prepared, 0)?;
+    match integrate(&case.problem, prepared, &mut recorder) {
+        Ok(solved) if solved.summary.stopped => bail!("stopped"),
+        Ok(_) => {}
+        Err(error) => return Ok(refusal(RefusalReason::NotConverged, error.to_string())),
+    }
+    let values = values(&case, &recorder.finish(), &job.instants_s)?;
+    Ok(Reply::Answer(answer(&case, &values, unknowns)))
+}
+
+/// The case at the wanted spacing, or why there is none.
+fn case_of(job: &Job) -> Result<Result<Case, String>> {
+    let file = &job.case_file;
+    let text = read_text(file).with_context(|| format!("cannot read {}", file.display()))?;
+    let text = match edited(&text, &[Setting::number(Knob::Spacing, job.spacing_m)]) {
+        Ok(text) => text,
+        Err(reason) => return Ok(Err(reason.to_string())),
+    };
+    let folder = file.parent().unwrap_or(Path::new("."));
+    let mut case = parse_case(&text, &file.display().to_string(), folder).map_err(one_error)?;
+    if is_dynamic(&case) {
+        case.outputs.history = case.outputs.history.max(SAMPLES);
+    }
+    Ok(Ok(case))
+}
+
+fn solver() -> SolverName {
+    SolverName { name: "mtled".into(), version: env!("CARGO_PKG_VERSION").into() }
+}
+
+fn refusal(reason: RefusalReason, what: String) -> Reply {
+    let refused = Refused { reason, what };
+    Reply::Refusal(Refusal { protocol: PROTOCOL, solver: solver(), refused })
+}
+
+fn answer(case: &Case, values: &[Vec<f64>], unknowns: u64) -> Answer {
+    let (mut displacements_m, mut reactions_n) = (BTreeMap::new(), BTreeMap::new());
+    let mut moments_nm = BTreeMap::new();
+    let (mut strain_energy_j, mut kinetic_energy_j) = (None, None);
+    for (quantity, values) in quantities(case).iter().zip(values) {
+        let name = quantity.name.split_once('/').map_or("", |(_, name)| name).to_string();
+        let triples: Vec<[f64; 3]> = values.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect();
+        match quantity.family {
+            Family::Displacement => {
+                let positions = quantity.width / quantity.family.components();
+                let instants = triples.chunks(positions).map(<[_]>::to_vec).collect();
+                displacements_m.insert(name, instants);
+            }
+            Family::Force => drop(reactions_n.insert(name, triples)),
+            Family::Moment => drop(moments_nm.insert(name, triples)),
+            Family::StrainEnergy => strain_energy_j = Some(values.clone()),
+            Family::KineticEnergy => kinetic_energy_j = Some(values.clone()),
+            Family::Centre => {}
+        }
+    }
+    Answer {
+        protocol: PROTOCOL,
+        solver: solver(),
+        displacements_m,
+        reactions_n,
+        moments_nm,
+        strain_energy_j,
+        kinetic_energy_j,
+        unknowns,
+        cpu_s: Some(cpu_seconds()),
+        peak_memory_bytes: peak_memory(),
+        method: Some("the recipe of the case file".into()),
+    }
+}
