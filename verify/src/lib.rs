@@ -13,6 +13,8 @@ pub mod scene;
 pub mod reference;
 
 pub mod bundled;
+pub mod display;
+pub mod picture;
 pub mod run;
 pub mod warp;
 

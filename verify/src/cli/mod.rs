@@ -18,6 +18,7 @@ mod solve;
 mod streams;
 mod study;
 mod verify;
+mod view;
 mod warp;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -45,7 +46,8 @@ const EXAMPLES: &str = "Examples:
   mtled verify --only brain --out brain_report  run one study
   mtled verify --baseline baseline.json         has anything got worse?
   mtled report last_week reports/verify         compare two runs
-  mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON files
+  mtled solve reference/cases/brain_slice.toml  solve a case, write a page, VTU, CSV and JSON files
+  mtled view reports/brain_slice -o brain.svg   draw the body before and after
   mtled warp reports/brain_slice --image t1.nii deform an image by the result of a run
   mtled inspect my_case.toml                    are its nodes and supports suitable?
   mtled budget my_case.toml                     how large is the error, why, and at what cost?
@@ -61,6 +63,8 @@ const EXAMPLES: &str = "Examples:
 enum Command {
     /// Solve a case file.
     Solve(solve::SolveArgs),
+    /// Draw the body of a solved case, before and after, as SVG.
+    View(view::ViewArgs),
     /// Deform images and move landmarks by the displacement field of a solved case.
     Warp(warp::WarpArgs),
     /// Examine the nodes, supports and quadrature of a case without running it: points per node,
@@ -158,6 +162,7 @@ fn requested_format() -> Format {
 fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
     match &cli.command {
         Command::Solve(arguments) => solve::solve(arguments, &cli.common),
+        Command::View(arguments) => view::view(arguments, &cli.common),
         Command::Warp(arguments) => warp::warp(arguments, &cli.common),
         Command::Inspect(arguments) => inspect::inspect(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
