@@ -41,6 +41,7 @@ fn the_body_of_a_run_is_drawn_with_the_chosen_field_direction_and_panels() {
     assert_eq!(printed["frame"], "out/body_0000.vtu");
     let picture = std::fs::read_to_string(folder.path().join("p.svg")).unwrap();
     assert_eq!(picture.matches("<image ").count(), 1);
+    assert!(picture.contains("von Mises stress ["));
 }
 
 #[test]
@@ -49,7 +50,10 @@ fn what_cannot_be_drawn_is_refused_with_its_reason_and_nothing_is_written() {
     let refusals: [(&[&str], &str); 5] = [
         (&["view", "out", "-o", "p.png"], "p.png: pictures are SVG"),
         (&["view", "out", "-o", "p.svg", "--field", "colour"], "it has displacement, J"),
-        (&["view", "out", "-o", "p.svg", "--frame", "77"], "no frame of the body with the number 77"),
+        (
+            &["view", "out", "-o", "p.svg", "--frame", "77"],
+            "no frame of the body with the number 77",
+        ),
         (&["view", "nowhere", "-o", "p.svg"], "cannot read the folder nowhere"),
         (&["view", "out", "-o", "p.svg", "--from", "0,0,0"], "three numbers that are not all zero"),
     ];
@@ -71,7 +75,8 @@ fn what_cannot_be_drawn_is_refused_with_its_reason_and_nothing_is_written() {
 fn the_page_of_a_run_has_verdict_pictures_answers_and_cost_and_needs_nothing_else() {
     let folder = solved("");
     let page = std::fs::read_to_string(folder.path().join("out/index.html")).unwrap();
-    for part in ["Converged to its tolerance", "Before", "After", "± ", "What it cost", "case.pvd"] {
+    for part in ["Converged to its tolerance", "Before", "After", "± ", "What it cost", "case.pvd"]
+    {
         assert!(page.contains(part), "{part}");
     }
     assert!(page.len() < 1_000_000, "{}", page.len());

@@ -17,6 +17,11 @@ const FARTHEST: f64 = 0.9;
 const LEFT: f64 = 0.12;
 /// Weight of staying, over that of the faces \[–\].
 const STAYING: f64 = 0.01;
+/// Depth of a face below the surface from which it cuts something off, over the edge of the
+/// lattice \[–\].
+const DEEP: f64 = 0.08;
+/// The smallest cell that is added, over the cube of that edge \[–\].
+const SMALLEST: f64 = 1e-3;
 /// How often notches are filled in a round, as each may leave others.
 const MOST_FILLS: usize = 4;
 /// Rounds, each from what the one before has left.
@@ -58,14 +63,64 @@ pub fn sharpen(mesh: &mut Mesh, shape: &Shape, edge: f64) {
         };
         let mut targets: Vec<_> = at_vertex.par_iter().enumerate().filter_map(target).collect();
         targets.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let caps = if plane { Vec::new() } else { caps(mesh, shape, (&faces, &at_vertex), edge) };
         let cells = mesh.cells_around();
         for (_, vertex, point) in targets {
             moved(mesh, &cells, vertex, &point, LEFT);
         }
+        add_caps(mesh, caps, edge);
         let mut left = if plane { 0 } else { MOST_FILLS };
         while left > 0 && fill_notches(mesh, shape, edge) {
             left -= 1;
         }
+    }
+}
+
+/// A face that cuts a corner of the solid off, and the corner.
+type Cap = (f64, Vec<u32>, Vector3);
+
+/// The faces that lie deep in the solid, the deepest first, with the points where the planes
+/// around them meet.
+fn caps(
+    mesh: &Mesh,
+    shape: &Shape,
+    (faces, at_vertex): (&[Face], &[Vec<u32>]),
+    edge: f64,
+) -> Vec<Cap> {
+    let cap = |face: &Face| -> Option<Cap> {
+        let centre = mesh.centre(&face.corners);
+        let depth = (face.point - centre).dot(&face.normal);
+        if depth < DEEP * edge {
+            return None;
+        }
+        let around = face.corners.iter().flat_map(|&n| &at_vertex[n as usize]);
+        let planes: Vec<&Face> = around.map(|&n| &faces[n as usize]).collect();
+        let point = meeting(&centre, &planes)?;
+        let on_it = shape.signed_distance(&point).abs() < 0.02 * edge;
+        let near = (point - centre).norm() < FARTHEST * edge;
+        (on_it && near).then(|| (depth, face.corners.clone(), point))
+    };
+    let mut caps: Vec<Cap> = faces.par_iter().filter_map(cap).collect();
+    caps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    caps
+}
+
+/// Adds a cell between each of these faces and its point, unless a neighbour has one already.
+fn add_caps(mesh: &mut Mesh, caps: Vec<Cap>, edge: f64) {
+    let mut used = vec![false; mesh.vertices.len()];
+    for (_, corners, point) in caps {
+        if corners.iter().any(|&n| used[n as usize]) {
+            continue;
+        }
+        mesh.vertices.push(point);
+        let cell = [&corners[..], &[mesh.vertices.len() as u32 - 1]].concat();
+        if mesh.measure(&cell) < SMALLEST * edge.powi(3) {
+            mesh.vertices.pop();
+            continue;
+        }
+        corners.iter().for_each(|&n| used[n as usize] = true);
+        mesh.cells.extend(cell);
+        mesh.regions.push(0);
     }
 }
 

@@ -52,7 +52,8 @@ impl Field {
 
     /// What the colours mean.
     pub fn label(&self) -> String {
-        let words = self.name.replace('_', " ");
+        let words = self.name.replace('_', " ").replace("von mises", "von Mises");
+        let words = words.replace("green lagrange", "Green–Lagrange");
         match self.name.starts_with("principal") {
             true => format!("largest {words}"),
             false => words,

@@ -50,6 +50,11 @@ pub fn of_region(region: u16, regions: usize) -> Colour {
     }
 }
 
+/// The colour of a region, as text.
+pub fn region_colour(region: usize, regions: usize) -> String {
+    hexadecimal(of_region(region as u16, regions))
+}
+
 /// `#rrggbb`.
 pub fn hexadecimal(colour: Colour) -> String {
     let [r, g, b] = colour.map(byte);

@@ -12,6 +12,7 @@ mod svg;
 
 pub use body::{Body, Field};
 pub use camera::Direction;
+pub use colours::region_colour;
 pub use panel::{Choice, Panel, Shown, panels};
 pub use svg::{bar_svg, panel_svg, picture_svg};
 

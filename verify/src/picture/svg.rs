@@ -9,8 +9,8 @@ use mtled_checks::report::four_digits;
 use mtled_checks::report::svg::{STYLE, escape};
 use std::fmt::Write;
 
-/// Steps of colour of a bar.
-const STEPS: usize = 48;
+/// Colours of a bar between which others are mixed.
+const STOPS: usize = 18;
 const BAR: [f64; 2] = [380.0, 14.0];
 /// Left of a bar, and its whole picture \[pixel\].
 const LEFT: f64 = 20.0;
@@ -82,17 +82,16 @@ fn title(scale: &Scale) -> String {
 fn bar(scale: &Scale, [left, top]: [f64; 2]) -> String {
     let mut text = String::new();
     let [width, height] = BAR;
-    let step = width / STEPS as f64;
-    for n in 0..STEPS {
-        let colour = hexadecimal(viridis((n as f64 + 0.5) / STEPS as f64));
-        // A little wider than its step, so that no gaps show between them.
-        let _ = writeln!(
-            text,
-            "<rect x=\"{:.2}\" y=\"{top}\" width=\"{:.2}\" height=\"{height}\" fill=\"{colour}\"/>",
-            left + n as f64 * step,
-            if n + 1 < STEPS { step + 0.5 } else { step },
-        );
-    }
+    let stop = |n: usize| {
+        let part = n as f64 / STOPS as f64;
+        format!("<stop offset=\"{part:.3}\" stop-color=\"{}\"/>", hexadecimal(viridis(part)))
+    };
+    let stops: String = (0..=STOPS).map(stop).collect();
+    let _ = writeln!(
+        text,
+        "<linearGradient id=\"colours\">{stops}</linearGradient>\n<rect x=\"{left}\" y=\"{top}\" \
+         width=\"{width}\" height=\"{height}\" fill=\"url(#colours)\"/>"
+    );
     for tick in scale.ticks() {
         let x = left + width * scale.fraction(tick / scale.factor);
         let _ = writeln!(

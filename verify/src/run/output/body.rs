@@ -127,7 +127,7 @@ impl BodyFrames {
 /// √(3/2 s : s) with the deviator s of a Cauchy stress by rows \[Pa\].
 fn von_mises(stress: &[f64]) -> f64 {
     let mean = (stress[0] + stress[4] + stress[8]) / 3.0;
-    let part = |k: usize| stress[k] - if k % 4 == 0 { mean } else { 0.0 };
+    let part = |k: usize| stress[k] - if k.is_multiple_of(4) { mean } else { 0.0 };
     (1.5 * (0..9).map(|k| part(k).powi(2)).sum::<f64>()).sqrt()
 }
 

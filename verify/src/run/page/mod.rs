@@ -42,6 +42,7 @@ pub fn run_page(
         plots => plots.iter().map(|plot| Value::from_safe_string(svg::to_svg(plot))).collect::<Vec<_>>(),
         plot_titles => plots.iter().map(|plot| plot.title().to_string()).collect::<Vec<_>>(),
         answers => answers(case, result),
+        bars => !result["error_bars"]["probes"].is_null(),
         no_bars => result["error_bars"]["unknown"].as_str(),
         reactions => reactions(result),
         contacts => contacts(result),

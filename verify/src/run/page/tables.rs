@@ -1,5 +1,6 @@
 //! Tables of the page of a run, from its `result.json`.
 
+use crate::picture::region_colour;
 use crate::scene::Case;
 use minijinja::{Value, context};
 use mtled_checks::report::four_digits;
@@ -99,12 +100,14 @@ pub fn contacts(result: &Json) -> Vec<Value> {
 
 /// Regions and their materials.
 pub fn materials(case: &Case) -> Vec<Value> {
-    let regions = case.problem.regions.iter();
-    regions
-        .map(|region| {
+    let regions = &case.problem.regions;
+    let numbered = regions.iter().enumerate();
+    numbered
+        .map(|(number, region)| {
             let constants = region.material.law.constants();
             context! {
                 name => region.name.as_str(),
+                colour => region_colour(number, regions.len()),
                 shear => four_digits(constants.shear_modulus),
                 bulk => four_digits(constants.bulk_modulus),
                 density => four_digits(region.material.density),
