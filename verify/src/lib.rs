@@ -15,6 +15,8 @@ pub mod reference;
 pub mod protocol;
 
 pub mod bundled;
+pub mod display;
+pub mod picture;
 pub mod run;
 pub mod warp;
 

@@ -124,7 +124,15 @@ fn a_run_writes_its_files_and_only_data_to_standard_output() {
     let history = std::fs::read_to_string(dir.path().join("history.csv")).unwrap();
     assert!(history.starts_with("step,time_s,"), "{history}");
     assert!(history.lines().count() >= 5, "{history}");
-    for name in ["nodes_0000.vtu", "nodes_0002.vtu", "case.pvd"] {
+    let files = [
+        "nodes_0000.vtu",
+        "nodes_0002.vtu",
+        "body_0002.vtu",
+        "case.pvd",
+        "case_nodes.pvd",
+        "index.html",
+    ];
+    for name in files {
         assert!(dir.path().join(name).exists(), "{name} is missing");
     }
     let (code, out, err) = solve(&case, dir.path(), &["--quiet"]);

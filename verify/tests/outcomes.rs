@@ -266,15 +266,19 @@ fn a_ball_that_topples_is_called_unstable_and_its_mode_is_drawn() {
     let run = Run::of(HEAVY_BALL);
     assert!(run.said().contains("unstable: "), "{}", run.said());
     let out = run.folder.path().join("out");
-    let mut frames: Vec<_> = std::fs::read_dir(out)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "vtu"))
-        .collect();
-    frames.sort();
     let drawn = |path: &Path| {
         String::from_utf8_lossy(&std::fs::read(path).unwrap()).contains("unstable_mode")
     };
-    let (last, others) = frames.split_last().unwrap();
-    assert!(drawn(last) && !others.iter().any(|frame| drawn(frame)));
+    for kind in ["body_", "nodes_"] {
+        let mut frames: Vec<_> = std::fs::read_dir(&out)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.file_name().unwrap().to_string_lossy().starts_with(kind))
+            .collect();
+        frames.sort();
+        let (last, others) = frames.split_last().unwrap();
+        assert!(drawn(last) && !others.iter().any(|frame| drawn(frame)));
+    }
+    let page = std::fs::read_to_string(out.join("index.html")).unwrap();
+    assert!(page.contains("the body is unstable"), "{page}");
 }

@@ -36,9 +36,16 @@ fn folder_with(parts: &[&str]) -> (TempDir, PathBuf) {
     (dir, path)
 }
 
+/// Number of frames of the nodes; those of the body are as many.
 fn frames(out: &Path) -> usize {
-    let names = std::fs::read_dir(out).unwrap().map(|entry| entry.unwrap().file_name());
-    names.filter(|name| name.to_str().unwrap().ends_with(".vtu")).count()
+    let count = |kind: &str| {
+        let names = std::fs::read_dir(out).unwrap().map(|entry| entry.unwrap().file_name());
+        let numbered = |name: &str| name.ends_with(".vtu") && !name.contains("of_mine");
+        let own = names.filter(|name| name.to_str().unwrap().starts_with(kind));
+        own.filter(|name| numbered(name.to_str().unwrap())).count()
+    };
+    assert_eq!(count("nodes_"), count("body_"));
+    count("nodes_")
 }
 
 #[cfg(target_os = "linux")]
@@ -118,7 +125,8 @@ fn the_frames_of_a_longer_run_before_are_taken_away() {
     std::fs::write(folder.join("other.toml"), shorter).unwrap();
     std::fs::write(folder.join("out/nodes_of_mine.vtu"), "").unwrap();
     assert_eq!(run(&folder, &["solve", "other.toml", "--out", "out"]).0, 0);
-    assert_eq!(frames(&folder.join("out")), 3 + 1);
+    assert_eq!(frames(&folder.join("out")), 3);
+    assert!(folder.join("out/nodes_of_mine.vtu").exists());
     assert!(folder.join("out/other.pvd").exists() && !folder.join("out/case.pvd").exists());
 }
 
@@ -132,7 +140,7 @@ fn files_that_cannot_be_completed_have_no_index() {
     std::fs::create_dir(folder.join("out/history.csv")).unwrap();
     let (code, _, err) = run(&folder, &solve);
     assert!(code == 2 && err.contains("history.csv"), "{err}");
-    for name in ["case.pvd", "result.json"] {
+    for name in ["case.pvd", "case_nodes.pvd", "index.html", "result.json"] {
         assert!(!folder.join("out").join(name).exists(), "{name} is there");
     }
 }

@@ -131,7 +131,8 @@ fn csv(name: &str, text: &str) -> Option<Finding> {
     Some(Finding::new(Kind::NotFinite, format!("{name}: {row}")))
 }
 
-/// Frames that are named and not there, or there and not named.
+/// Frames that are named and not there, or there and not named, of the kinds that a collection
+/// lists.
 fn pvd(file: &Path, text: &str) -> Option<Finding> {
     let folder = file.parent()?;
     let named: BTreeSet<&str> =
@@ -140,7 +141,10 @@ fn pvd(file: &Path, text: &str) -> Option<Finding> {
         .filter(|path| path.extension().is_some_and(|extension| extension == "vtu"))
         .filter_map(|path| Some(path.file_name()?.to_str()?.to_string()))
         .collect();
-    let there: BTreeSet<&str> = there.iter().map(String::as_str).collect();
+    let kind = |name: &str| name.split('_').next().unwrap_or_default().to_string();
+    let kinds: BTreeSet<String> = named.iter().map(|name| kind(name)).collect();
+    let listed = |name: &&str| kinds.is_empty() || kinds.contains(&kind(name));
+    let there: BTreeSet<&str> = there.iter().map(String::as_str).filter(listed).collect();
     let odd = named.symmetric_difference(&there).next()?;
     Some(Finding::new(Kind::BadFile, format!("frame {odd} is either not there or not in the PVD")))
 }
@@ -155,15 +159,26 @@ fn vtu(name: &str, bytes: &[u8]) -> Option<Finding> {
         return Some(Finding::new(Kind::BadFile, format!("{name} has no appended data")));
     };
     let text = String::from_utf8_lossy(&bytes[..header]);
-    for array in text.split("<DataArray ").skip(1).filter(|array| array.contains("\"Float64\"")) {
+    for array in text.split("<DataArray ").skip(1) {
+        let size = match array {
+            _ if array.contains("\"Float64\"") => 8,
+            _ if array.contains("\"Float32\"") => 4,
+            _ => continue,
+        };
         let offset = array.split("offset=\"").nth(1).and_then(|rest| rest.split('"').next());
         let start = data + offset.and_then(|text| text.parse::<usize>().ok())?;
         let word =
             |at: usize| bytes.get(at..at + 8).and_then(|word| <[u8; 8]>::try_from(word).ok());
         let length = u64::from_le_bytes(word(start)?) as usize;
-        let bad = (0..length / 8).find(|n| {
-            word(start + 8 + 8 * n).is_none_or(|word| !f64::from_le_bytes(word).is_finite())
-        });
+        let number = |at: usize| match size {
+            8 => word(at).map(f64::from_le_bytes),
+            _ => {
+                let word = bytes.get(at..at + 4).and_then(|word| <[u8; 4]>::try_from(word).ok());
+                word.map(|word| f64::from(f32::from_le_bytes(word)))
+            }
+        };
+        let bad = (0..length / size)
+            .find(|n| number(start + 8 + size * n).is_none_or(|number| !number.is_finite()));
         if bad.is_some() {
             let array = array.split("Name=\"").nth(1).and_then(|rest| rest.split('"').next());
             let detail = format!("{name}: {}", array.unwrap_or("an array"));

@@ -19,6 +19,7 @@ mod solve;
 mod streams;
 mod study;
 mod verify;
+mod view;
 mod warp;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -48,7 +49,8 @@ const EXAMPLES: &str = "Examples:
   mtled init my_cases                           a gate for your own cases: suite, baseline, CI
   mtled verify --suite my_cases/suite.toml      have errors or answers of these got worse?
   mtled report last_week reports/verify         compare two runs
-  mtled solve reference/cases/brain_slice.toml  solve a case, write VTU, CSV and JSON files
+  mtled solve reference/cases/brain_slice.toml  solve a case, write a page, VTU, CSV and JSON files
+  mtled view reports/brain_slice -o brain.svg   draw the body before and after
   mtled warp reports/brain_slice --image t1.nii deform an image by the result of a run
   mtled inspect my_case.toml                    are its nodes and supports suitable?
   mtled budget my_case.toml                     how large is the error, why, and at what cost?
@@ -66,6 +68,8 @@ const EXAMPLES: &str = "Examples:
 enum Command {
     /// Solve a case file.
     Solve(solve::SolveArgs),
+    /// Draw the body of a solved case, before and after, as SVG.
+    View(view::ViewArgs),
     /// Deform images and move landmarks by the displacement field of a solved case.
     Warp(warp::WarpArgs),
     /// Examine the nodes, supports and quadrature of a case without running it: points per node,
@@ -168,6 +172,7 @@ fn requested_format() -> Format {
 fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
     match &cli.command {
         Command::Solve(arguments) => solve::solve(arguments, &cli.common),
+        Command::View(arguments) => view::view(arguments, &cli.common),
         Command::Warp(arguments) => warp::warp(arguments, &cli.common),
         Command::Inspect(arguments) => inspect::inspect(arguments, &cli.common),
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),

@@ -4,7 +4,7 @@ use super::common::{Common, STOPPED};
 use super::load::{SetArgs, load, located};
 use super::progress::progress_bar;
 use crate::run::{
-    Estimated, Prepared, Recorder, Recording, Solved, contact_results, error_bars,
+    Estimated, PAGE_FILE, Prepared, Recorder, Recording, Solved, contact_results, error_bars,
     integrate_prepared, prepare_to_run, summary_text, write_failed, write_outputs,
 };
 use crate::scene::Case;
@@ -20,8 +20,9 @@ pub struct SolveArgs {
     case: PathBuf,
     #[command(flatten)]
     set: SetArgs,
-    /// Folder for VTU frames, history.csv, displacement_field.json (see `mtled warp`) and
-    /// result.json, which replace those of an earlier run [default: reports/<case>].
+    /// Folder for a page (index.html), VTU frames of the body and of the nodes, history.csv,
+    /// displacement_field.json (see `mtled warp`) and result.json, which replace those of an
+    /// earlier run [default: reports/<case>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Leave out the error bars, which take coarser clouds and up to a third of the time of the
@@ -116,7 +117,7 @@ fn finish(
     let result = write_outputs(case, solved, record, &contacts, bars, out)?;
     common.print_summary(&|| Ok(result.clone()), &|| {
         let summary = summary_text(case, solved, record, &contacts, bars);
-        format!("{summary}\n  results in {}\n", out.display())
+        format!("{summary}\n  results in {}, to be looked at in {PAGE_FILE} there\n", out.display())
     })?;
     for doubt in solved.doubts() {
         common.warn(doubt);

@@ -1,13 +1,11 @@
-//! What obstacles do to the body, as JSON, as text and as fields at the nodes.
+//! What obstacles do to the body, as JSON and as text, and its distance from them.
 #![allow(non_snake_case)]
 
 use super::prepare::Prepared;
-use super::record::Frame;
-use super::vtu::PointArray;
 use crate::scene::Case;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::model::contact::{ContactResult, ContactSurface, gap};
+use mtled::model::contact::{ContactPlan, ContactResult, ContactSurface, gap};
 use mtled::motion::state::State;
 use mtled::problem::Problem;
 use mtled_checks::escape::printable;
@@ -74,23 +72,13 @@ pub fn contacts_text(case: &Case, results: &[ContactResult]) -> Vec<String> {
     case.problem.obstacles.iter().zip(results).map(line).collect()
 }
 
-/// The gap to the nearest obstacle \[m\] and the contact pressure \[Pa\] at the nodes, which are at
-/// `displacement` \[node\]\[x, y, z\] \[m\].
-pub fn contact_fields(
-    surface: &ContactSurface,
-    prepared: &Prepared,
-    frame: &Frame,
-    displacement: &[f64],
-) -> Result<[PointArray; 2], Error> {
-    let (plan, discretisation) = (&prepared.model.contact, &prepared.discretisation);
-    let pressures = surface.pressures(plan, discretisation, &frame.contact, &frame.displacement)?;
-    let values = displacement.as_chunks::<3>().0;
-    let gaps = discretisation.cloud.positions.iter().zip(values).map(|(X, u)| {
+/// The gap to the nearest obstacle \[m\] at positions that have moved by `displacement`
+/// \[position\]\[x, y, z\] \[m\].
+pub fn contact_gaps(plan: &ContactPlan, positions: &[Vector3], displacement: &[f64]) -> Vec<f64> {
+    let moved = positions.iter().zip(displacement.as_chunks::<3>().0);
+    let gap_at = |(X, u): (&Vector3, &[f64; 3])| {
         let x = X + Vector3::from(*u);
         plan.obstacles.iter().map(|obstacle| gap(obstacle, &x)).fold(f64::INFINITY, f64::min)
-    });
-    Ok([
-        PointArray::new("contact_gap", 1, gaps.collect()),
-        PointArray::new("contact_pressure", 1, pressures),
-    ])
+    };
+    moved.map(gap_at).collect()
 }

@@ -6,6 +6,7 @@ mod interrupt;
 mod memory;
 mod numbers;
 mod output;
+mod page;
 mod prepare;
 mod probes;
 mod record;
@@ -22,7 +23,7 @@ pub use error_bar::{
 pub use interrupt::{interrupt, interrupted};
 pub use memory::{MemoryShortage, estimated_memory, refuse_beyond_memory};
 pub use numbers::numbers;
-pub use output::{write_failed, write_outputs};
+pub use output::{PAGE_FILE, last_body_frame, write_failed, write_outputs};
 pub use prepare::{Prepared, prepare, prepare_to_run};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Recorder, Recording, Sample};

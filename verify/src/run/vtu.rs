@@ -5,21 +5,48 @@ use mtled_checks::report::write_atomically;
 use std::fmt::Write;
 use std::path::Path;
 
-/// VTK's number of a cell that is a single point.
-const VTK_VERTEX: u8 = 1;
-
-/// A cloud of points at one instant; every point becomes a vertex cell.
+/// Points at one instant, with cells between them or each for itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VtuFrame<'a> {
     /// Numbers of the whole frame by name; `TimeValue` is its time \[s\].
     pub numbers: Vec<(&'static str, f64)>,
     /// \[m\]
     pub points: &'a [[f64; 3]],
+    /// Cells between the points; without them every point becomes a vertex cell.
+    pub cells: Option<VtuCells<'a>>,
     /// Fields at the points.
     pub point_data: Vec<PointArray>,
 }
 
-/// A field at the points.
+/// Cells with the same number of corners.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VtuCells<'a> {
+    /// 4 of a tetrahedron, 3 of a triangle.
+    pub corners: usize,
+    /// Points of the cells, one cell after the other.
+    pub points: &'a [u32],
+    /// Fields in the cells.
+    pub data: Vec<PointArray>,
+    /// What the file is for, in a comment.
+    pub purpose: &'static str,
+}
+
+impl VtuCells<'_> {
+    fn count(&self) -> usize {
+        self.points.len() / self.corners
+    }
+}
+
+/// VTK's number of a cell by its corners: vertex, triangle, tetrahedron.
+fn vtk_type(corners: usize) -> u8 {
+    match corners {
+        4 => 10,
+        3 => 5,
+        _ => 1,
+    }
+}
+
+/// A field at the points, or in the cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointArray {
     /// Name of the field.
@@ -28,6 +55,19 @@ pub struct PointArray {
     pub components: usize,
     /// \[point\]\[component\], in the unit of the field.
     pub values: Vec<f64>,
+    /// How the values are stored.
+    pub stored: Stored,
+}
+
+/// How numbers are stored in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stored {
+    /// Bit for bit.
+    Double,
+    /// To seven digits.
+    Single,
+    /// Whole numbers of 32 bits.
+    Integer,
 }
 
 /// What the frames of a collection are ordered by.
@@ -51,7 +91,12 @@ impl Order {
 impl PointArray {
     /// A field from its values.
     pub fn new(name: &str, components: usize, values: Vec<f64>) -> PointArray {
-        PointArray { name: name.to_string(), components, values }
+        PointArray { name: name.to_string(), components, values, stored: Stored::Double }
+    }
+
+    /// The same field, stored otherwise.
+    pub fn stored(self, stored: Stored) -> PointArray {
+        PointArray { stored, ..self }
     }
 }
 
@@ -78,6 +123,25 @@ impl Blocks {
         self.array("Float64", attributes, values.flat_map(|v| v.to_le_bytes()))
     }
 
+    fn field(&mut self, array: &PointArray) -> String {
+        let attributes =
+            format!("{} NumberOfComponents=\"{}\"", named(&array.name), array.components);
+        let values = array.values.iter();
+        match array.stored {
+            Stored::Double => self.reals(&attributes, values),
+            Stored::Single => {
+                self.array("Float32", &attributes, values.flat_map(|v| single(*v).to_le_bytes()))
+            }
+            Stored::Integer => {
+                self.array("Int32", &attributes, values.flat_map(|v| (*v as i32).to_le_bytes()))
+            }
+        }
+    }
+
+    fn short_integers(&mut self, name: &str, values: impl Iterator<Item = u32>) -> String {
+        self.array("Int32", &named(name), values.flat_map(|n| (n as i32).to_le_bytes()))
+    }
+
     fn integers(&mut self, name: &str, values: impl Iterator<Item = i64>) -> String {
         self.array("Int64", &named(name), values.flat_map(i64::to_le_bytes))
     }
@@ -87,11 +151,15 @@ impl Blocks {
 /// same frame gives the same bytes. Refuses arrays of the wrong length.
 pub fn to_vtu(frame: &VtuFrame) -> Result<Vec<u8>> {
     let count = frame.points.len();
-    for array in &frame.point_data {
+    let cells = frame.cells.iter().flat_map(|cells| {
+        cells.data.iter().map(|array| (array, "cell data", "cells", cells.count()))
+    });
+    let points = frame.point_data.iter().map(|array| (array, "point data", "points", count));
+    for (array, kind, places, count) in points.chain(cells) {
         let expected = count * array.components;
         ensure!(
             array.values.len() == expected && array.components > 0,
-            "point data {} has {} values, {count} points with {} components need {expected}",
+            "{kind} {} has {} values, {count} {places} with {} components need {expected}",
             array.name,
             array.values.len(),
             array.components
@@ -115,24 +183,44 @@ fn header(frame: &VtuFrame, blocks: &mut Blocks) -> String {
     }
     let places =
         blocks.reals("Name=\"Points\" NumberOfComponents=\"3\"", frame.points.iter().flatten());
-    let connectivity = blocks.integers("connectivity", 0..count as i64);
-    let offsets = blocks.integers("offsets", 1..=count as i64);
-    let types = blocks.array("UInt8", &named("types"), std::iter::repeat_n(VTK_VERTEX, count));
-    let mut fields = String::new();
-    for array in &frame.point_data {
-        let attributes =
-            format!("{} NumberOfComponents=\"{}\"", named(&array.name), array.components);
-        fields += &blocks.reals(&attributes, array.values.iter());
+    let (corners, cell_count) = match &frame.cells {
+        Some(cells) => (cells.corners, cells.count()),
+        None => (1, count),
+    };
+    let connectivity = match &frame.cells {
+        Some(cells) => blocks.short_integers("connectivity", cells.points.iter().copied()),
+        None => blocks.integers("connectivity", 0..count as i64),
+    };
+    let offsets = match &frame.cells {
+        Some(_) => {
+            let ends = (1..=cell_count).map(|cell| (cell * corners) as u32);
+            blocks.short_integers("offsets", ends)
+        }
+        None => blocks.integers("offsets", 1..=count as i64),
+    };
+    let kinds = std::iter::repeat_n(vtk_type(corners), cell_count);
+    let types = blocks.array("UInt8", &named("types"), kinds);
+    let fields: String = frame.point_data.iter().map(|array| blocks.field(array)).collect();
+    let (mut cell_fields, mut purpose) = (String::new(), String::new());
+    if let Some(cells) = &frame.cells {
+        let data: String = cells.data.iter().map(|array| blocks.field(array)).collect();
+        cell_fields = format!("<CellData>\n{data}</CellData>\n");
+        purpose = format!("<!-- {} -->\n", cells.purpose);
     }
     format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n{numbers}</FieldData>\n\
-         <Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">\n\
-         <PointData>\n{fields}</PointData>\n<Points>\n{places}</Points>\n\
+         header_type=\"UInt64\">\n{purpose}<UnstructuredGrid>\n<FieldData>\n{numbers}</FieldData>\n\
+         <Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{cell_count}\">\n\
+         <PointData>\n{fields}</PointData>\n{cell_fields}<Points>\n{places}</Points>\n\
          <Cells>\n{connectivity}{offsets}{types}</Cells>\n</Piece>\n</UnstructuredGrid>\n\
          <AppendedData encoding=\"raw\">\n_"
     )
+}
+
+/// The nearest number of single precision that is not infinite.
+fn single(value: f64) -> f32 {
+    (value as f32).clamp(f32::MIN, f32::MAX)
 }
 
 fn named(name: &str) -> String {
@@ -172,7 +260,7 @@ mod tests {
             PointArray::new("J", 1, vec![1.0, 0.98]),
             PointArray::new("cauchy_stress", 9, tensor),
         ];
-        VtuFrame { numbers: vec![("TimeValue", time)], points: &POINTS, point_data }
+        VtuFrame { numbers: vec![("TimeValue", time)], points: &POINTS, cells: None, point_data }
     }
 
     /// The reals of the array called `name`, found the way a reader finds them.
@@ -204,6 +292,23 @@ mod tests {
         short.point_data[1].values.pop();
         let error = to_vtu(&short).unwrap_err().to_string();
         assert_eq!(error, "point data J has 1 values, 2 points with 1 components need 2");
+    }
+
+    #[test]
+    fn cells_and_their_fields_stand_in_the_file() {
+        let data = vec![PointArray::new("region", 1, vec![2.0]).stored(Stored::Integer)];
+        let cells = VtuCells { corners: 3, points: &[0, 1, 1], data, purpose: "to look at" };
+        let mut body = frame(0.0);
+        body.cells = Some(cells.clone());
+        let bytes = to_vtu(&body).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        for part in ["NumberOfCells=\"1\"", "<CellData>", "Name=\"region\"", "<!-- to look at -->"]
+        {
+            assert!(text.contains(part), "{part}");
+        }
+        body.cells = Some(VtuCells { points: &[0, 1, 1, 1, 0, 0], ..cells });
+        let error = to_vtu(&body).unwrap_err().to_string();
+        assert_eq!(error, "cell data region has 1 values, 2 cells with 1 components need 2");
     }
 
     /// Set MTLED_SAMPLE_VTU to a folder to try other readers on the files.

@@ -3,8 +3,9 @@
 
 use super::error::WarpError;
 use super::field::DisplacementField;
+use crate::display::solid;
 use crate::files::stl::Triangles;
-use mtled::geometry::{LabelField, Selector, Shape};
+use mtled::geometry::Shape;
 use mtled::problem::{Dimension, Problem};
 use rayon::prelude::*;
 
@@ -59,32 +60,6 @@ pub fn region_surfaces(
         Ok(RegionSurface { name, before: Triangles { vertices, triangles }, after })
     });
     Ok((drawn.collect::<Result<_, WarpError>>()?, left_out))
-}
-
-/// What a selection takes of a body.
-fn solid(part: &Selector, body: &Shape) -> Option<Shape> {
-    let selected = match part {
-        Selector::All => return Some(body.clone()),
-        Selector::Inside { shape, .. } => shape.clone(),
-        Selector::Label { map, label } => {
-            let smoothing = match body {
-                Shape::Labels(field) => field.smoothing(),
-                _ => LabelField::SMOOTHING,
-            };
-            Shape::Labels(LabelField::new(map.clone(), &[*label], smoothing).ok()?.into())
-        }
-        Selector::Union(parts) => {
-            let parts = parts.iter().map(|part| solid(part, body));
-            Shape::Union(parts.collect::<Option<_>>()?)
-        }
-        Selector::Plane { .. } | Selector::Intersection(_) | Selector::Not(_) => return None,
-    };
-    // What both have: one without what is left of it without the other. The first bounds it.
-    let (first, second) = match selected.bounding_box() {
-        Some(_) => (&selected, body),
-        None => (body, &selected),
-    };
-    Some(without(first, without(first, second.clone())))
 }
 
 fn without(shape: &Shape, hole: Shape) -> Shape {

@@ -8,17 +8,19 @@ pub struct Calm {
     /// Its case file.
     pub case: String,
     folder: PathBuf,
-    pvd: String,
+    /// Of the body and of the nodes.
+    pvds: [String; 2],
     result: Value,
 }
 
 impl Calm {
     /// The run of a case in its folder.
     pub fn read(folder: &Path, case: &str) -> Calm {
-        let pvd = std::fs::read_to_string(folder.join("case.pvd")).unwrap();
-        assert!(named(&pvd).len() > 1, "{pvd}");
+        let pvds = ["case.pvd", "case_nodes.pvd"]
+            .map(|name| std::fs::read_to_string(folder.join(name)).unwrap());
+        assert!(pvds.iter().all(|pvd| named(pvd).len() > 1), "{pvds:?}");
         let result = result(&folder.join("result.json"));
-        Calm { case: case.to_string(), folder: folder.to_path_buf(), pvd, result }
+        Calm { case: case.to_string(), folder: folder.to_path_buf(), pvds, result }
     }
 }
 
@@ -70,7 +72,7 @@ fn assert_frames(file: &Path, pvd: &str, runs: &[Calm]) {
     if runs.is_empty() {
         return;
     }
-    let run = runs.iter().find(|run| run.pvd == pvd);
+    let run = runs.iter().find(|run| run.pvds.iter().any(|own| own == pvd));
     let run = run.unwrap_or_else(|| panic!("{} is of no run:\n{pvd}", file.display()));
     for name in named(pvd) {
         let same = std::fs::read(folder.join(name)).unwrap()

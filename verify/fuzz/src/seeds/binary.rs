@@ -95,6 +95,7 @@ pub fn points() -> Result<Vec<Input>> {
     let frame = VtuFrame {
         numbers: Vec::new(),
         points: &points,
+        cells: None,
         point_data: vec![PointArray::new("J", 1, vec![1.0; points.len()])],
     };
     let legacy = |kind: &str| {

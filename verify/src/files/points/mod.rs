@@ -1,5 +1,5 @@
 //! Node positions \[m\] from CSV, NPY, VTU and legacy VTK files, and points with
-//! displacements from the first three.
+//! displacements from the first three; meshes from VTU files.
 
 mod csv;
 mod displacements;
@@ -8,6 +8,7 @@ mod legacy_vtk;
 mod npy;
 mod rows;
 mod vtu;
+mod vtu_mesh;
 
 use super::bytes::bytes_of;
 use super::error::{FileError, Mistake};
@@ -16,6 +17,7 @@ use std::path::Path;
 
 pub use displacements::read_displacements;
 pub use landmarks::{Landmark, read_landmarks, read_named_points};
+pub use vtu_mesh::{MeshFile, NamedArray, read_mesh};
 
 /// Reads node positions, with the format given by the extension of the name. Files of two
 /// columns get z = 0.

@@ -13,10 +13,10 @@ use quick_xml::events::{BytesStart, Event};
 use std::collections::HashMap;
 use std::io::Read;
 
-type Attributes = HashMap<String, String>;
+pub(super) type Attributes = HashMap<String, String>;
 
 /// How binary arrays of a file are stored.
-struct Storage {
+pub(super) struct Storage {
     order: ByteOrder,
     /// Type of the lengths in front of the data.
     lengths: Scalar,
@@ -41,31 +41,11 @@ fn vectors(bytes: &[u8], name: Option<&str>) -> Result<Vec<Vector3>, Mistake> {
     if let Some(components) = array.get("NumberOfComponents").filter(|&n| n != "3") {
         return Err(Mistake::bad_field("NumberOfComponents", components, "3 for vectors"));
     }
-    let scalar = match array.get("type").map(String::as_str) {
-        Some("Float32") => Scalar::F32,
-        Some("Float64") => Scalar::F64,
-        other => return Err(Mistake::bad_field("type", other.unwrap_or(""), "Float32 or Float64")),
-    };
-    let values = match array.get("format").map(String::as_str) {
-        Some("ascii") => {
-            let values: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
-            values.map_err(|error| damaged("ASCII", error.to_string()))?
-        }
-        Some("binary") => storage.numbers(&base64_bytes(text.as_bytes())?, scalar)?,
-        Some("appended") => {
-            let offset = array.get("offset").and_then(|offset| offset.parse().ok());
-            let offset = offset.ok_or(Mistake::MissingField { field: "offset" })?;
-            let at = appended.ok_or(Mistake::MissingField { field: "AppendedData" })?;
-            storage.numbers(&appended_bytes(&bytes[at..], offset)?, scalar)?
-        }
-        other => {
-            return Err(Mistake::bad_field(
-                "format",
-                other.unwrap_or(""),
-                "ascii, binary or appended",
-            ));
-        }
-    };
+    if !matches!(array.get("type").map(String::as_str), Some("Float32" | "Float64")) {
+        let other = array.get("type").map_or("", String::as_str);
+        return Err(Mistake::bad_field("type", other, "Float32 or Float64"));
+    }
+    let values = storage.values(&array, &text, appended.map(|at| &bytes[at..]))?;
     match piece.get("NumberOfPoints") {
         None => from_stated(&values, values.len() / 3),
         Some(text) => {
@@ -76,11 +56,11 @@ fn vectors(bytes: &[u8], name: Option<&str>) -> Result<Vec<Vector3>, Mistake> {
     }
 }
 
-fn damaged(encoding: &'static str, reason: String) -> Mistake {
+pub(super) fn damaged(encoding: &'static str, reason: String) -> Mistake {
     Mistake::Undecodable { encoding, reason }
 }
 
-fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
+pub(super) fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
     bytes.windows(what.len()).position(|window| window == what)
 }
 
@@ -159,7 +139,7 @@ fn listed(names: &[String]) -> String {
     if names.is_empty() { "none".to_string() } else { names.join(", ") }
 }
 
-fn attributes(tag: &BytesStart) -> Attributes {
+pub(super) fn attributes(tag: &BytesStart) -> Attributes {
     let pairs = tag.attributes().flatten();
     pairs
         .map(|pair| {
@@ -169,7 +149,7 @@ fn attributes(tag: &BytesStart) -> Attributes {
         .collect()
 }
 
-fn storage(file: &Attributes) -> Result<Storage, Mistake> {
+pub(super) fn storage(file: &Attributes) -> Result<Storage, Mistake> {
     let get = |name: &str| file.get(name).map(String::as_str);
     Ok(Storage {
         order: match get("byte_order") {
@@ -226,6 +206,44 @@ fn base64_bytes(text: &[u8]) -> Result<Vec<u8>, Mistake> {
 }
 
 impl Storage {
+    /// The numbers of an array with this text, or in the data at the end of the file.
+    pub(super) fn values(
+        &self,
+        array: &Attributes,
+        text: &str,
+        appended: Option<&[u8]>,
+    ) -> Result<Vec<f64>, Mistake> {
+        let get = |name: &str| array.get(name).map(String::as_str);
+        let scalar = match get("type") {
+            Some("Float32") => Scalar::F32,
+            Some("Float64") => Scalar::F64,
+            Some("Int32") => Scalar::I32,
+            Some("Int64") => Scalar::I64,
+            Some("UInt8") => Scalar::U8,
+            other => {
+                let expected = "Float32, Float64, Int32, Int64 or UInt8";
+                return Err(Mistake::bad_field("type", other.unwrap_or(""), expected));
+            }
+        };
+        match get("format") {
+            Some("ascii") => {
+                let values: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
+                values.map_err(|error| damaged("ASCII", error.to_string()))
+            }
+            Some("binary") => self.numbers(&base64_bytes(text.as_bytes())?, scalar),
+            Some("appended") => {
+                let offset = get("offset").and_then(|offset| offset.parse().ok());
+                let offset = offset.ok_or(Mistake::MissingField { field: "offset" })?;
+                let tail = appended.ok_or(Mistake::MissingField { field: "AppendedData" })?;
+                self.numbers(&appended_bytes(tail, offset)?, scalar)
+            }
+            other => {
+                let expected = "ascii, binary or appended";
+                Err(Mistake::bad_field("format", other.unwrap_or(""), expected))
+            }
+        }
+    }
+
     /// Numbers of an array that starts with its lengths.
     fn numbers(&self, bytes: &[u8], scalar: Scalar) -> Result<Vec<f64>, Mistake> {
         let data = if self.compressed { self.inflate(bytes)? } else { self.plain(bytes)?.to_vec() };

@@ -17,8 +17,9 @@ use minijinja::{Environment, Value, context};
 /// Texts with more bytes get a wide column.
 const LONG: usize = 24;
 
-/// Style and script of every page.
-pub(super) const STYLE: &str = include_str!("page/page.css");
+/// Style of every page; that of figures is [`svg::STYLE`].
+pub const STYLE: &str = include_str!("page/page.css");
+/// Script of every page.
 pub(super) const SCRIPT: &str = include_str!("page/page.js");
 
 /// The templates of all pages.

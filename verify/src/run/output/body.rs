@@ -1,0 +1,186 @@
+//! Frames of the display mesh: a body to look at, with the fields of the approximation.
+#![allow(non_snake_case)]
+
+use super::node_fields::NodeFields;
+use crate::display::{DisplayMesh, display_mesh};
+use crate::picture::{Body, Field};
+use crate::run::contact::contact_gaps;
+use crate::run::prepare::Prepared;
+use crate::run::record::Frame;
+use crate::run::vtu::{PointArray, Stored, VtuCells, VtuFrame};
+use anyhow::Result;
+use mtled::algebra::tensor::{Matrix3, Vector3};
+use mtled::discretisation::Rows;
+use mtled::discretisation::mls::{Approximation, Support};
+use mtled::problem::{Dimension, Problem};
+use rayon::prelude::*;
+
+const PURPOSE: &str = "A mesh to look at, cut from a lattice by the boundary of the body; the solver \
+                       has no mesh and computes on the nodes alone.";
+
+/// What all frames of the display mesh share.
+pub struct BodyFrames {
+    display: DisplayMesh,
+    points: Vec<[f64; 3]>,
+    /// φ of the nodes at the vertices.
+    rows: Rows,
+    /// Distance between nodes at the vertices \[m\].
+    spacing: Vec<f64>,
+}
+
+impl BodyFrames {
+    /// The display mesh of a body, and what interpolates to its vertices; `None` where it has no
+    /// cells.
+    pub fn new(problem: &Problem, prepared: &Prepared) -> Result<Option<BodyFrames>> {
+        let discretisation = &prepared.discretisation;
+        let nodes = discretisation.cloud.positions.len();
+        let volume = discretisation.quadrature.weights.iter().sum();
+        let display = display_mesh(problem, nodes, volume)?;
+        if display.mesh.is_empty() {
+            return Ok(None);
+        }
+        let rows = rows_near(&discretisation.approximation, &display.mesh.vertices);
+        let spacing = interpolated(&rows, &discretisation.cloud.spacing, 1);
+        let points = display.mesh.vertices.iter().map(|X| (*X).into()).collect();
+        Ok(Some(BodyFrames { display, points, rows, spacing }))
+    }
+
+    /// The fields of a frame: displacement of the approximation at the vertices, all others
+    /// interpolated from those at the nodes by its shape functions.
+    pub fn frame(
+        &self,
+        prepared: &Prepared,
+        frame: &Frame,
+        fields: &NodeFields,
+        mode: Option<&Vec<f64>>,
+        mut numbers: Vec<(&'static str, f64)>,
+    ) -> VtuFrame<'_> {
+        let DisplayMesh { mesh, on_boundary, edge } = &self.display;
+        let components = prepared.model.components;
+        let displacement = vectors(&self.rows, &frame.displacement, components);
+        let stress = interpolated(&self.rows, &fields.stress, 9);
+        let single = |name: &str, components: usize, values: Vec<f64>| {
+            PointArray::new(name, components, values).stored(Stored::Single)
+        };
+        let mut point_data = vec![
+            PointArray::new("displacement", 3, displacement),
+            single("J", 1, interpolated(&self.rows, &fields.jacobian, 1)),
+            single("von_mises_stress", 1, stress.chunks(9).map(von_mises).collect()),
+            single("pressure", 1, stress.chunks(9).map(|s| -(s[0] + s[4] + s[8]) / 3.0).collect()),
+            single("principal_green_lagrange_strain", 3, self.principal_strains(fields)),
+            single("nodal_spacing", 1, self.spacing.clone()),
+        ];
+        if let Some(pressures) = &fields.contact_pressure {
+            let displacement = &point_data[0].values;
+            let gaps = contact_gaps(&prepared.model.contact, &mesh.vertices, displacement);
+            point_data.push(single("contact_gap", 1, gaps));
+            point_data.push(single("contact_pressure", 1, self.not_negative(pressures)));
+        }
+        if let Some(mode) = mode {
+            point_data.push(single("unstable_mode", 3, vectors(&self.rows, mode, components)));
+        }
+        if let Some(bars) = &fields.error_bar {
+            point_data.push(single("displacement_error_bar", 1, self.not_negative(bars)));
+        }
+        point_data.push(single("cauchy_stress", 9, stress));
+        let boundary = on_boundary.iter().map(|on| f64::from(*on)).collect();
+        point_data.push(PointArray::new("on_boundary", 1, boundary).stored(Stored::Integer));
+        let regions = mesh.regions.iter().map(|region| f64::from(*region)).collect();
+        let data = vec![PointArray::new("region", 1, regions).stored(Stored::Integer)];
+        numbers.push(("display_mesh_edge_m", *edge));
+        if let Dimension::PlaneStrain { thickness, .. } = prepared.discretisation.dimension {
+            numbers.push(("slab_thickness_m", thickness));
+        }
+        let cells = VtuCells { corners: mesh.corners, points: &mesh.cells, data, purpose: PURPOSE };
+        VtuFrame { numbers, points: &self.points, cells: Some(cells), point_data }
+    }
+
+    /// A frame as what pictures are drawn from.
+    pub fn drawn(&self, frame: VtuFrame) -> Body {
+        let field = |array: PointArray| Field {
+            name: array.name,
+            components: array.components,
+            values: array.values,
+        };
+        let fields = frame.point_data.into_iter().map(field).collect();
+        Body { mesh: self.display.mesh.clone(), fields }
+    }
+
+    /// A field that shape functions of either sign must not make negative.
+    fn not_negative(&self, values: &[f64]) -> Vec<f64> {
+        interpolated(&self.rows, values, 1).into_iter().map(|value| value.max(0.0)).collect()
+    }
+
+    /// Principal values, the largest first, of the Green–Lagrange strain.
+    fn principal_strains(&self, fields: &NodeFields) -> Vec<f64> {
+        let strain = interpolated(&self.rows, &fields.strain, 6);
+        let principal = |e: &[f64]| -> [f64; 3] {
+            let E = Matrix3::new(e[0], e[3], e[5], e[3], e[1], e[4], e[5], e[4], e[2]);
+            let mut values: [f64; 3] = E.symmetric_eigenvalues().into();
+            values.sort_by(|a, b| b.total_cmp(a));
+            values
+        };
+        strain.par_chunks(6).flat_map_iter(principal).collect()
+    }
+}
+
+/// √(3/2 s : s) with the deviator s of a Cauchy stress by rows \[Pa\].
+fn von_mises(stress: &[f64]) -> f64 {
+    let mean = (stress[0] + stress[4] + stress[8]) / 3.0;
+    let part = |k: usize| stress[k] - if k.is_multiple_of(4) { mean } else { 0.0 };
+    (1.5 * (0..9).map(|k| part(k).powi(2)).sum::<f64>()).sqrt()
+}
+
+/// Points whose rows are made one after the other.
+const PIECE: usize = 256;
+
+/// φ at points of the body; where a thin part has too few nodes around, that at the nearest node.
+fn rows_near(approximation: &Approximation, positions: &[Vector3]) -> Rows {
+    let nodes = &approximation.nodes;
+    let at_nearest = |X: &Vector3| -> Support {
+        let squared = |node: &Vector3| (node - X).norm_squared();
+        let nearest = nodes.iter().enumerate();
+        let nearest = nearest.min_by(|a, b| squared(a.1).total_cmp(&squared(b.1)));
+        let Some((number, node)) = nearest else { return Support::default() };
+        approximation.evaluate(node).unwrap_or_else(|_| Support {
+            nodes: vec![number as u32],
+            phi: vec![1.0],
+            ..Support::default()
+        })
+    };
+    let evaluate = |piece: &[Vector3]| -> Vec<Support> {
+        let support = |X: &Vector3| approximation.evaluate(X).unwrap_or_else(|_| at_nearest(X));
+        piece.iter().map(support).collect()
+    };
+    let pieces: Vec<Vec<Support>> = positions.par_chunks(PIECE).map(evaluate).collect();
+    let mut rows = Rows::default();
+    for support in pieces.into_iter().flatten() {
+        rows.nodes.extend(support.nodes);
+        rows.phi.extend(support.phi);
+        rows.starts.push(rows.nodes.len());
+    }
+    rows
+}
+
+/// Vectors \[vertex\]\[x, y, z\] of the field with these nodal parameters.
+fn vectors(rows: &Rows, parameters: &[f64], components: usize) -> Vec<f64> {
+    let value = |i| <[f64; 3]>::from(rows.interpolate(i, parameters, components));
+    (0..rows.len()).into_par_iter().flat_map_iter(value).collect()
+}
+
+/// Values \[vertex\]\[component\] from those at the nodes.
+fn interpolated(rows: &Rows, values: &[f64], components: usize) -> Vec<f64> {
+    let mut all = vec![0.0; components * rows.len()];
+    all.par_chunks_mut(components).enumerate().for_each(|(i, sums)| {
+        for entry in rows.row(i) {
+            let at = components * rows.nodes[entry] as usize;
+            for (sum, value) in sums.iter_mut().zip(&values[at..at + components]) {
+                *sum += rows.phi[entry] * value;
+            }
+        }
+    });
+    all
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,62 @@
+#![allow(non_snake_case)]
+
+use super::super::node_fields::NodeFields;
+use super::BodyFrames;
+use crate::run::prepare::{Prepared, prepare};
+use crate::run::record::Frame;
+use crate::specimens::simple::{free_body, recipe, sphere_shape, tissue};
+use mtled::algebra::tensor::{Matrix3, Vector3};
+use mtled::problem::{Dimension, Problem};
+
+const H: [[f64; 3]; 3] = [[0.1, 0.05, 0.0], [-0.02, -0.1, 0.0], [0.0, 0.0, 0.2]];
+
+fn gradient(dimension: &Dimension) -> Matrix3 {
+    let mut gradient = Matrix3::from_fn(|i, j| H[i][j]);
+    if dimension.components() == 2 {
+        gradient[(2, 2)] = 0.0;
+    }
+    gradient
+}
+
+/// A ball or a disc with the nodal parameters of an affine displacement.
+fn stretched(dimension: Dimension) -> (Problem, Prepared, Frame) {
+    let recipe = recipe(0.02, 0.2, 7);
+    let problem = free_body(dimension, sphere_shape(), tissue(0.3).unwrap(), recipe);
+    let prepared = prepare(&problem).unwrap();
+    let components = dimension.components();
+    let moved = |X: &Vector3| <[f64; 3]>::from(gradient(&dimension) * X);
+    let positions = prepared.discretisation.cloud.positions.iter();
+    let displacement =
+        positions.flat_map(|X| moved(X).into_iter().take(components)).collect::<Vec<_>>();
+    let frame = Frame { step: 0, time: 0.0, displacement, contact: Vec::new() };
+    (problem, prepared, frame)
+}
+
+#[test]
+fn an_affine_displacement_and_its_strains_are_exact_at_the_vertices() {
+    for dimension in [Dimension::Three, Dimension::PlaneStrain { thickness: 1.0, z: 0.05 }] {
+        let (problem, prepared, frame) = stretched(dimension);
+        let fields = NodeFields::new(&problem, &prepared, None, &frame, None).unwrap();
+        let body = BodyFrames::new(&problem, &prepared).unwrap().unwrap();
+        let written = body.frame(&prepared, &frame, &fields, None, Vec::new());
+        let of = |name: &str| {
+            let array = written.point_data.iter().find(|array| array.name == name);
+            array.unwrap_or_else(|| panic!("no {name}")).values.clone()
+        };
+        let gradient = gradient(&dimension);
+        for (X, u) in written.points.iter().zip(of("displacement").chunks(3)) {
+            let exact = gradient * Vector3::from(*X);
+            assert!((Vector3::new(u[0], u[1], u[2]) - exact).norm() < 1e-12);
+        }
+        let F = gradient + Matrix3::identity();
+        assert!(of("J").iter().all(|J| (J - F.determinant()).abs() < 1e-9));
+        let strain = 0.5 * (F.transpose() * F - Matrix3::identity());
+        let mut exact: [f64; 3] = strain.symmetric_eigenvalues().into();
+        exact.sort_by(|a, b| b.total_cmp(a));
+        for values in of("principal_green_lagrange_strain").chunks(3) {
+            assert!(values.iter().zip(exact).all(|(value, exact)| (value - exact).abs() < 1e-9));
+        }
+        let stresses = of("von_mises_stress");
+        assert!(stresses.iter().all(|s| (s / stresses[0] - 1.0).abs() < 1e-9 && *s > 0.0));
+    }
+}

@@ -1,0 +1,47 @@
+//! Histories as CSV.
+
+use crate::run::record::Recording;
+use crate::scene::Case;
+use anyhow::Result;
+use mtled_checks::escape::csv_text;
+
+/// One row per sample; probes with one position only (lattices are in
+/// `result.json`).
+pub fn history_csv(case: &Case, record: &Recording) -> Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let axes = ["x", "y", "z"];
+    let single: Vec<usize> =
+        (0..case.probes.len()).filter(|&i| record.references[i].len() == 1).collect();
+    let mut header: Vec<String> =
+        ["step", "time_s", "smallest_jacobian", "touching_nodes"].map(String::from).into();
+    header.extend(
+        ["kinetic_j", "strain_j", "external_work_j", "constraint_work_j", "damping_loss_j"]
+            .map(String::from),
+    );
+    for &probe in &single {
+        header.extend(axes.map(|axis| format!("{}.u{axis}_m", case.probes[probe].name)));
+    }
+    for condition in &case.problem.conditions {
+        header.extend(axes.map(|axis| format!("{}.f{axis}_n", condition.name)));
+        header.extend(axes.map(|axis| format!("{}.m{axis}_n_m", condition.name)));
+    }
+    for obstacle in &case.problem.obstacles {
+        header.extend(axes.map(|axis| format!("{}.contact_f{axis}_n", obstacle.name)));
+    }
+    writer.write_record(header.iter().map(|name| csv_text(name)))?;
+    for sample in &record.samples {
+        let e = &sample.energies;
+        let mut row =
+            vec![sample.step as f64, sample.time, sample.smallest_jacobian, sample.touching as f64];
+        row.extend([e.kinetic, e.strain, e.external_work, e.constraint_work, e.damping_loss]);
+        for &probe in &single {
+            row.extend(sample.displacements[probe][0].iter());
+        }
+        for reaction in &sample.reactions {
+            row.extend(reaction.force.iter().chain(reaction.moment.iter()));
+        }
+        row.extend(sample.contact_forces.iter().flatten());
+        writer.write_record(row.iter().map(f64::to_string))?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}

@@ -1,0 +1,98 @@
+//! Files of a run: VTU frames with their collections, histories as CSV, the displacement field,
+//! `result.json`, a page for people.
+
+mod body;
+mod earlier;
+mod frames;
+mod history;
+mod node_fields;
+
+use super::error_bar::{Estimated, Indicator};
+use super::page::run_page;
+use super::prepare::Prepared;
+use super::record::Recording;
+use super::result::{failed_json, result_json};
+use super::solve::Solved;
+use super::stored_field::StoredField;
+use crate::picture::Body;
+use crate::scene::Case;
+use anyhow::Result;
+use earlier::remove_earlier_run;
+
+pub use earlier::PAGE_FILE;
+pub use frames::last_body_frame;
+
+use frames::write_frames;
+use history::history_csv;
+use mtled::error::Error;
+use mtled::model::contact::ContactResult;
+use mtled_checks::escape::printable_json;
+use mtled_checks::report::write_atomically;
+use serde_json::Value;
+use std::path::Path;
+
+/// Writes all files of a run to `dir` and returns the text of `result.json`.
+pub fn write_outputs(
+    case: &Case,
+    solved: &Solved,
+    record: &Recording,
+    contacts: &[ContactResult],
+    bars: Option<&Estimated>,
+    dir: &Path,
+) -> Result<String> {
+    let indicator = bars.and_then(|bars| bars.as_ref().ok()?.indicator.as_ref());
+    let body = write_recorded(case, &solved.prepared, record, indicator, dir)?;
+    let (u, stopped) = (&solved.state.displacement, solved.summary.stopped);
+    StoredField::new(case, &solved.prepared, u, stopped).write(dir)?;
+    write_result(
+        case,
+        record,
+        body.as_ref(),
+        &result_json(case, solved, record, contacts, bars),
+        dir,
+    )
+}
+
+/// Writes what a run had recorded when it ended with an error.
+pub fn write_failed(
+    case: &Case,
+    prepared: &Prepared,
+    record: &Recording,
+    error: &Error,
+    dir: &Path,
+) -> Result<String> {
+    let body = write_recorded(case, prepared, record, None, dir)?;
+    write_result(case, record, body.as_ref(), &failed_json(case, prepared, record, error), dir)
+}
+
+/// Writes the page and `result.json`, and returns the text of the latter.
+fn write_result(
+    case: &Case,
+    record: &Recording,
+    body: Option<&Body>,
+    result: &Value,
+    dir: &Path,
+) -> Result<String> {
+    let page = run_page(case, record, body, result)?;
+    write_atomically(&dir.join(PAGE_FILE), page.as_bytes())?;
+    let text = printable_json(&serde_json::to_string_pretty(result)?) + "\n";
+    write_atomically(&dir.join("result.json"), text.as_bytes())?;
+    Ok(text)
+}
+
+/// Writes the recording, which a failed run has too. The files of an earlier run are taken
+/// away first and the collections are written last, so that they never name frames of two runs.
+/// Returns the body at the end.
+fn write_recorded(
+    case: &Case,
+    prepared: &Prepared,
+    record: &Recording,
+    indicator: Option<&Indicator>,
+    dir: &Path,
+) -> Result<Option<Body>> {
+    remove_earlier_run(dir)?;
+    let frames = write_frames(case, prepared, record, indicator, dir)?;
+    write_atomically(&dir.join("history.csv"), history_csv(case, record)?.as_bytes())?;
+    frames.write_collections(case, dir)?;
+    Ok(frames.last)
+}
