@@ -60,8 +60,8 @@ def check_body(path, mesh, other, volume):
         own = np.einsum("ij,ij->i", np.cross(b - a, c - a), other.points[cells[:, 3]] - a) / 6
     assert np.allclose(own, measure, rtol=1e-6, atol=0), f"{path}: the readers disagree on volumes"
     assert abs(own.sum() / volume - 1) < 0.02, f"{path}: {own.sum()} of {volume}"
-    regions = np.asarray(mesh.cell_data["region"])
-    assert np.array_equal(regions, other.cell_data["region"][0]), f"{path}: regions"
+    regions, others = (np.ravel(r) for r in (mesh.cell_data["region"], other.cell_data["region"][0]))
+    assert np.array_equal(regions, others), f"{path}: the readers disagree on regions"
     open_edges = 0 if plane else mesh.extract_surface().n_open_edges
     assert open_edges == 0, f"{path}: the boundary has {open_edges} open edges"
     used = np.unique(cells)

@@ -280,5 +280,5 @@ fn a_ball_that_topples_is_called_unstable_and_its_mode_is_drawn() {
         assert!(drawn(last) && !others.iter().any(|frame| drawn(frame)));
     }
     let page = std::fs::read_to_string(out.join("index.html")).unwrap();
-    assert!(page.contains("the body is unstable"), "{page}");
+    assert!(page.contains("unstable"), "{page}");
 }

@@ -50,8 +50,7 @@ pub fn display_mesh(
     let body = problem.body.section(dimension)?;
     let known = volume / dimension.thickness();
     let components = dimension.components() as f64;
-    let boxes = (PER_NODE * nodes as f64).min(BOXES).max(nodes as f64).min(MOST_BOXES);
-    let mut edge = (known / boxes).powf(1.0 / components);
+    let mut edge = (known / expected_boxes(nodes as f64)).powf(1.0 / components);
     let mut mesh = body_mesh(&body, dimension, edge)?;
     for _ in 0..MOST_REFINEMENTS {
         let boxes = known / (FINER * edge).powf(components);
@@ -69,6 +68,11 @@ pub fn display_mesh(
         side.iter().for_each(|&vertex| on_boundary[vertex as usize] = true);
     }
     Ok(DisplayMesh { mesh, on_boundary, edge })
+}
+
+/// Boxes of the lattice in a body with this many nodes, unless thin parts need more.
+pub fn expected_boxes(nodes: f64) -> f64 {
+    (PER_NODE * nodes).min(BOXES).max(nodes).min(MOST_BOXES)
 }
 
 /// The cells of a lattice of steps of about `edge` \[m\] inside a solid, which is a cross-section

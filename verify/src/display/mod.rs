@@ -10,7 +10,7 @@ mod regions;
 mod sharpen;
 mod snap;
 
-pub use body::{DisplayMesh, display_mesh};
+pub use body::{DisplayMesh, display_mesh, expected_boxes};
 pub use cut::{Parents, cut_away};
 pub use mesh::Mesh;
 pub use regions::solid;

@@ -1,5 +1,6 @@
 //! Memory that a run takes, and refusal of cases that need more than is available.
 
+use crate::display::expected_boxes;
 use crate::machine::available_memory;
 use crate::run::record::Sample;
 use crate::scene::Case;
@@ -47,6 +48,18 @@ pub fn estimated_memory(case: &Case, discretisation: &Discretisation) -> f64 {
 /// Bytes of a position in `result.json`, with the numbers as text and as values.
 const PER_WRITTEN_POSITION: f64 = 900.0;
 
+/// Vertices of the display mesh per box of its lattice \[–\].
+const VERTICES_PER_BOX: f64 = 1.4;
+/// Fields and cells of the display mesh \[bytes per vertex\].
+const PER_VERTEX: f64 = 450.0;
+
+/// The display mesh, its fields, and what interpolates to its vertices \[bytes\].
+fn display_bytes(footprint: &Footprint) -> f64 {
+    let vertices = VERTICES_PER_BOX * expected_boxes(footprint.nodes);
+    let entry = (size_of::<u32>() + size_of::<f64>()) as f64;
+    vertices * (PER_VERTEX + entry * footprint.neighbours)
+}
+
 /// Frames and samples of a run, and what evaluates or writes them \[bytes\].
 fn recorded_bytes(case: &Case, footprint: &Footprint) -> f64 {
     let (problem, outputs) = (&case.problem, &case.outputs);
@@ -58,7 +71,11 @@ fn recorded_bytes(case: &Case, footprint: &Footprint) -> f64 {
         + size_of::<Reaction>() as f64 * problem.conditions.len() as f64
         + size_of::<Sample>() as f64;
     let samples = (outputs.history as f64 + 1.0) * sample;
-    frames + samples + footprint.rows_bytes(positions).max(PER_WRITTEN_POSITION * positions)
+    let display = if outputs.frames > 0 { display_bytes(footprint) } else { 0.0 };
+    frames
+        + display
+        + samples
+        + footprint.rows_bytes(positions).max(PER_WRITTEN_POSITION * positions)
 }
 
 /// Refuses where more is needed than available \[bytes\].

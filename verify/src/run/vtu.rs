@@ -138,6 +138,13 @@ impl Blocks {
         }
     }
 
+    /// Fields from the last to the first, and their headers in order.
+    fn fields(&mut self, arrays: &[PointArray]) -> String {
+        let mut headers: Vec<String> = arrays.iter().rev().map(|array| self.field(array)).collect();
+        headers.reverse();
+        headers.concat()
+    }
+
     fn short_integers(&mut self, name: &str, values: impl Iterator<Item = u32>) -> String {
         self.array("Int32", &named(name), values.flat_map(|n| (n as i32).to_le_bytes()))
     }
@@ -174,23 +181,16 @@ pub fn to_vtu(frame: &VtuFrame) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// The last array of the header comes first in the data: meshio, which looks for arrays by their
+/// offsets and changes these one by one, could take one for another otherwise.
 fn header(frame: &VtuFrame, blocks: &mut Blocks) -> String {
     let count = frame.points.len();
-    let mut numbers = String::new();
-    for (name, number) in &frame.numbers {
-        let attributes = format!("{} NumberOfTuples=\"1\"", named(name));
-        numbers += &blocks.reals(&attributes, [number].into_iter());
-    }
-    let places =
-        blocks.reals("Name=\"Points\" NumberOfComponents=\"3\"", frame.points.iter().flatten());
     let (corners, cell_count) = match &frame.cells {
         Some(cells) => (cells.corners, cells.count()),
         None => (1, count),
     };
-    let connectivity = match &frame.cells {
-        Some(cells) => blocks.short_integers("connectivity", cells.points.iter().copied()),
-        None => blocks.integers("connectivity", 0..count as i64),
-    };
+    let kinds = std::iter::repeat_n(vtk_type(corners), cell_count);
+    let types = blocks.array("UInt8", &named("types"), kinds);
     let offsets = match &frame.cells {
         Some(_) => {
             let ends = (1..=cell_count).map(|cell| (cell * corners) as u32);
@@ -198,15 +198,25 @@ fn header(frame: &VtuFrame, blocks: &mut Blocks) -> String {
         }
         None => blocks.integers("offsets", 1..=count as i64),
     };
-    let kinds = std::iter::repeat_n(vtk_type(corners), cell_count);
-    let types = blocks.array("UInt8", &named("types"), kinds);
-    let fields: String = frame.point_data.iter().map(|array| blocks.field(array)).collect();
+    let connectivity = match &frame.cells {
+        Some(cells) => blocks.short_integers("connectivity", cells.points.iter().copied()),
+        None => blocks.integers("connectivity", 0..count as i64),
+    };
+    let places =
+        blocks.reals("Name=\"Points\" NumberOfComponents=\"3\"", frame.points.iter().flatten());
     let (mut cell_fields, mut purpose) = (String::new(), String::new());
     if let Some(cells) = &frame.cells {
-        let data: String = cells.data.iter().map(|array| blocks.field(array)).collect();
-        cell_fields = format!("<CellData>\n{data}</CellData>\n");
+        cell_fields = format!("<CellData>\n{}</CellData>\n", blocks.fields(&cells.data));
         purpose = format!("<!-- {} -->\n", cells.purpose);
     }
+    let fields = blocks.fields(&frame.point_data);
+    let mut numbers = Vec::new();
+    for (name, number) in frame.numbers.iter().rev() {
+        let attributes = format!("{} NumberOfTuples=\"1\"", named(name));
+        numbers.push(blocks.reals(&attributes, [number].into_iter()));
+    }
+    numbers.reverse();
+    let numbers = numbers.concat();
     format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \

@@ -132,7 +132,9 @@ fn von_mises(stress: &[f64]) -> f64 {
 }
 
 /// Points whose rows are made one after the other.
-const PIECE: usize = 256;
+const PIECE: usize = 32;
+/// Points whose rows are packed at once: those are stored twice.
+const BATCH: usize = 16 * PIECE;
 
 /// φ at points of the body; where a thin part has too few nodes around, that at the nearest node.
 fn rows_near(approximation: &Approximation, positions: &[Vector3]) -> Rows {
@@ -152,13 +154,17 @@ fn rows_near(approximation: &Approximation, positions: &[Vector3]) -> Rows {
         let support = |X: &Vector3| approximation.evaluate(X).unwrap_or_else(|_| at_nearest(X));
         piece.iter().map(support).collect()
     };
-    let pieces: Vec<Vec<Support>> = positions.par_chunks(PIECE).map(evaluate).collect();
     let mut rows = Rows::default();
-    for support in pieces.into_iter().flatten() {
-        rows.nodes.extend(support.nodes);
-        rows.phi.extend(support.phi);
-        rows.starts.push(rows.nodes.len());
+    for batch in positions.chunks(BATCH) {
+        let pieces: Vec<Vec<Support>> = batch.par_chunks(PIECE).map(evaluate).collect();
+        for support in pieces.into_iter().flatten() {
+            rows.nodes.extend(support.nodes);
+            rows.phi.extend(support.phi);
+            rows.starts.push(rows.nodes.len());
+        }
     }
+    rows.nodes.shrink_to_fit();
+    rows.phi.shrink_to_fit();
     rows
 }
 

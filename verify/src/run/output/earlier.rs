@@ -9,10 +9,10 @@ use std::path::Path;
 /// Name of the page in the folder of a run.
 pub const PAGE_FILE: &str = "index.html";
 
-/// Removes `result.json` and the collections of frames, then the frames and the histories.
+/// Removes `result.json`, the page and the collections of frames, then the frames and the histories.
 pub fn remove_earlier_run(dir: &Path) -> Result<()> {
-    let mut others = vec![dir.join("history.csv"), dir.join(FIELD_FILE), dir.join(PAGE_FILE)];
-    let mut indices = vec![dir.join("result.json")];
+    let mut others = vec![dir.join("history.csv"), dir.join(FIELD_FILE)];
+    let mut indices = vec![dir.join("result.json"), dir.join(PAGE_FILE)];
     let unreadable = || format!("cannot read the folder {}", dir.display());
     if dir.exists() {
         for entry in std::fs::read_dir(dir).with_context(unreadable)? {

@@ -1,73 +1,13 @@
-//! `mtled view`.
+//! `mtled view` from its arguments to the picture.
 
-use super::common::Common;
+use super::arguments::ViewArgs;
+use crate::cli::common::Common;
 use crate::display::Mesh;
 use crate::files::points::{MeshFile, read_mesh};
-use crate::picture::{Body, Choice, Direction, Field, Shown, panels, picture_svg};
+use crate::picture::{Body, Choice, Field, Shown, panels, picture_svg};
 use crate::run::last_body_frame;
 use anyhow::{Context, Result, bail, ensure};
-use clap::{Args, ValueEnum};
-use mtled::algebra::tensor::Vector3;
 use mtled_checks::report::write_atomically;
-use std::path::PathBuf;
-
-/// Draws the frames of the body that `mtled solve` wrote (body_*.vtu).
-#[derive(Debug, Args)]
-pub struct ViewArgs {
-    /// Folder that `mtled solve --out` wrote.
-    result: PathBuf,
-    /// The picture, .svg [default: RESULT/picture.svg].
-    #[arg(short, long, value_name = "FILE.svg")]
-    out: Option<PathBuf>,
-    /// The field that gives the colours: displacement, von_mises_stress, pressure, J,
-    /// principal_green_lagrange_strain (its largest), nodal_spacing and, where there are such,
-    /// displacement_error_bar, contact_pressure, contact_gap.
-    #[arg(long, value_name = "NAME", default_value = "displacement")]
-    field: String,
-    /// Where the viewer stands, seen from the body, such as 1,-1,0.5 [default: in front, to the
-    /// right and above; above a plane].
-    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
-    from: Option<Direction>,
-    /// What is shown, from the left [default: before,after,cut; before,after in a plane].
-    #[arg(long, value_enum, value_name = "PANEL", value_delimiter = ',')]
-    show: Vec<PanelName>,
-    /// Number of the frame [default: the last].
-    #[arg(long, value_name = "N")]
-    frame: Option<usize>,
-}
-
-/// A panel of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum PanelName {
-    /// The body before, its regions in their colours.
-    Before,
-    /// The body after, coloured by the field.
-    After,
-    /// The body after without the half in front of its middle.
-    Cut,
-}
-
-impl From<PanelName> for Shown {
-    fn from(name: PanelName) -> Shown {
-        match name {
-            PanelName::Before => Shown::Before,
-            PanelName::After => Shown::After,
-            PanelName::Cut => Shown::Cut,
-        }
-    }
-}
-
-fn direction(text: &str) -> Result<Direction, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, z])
-            if [x, y, z].iter().all(|c| c.is_finite()) && (x, y, z) != (0.0, 0.0, 0.0) =>
-        {
-            Ok(Direction(Vector3::new(x, y, z)))
-        }
-        _ => Err("expected three numbers that are not all zero, such as 1,-1,0.5".into()),
-    }
-}
 
 pub fn view(arguments: &ViewArgs, common: &Common) -> Result<u8> {
     let folder = &arguments.result;
