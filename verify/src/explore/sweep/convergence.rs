@@ -57,12 +57,11 @@ pub fn add_convergence(study: &mut Study, sweep: &Sweep, case: &MeasuredCase) {
         },
     ));
     study.undecided.extend(families.iter().filter_map(|family| {
-        Some(format!(
-            "{}, {}: {}",
-            case.source.name,
-            family.0,
-            undecided(sweep.clouds, family, bar)?
-        ))
+        let why = undecided(sweep.clouds, family, bar)?;
+        Some(match family.0 == case.source.name {
+            true => format!("{}: {why}", case.source.name),
+            false => format!("{}, {}: {why}", case.source.name, family.0),
+        })
     }));
     study.figures.push(Figure::Plot(figure(case, group.label(), &families, bar)));
     study.notes.push(format!(
