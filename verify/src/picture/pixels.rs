@@ -33,7 +33,7 @@ pub struct Pixels {
 struct Fine {
     size: [usize; 2],
     depth: Vec<f64>,
-    colour: Vec<Colour>,
+    colour: Vec<[u8; 3]>,
 }
 
 /// Draws triangles, the colour of which is a function of value and region.
@@ -46,7 +46,7 @@ pub fn draw(
     let size = window.size.map(|n| n * FINER);
     let count = size[0] * size[1];
     let mut fine =
-        Fine { size, depth: vec![f64::NEG_INFINITY; count], colour: vec![[0.0; 3]; count] };
+        Fine { size, depth: vec![f64::NEG_INFINITY; count], colour: vec![[0; 3]; count] };
     let pixel = window.pixel / FINER as f64;
     for triangle in triangles {
         let seen = triangle.corners.map(|corner| {
@@ -107,7 +107,7 @@ impl Fine {
                 let place = row * self.size[0] + column;
                 if depth > self.depth[place] {
                     self.depth[place] = depth;
-                    self.colour[place] = colour(weights);
+                    self.colour[place] = colour(weights).map(byte);
                 }
             }
         }
@@ -123,7 +123,7 @@ impl Fine {
                 let place = j * self.size[0] + i;
                 if self.depth[place] > f64::NEG_INFINITY {
                     covered += 1.0;
-                    (0..3).for_each(|k| sum[k] += self.colour[place][k]);
+                    (0..3).for_each(|k| sum[k] += f64::from(self.colour[place][k]) / 255.0);
                 }
             }
             bytes.extend(sum.map(|part| byte(part / f64::max(covered, 1.0))));
