@@ -51,7 +51,8 @@ fn quiet(folder: &Path, arguments: &[&str]) -> Command {
 fn succeeds(mut command: Command) {
     let output = command.stderr(Stdio::piped()).output().unwrap();
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{command:?}: {message}");
+    // Studies of two spacings show no order, which is inconclusive.
+    assert!(matches!(output.status.code(), Some(0 | 3)), "{command:?}: {message}");
 }
 
 /// Numbers from 0 to 1 that follow from the first one.

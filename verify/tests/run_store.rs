@@ -59,11 +59,16 @@ fn records(folder: &Path, store: &str) -> Vec<Value> {
     all
 }
 
+/// Runs a study to its end; that it may be inconclusive does not matter here.
+fn ends(mut study: Command) {
+    assert!(matches!(study.status().unwrap().code(), Some(0 | 3)));
+}
+
 #[test]
 fn a_study_that_was_killed_ten_times_gives_the_results_of_an_undisturbed_one() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    assert!(study(folder, "calm", "calm_report", &[]).status().unwrap().success());
+    ends(study(folder, "calm", "calm_report", &[]));
     for n in 0..10 {
         let mut child = study(folder, "killed", "killed_report", &[]).spawn().unwrap();
         // From the very beginning to where some runs are done.
@@ -73,7 +78,7 @@ fn a_study_that_was_killed_ten_times_gives_the_results_of_an_undisturbed_one() {
         // Whatever is there can be read: whole records or none.
         records(folder, "killed");
     }
-    assert!(study(folder, "killed", "killed_report", &[]).status().unwrap().success());
+    ends(study(folder, "killed", "killed_report", &[]));
     assert_eq!(records(folder, "killed"), records(folder, "calm"));
     assert_eq!(reproducible(folder, "killed_report"), reproducible(folder, "calm_report"));
 }
@@ -82,7 +87,7 @@ fn a_study_that_was_killed_ten_times_gives_the_results_of_an_undisturbed_one() {
 fn four_merged_parts_are_the_whole_study_and_no_run_is_repeated() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    assert!(study(folder, "whole", "whole_report", &[]).status().unwrap().success());
+    ends(study(folder, "whole", "whole_report", &[]));
     let mut merge = program();
     merge.current_dir(folder).args(["merge", "--into", "merged"]);
     for part in 1..=4 {
@@ -95,7 +100,7 @@ fn four_merged_parts_are_the_whole_study_and_no_run_is_repeated() {
     assert!(merge.stdout(Stdio::null()).status().unwrap().success());
     assert_eq!(records(folder, "merged"), records(folder, "whole"));
     let before = listed(folder, "merged");
-    assert!(study(folder, "merged", "merged_report", &[]).status().unwrap().success());
+    ends(study(folder, "merged", "merged_report", &[]));
     assert_eq!(listed(folder, "merged"), before);
     assert_eq!(reproducible(folder, "merged_report"), reproducible(folder, "whole_report"));
 }
@@ -201,7 +206,8 @@ fn an_exported_table_has_every_number_of_the_records_bit_for_bit() {
     let folder = folder.path();
     let arguments = ["convergence", "uniaxial_bar", "--spacing", "x2,x1.6", "--clouds", "1"];
     let files = ["--store", "runs", "--out", "report", "--quiet"];
-    assert_eq!(run(folder, &[&["study"], &arguments[..], &files[..]].concat()).0, 0);
+    // One cloud shows no order, which is inconclusive.
+    assert_eq!(run(folder, &[&["study"], &arguments[..], &files[..]].concat()).0, 3);
     let (code, table, _) = run(folder, &["runs", "export", "--store", "runs"]);
     assert_eq!(code, 0);
     let mut reader = csv::Reader::from_reader(table.as_bytes());

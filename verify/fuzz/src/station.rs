@@ -177,7 +177,9 @@ fn judge_end(
             }
             Some(Outcome::Succeeded)
         }
-        Some(1) if matches!(step.arguments[0], "report" | "reference" | "study" | "protocol") => {
+        Some(1 | 3)
+            if matches!(step.arguments[0], "report" | "reference" | "study" | "protocol") =>
+        {
             Some(Outcome::Succeeded)
         }
         Some(2) => {

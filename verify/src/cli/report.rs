@@ -5,6 +5,7 @@ use anyhow::Context;
 use clap::Args;
 use mtled_checks::gate::{compare as compare_with, compare_runs, read_baseline};
 use mtled_checks::report::{human, json, read_report, two_runs, write_atomically, write_report};
+use mtled_checks::study::Outcome;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -51,9 +52,10 @@ fn rebuild(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
         let table = human::to_table(&report, common.colours(), arguments.verbose);
         format!("{table}\nreport: {}\n", out.join("index.html").display())
     })?;
-    Ok(match arguments.baseline.is_some() {
-        true => report.outcome().exit_code(),
-        false => 0,
+    // What could not run then is a failure of that run, and not of this command.
+    Ok(match (arguments.baseline.is_some(), report.outcome()) {
+        (false, _) => 0,
+        (true, outcome) => outcome.min(Outcome::Failed).exit_code(),
     })
 }
 
