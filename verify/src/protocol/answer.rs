@@ -13,22 +13,22 @@ pub struct Answer {
     /// Version of the protocol, 1.
     pub protocol: u32,
     pub solver: SolverName,
-    /// Displacements by probe, every probe of the job: [instant][position][component].
+    /// Displacements by probe, every probe of the job: lists by instant, position and component.
     pub displacements_m: BTreeMap<String, Vec<Vec<[f64; 3]>>>,
-    /// Forces that supports exert on the body, by support, [instant][component]; supports that
-    /// the solver does not know are left out.
+    /// Forces that supports exert on the body, by support, lists by instant and component;
+    /// supports that the solver does not know are left out.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub reactions_n: BTreeMap<String, Vec<[f64; 3]>>,
     /// Moments of these forces at displaced positions about `moment_about_m` of the job.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub moments_nm: BTreeMap<String, Vec<[f64; 3]>>,
-    /// ∫ ψ dV of the whole body, [instant].
+    /// ∫ ψ dV of the whole body, by instant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strain_energy_j: Option<Vec<f64>>,
-    /// ∫ ρ v²/2 dV of the whole body, [instant].
+    /// ∫ ρ v²/2 dV of the whole body, by instant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kinetic_energy_j: Option<Vec<f64>>,
-    /// Scalar unknowns of the system that was solved, at least 1.
+    /// Scalar unknowns of the system that was solved, without prescribed components, at least 1.
     pub unknowns: u64,
     /// Processor time that the program believes to have taken since its start, all threads and
     /// children. It is measured too.

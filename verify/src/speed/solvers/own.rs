@@ -4,7 +4,7 @@ use crate::accuracy::{SAMPLES, values};
 use crate::machine::{cpu_seconds, peak_memory};
 use crate::protocol::{Answer, Job, PROTOCOL, Refusal, RefusalReason, Refused, Reply, SolverName};
 use crate::reference::{Family, is_dynamic, quantities};
-use crate::run::{Recorder, integrate, prepare_to_run, refuse_beyond_memory};
+use crate::run::{Prepared, Recorder, integrate, prepare_to_run, refuse_beyond_memory};
 use crate::scene::{Case, Knob, Setting, edited, one_error, parse_case, read_text};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ pub fn solve_job(job: &Job) -> Result<Reply> {
         Ok(prepared) => prepared,
         Err(error) => return Ok(refusal(RefusalReason::Resolution, error.to_string())),
     };
-    let unknowns = prepared.model.size() as u64;
+    let unknowns = unknowns(&case, &prepared);
     let mut recorder = Recorder::new(&case, &prepared, 0)?;
     match integrate(&case.problem, prepared, &mut recorder) {
         Ok(solved) if solved.summary.stopped => bail!("stopped"),
@@ -32,6 +32,14 @@ pub fn solve_job(job: &Job) -> Result<Reply> {
     }
     let values = values(&case, &recorder.finish(), &job.instants_s)?;
     Ok(Reply::Answer(answer(&case, &values, unknowns)))
+}
+
+/// Components of all nodes without those that are prescribed at the end.
+fn unknowns(case: &Case, prepared: &Prepared) -> u64 {
+    let mut prescribed = 0;
+    let end = case.problem.motion.end();
+    prepared.model.constraints.for_each_row(end, |_, _| prescribed += 1);
+    (prepared.model.size() as u64).saturating_sub(prescribed).max(1)
 }
 
 /// The case at the wanted spacing, or why there is none.
