@@ -52,6 +52,8 @@ pub enum Error {
         condition: f64,
         largest: f64,
     },
+    #[error("the quadrature points around point {point} at ({}) see more than {most} nodes: lower the dilation", show(.position))]
+    LargeSupports { point: usize, position: Vector3, most: usize },
     #[error("node {node} at ({}) is covered by no quadrature point: use smaller cells or a larger dilation", show(.position))]
     UncoveredNode { node: usize, position: Vector3 },
     #[error("node {node} at ({}) has a lumped mass of {mass:.3e} kg: use smaller cells, or mass = \"even_split\"", show(.position))]

@@ -1,16 +1,9 @@
-//! Numbers side by side for vector instructions: four for a node, eight for as
-//! many quadrature points.
+//! Numbers at eight quadrature points side by side, for vector instructions.
 
 use crate::algebra::real::{Dual, Real};
 use crate::algebra::spectral::Plain;
-use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
+use fearless_simd::{Simd, f64x8, prelude::*};
 use std::marker::PhantomData;
-
-/// The components of a vector and one of padding, aligned to 32 bytes: the
-/// displacement of a node, the force on it or a column of a tensor.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-#[repr(C, align(32))]
-pub struct PaddedVector(pub [f64; 4]);
 
 /// One number at eight quadrature points.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -19,11 +12,6 @@ pub struct SimdBlock(pub [f64; 8]);
 
 /// Quadrature points in a [`SimdBlock`].
 pub const LANES: usize = 8;
-
-#[inline(always)]
-pub fn load_vector<S: Simd>(simd: S, vector: &PaddedVector) -> f64x4<S> {
-    vector.0.simd_into(simd)
-}
 
 #[inline(always)]
 pub fn load_block<S: Simd>(simd: S, block: &SimdBlock) -> f64x8<S> {
@@ -36,11 +24,11 @@ pub fn load_block<S: Simd>(simd: S, block: &SimdBlock) -> f64x8<S> {
 pub fn prefetch<T>(entries: &[T], index: usize) {
     #[cfg(target_arch = "x86_64")]
     if let Some(entry) = entries.get(index) {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
         // SAFETY: a hint at the address of an entry, which reads and writes nothing.
         #[allow(unsafe_code)]
         unsafe {
-            _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(entry).cast());
+            _mm_prefetch::<_MM_HINT_T1>(std::ptr::from_ref(entry).cast());
         }
     }
     #[cfg(not(target_arch = "x86_64"))]

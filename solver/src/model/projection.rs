@@ -68,6 +68,11 @@ pub fn project<S: Simd>(simd: S, patch: &[BasisBlock], values: &mut [SimdBlock])
 }
 
 impl Projection {
+    /// B_b \[m^−3/2\] at the point in a lane of the block.
+    pub fn basis_at(&self, lane: usize) -> [f64; 4] {
+        self.blocks[lane / LANES].basis.map(|values| values.0[lane % LANES])
+    }
+
     /// s (p_q − U'(J_q)) \[Pa\] from J at the points of a patch.
     #[inline(always)]
     pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(

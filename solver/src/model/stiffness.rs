@@ -1,7 +1,6 @@
 //! The diagonal of the stiffness at rest.
 
-use crate::algebra::lanes::LANES;
-use crate::model::blocks::{Block, StoredNumber, with_gradients};
+use crate::model::blocks::{Block, GradientQuad, with_gradients};
 
 /// The moduli of a block at rest \[Pa\].
 #[derive(Debug, Clone, Copy)]
@@ -44,15 +43,14 @@ pub fn stiffness_diagonal(blocks: &[Block], components: usize, nodes: usize) -> 
     diagonal
 }
 
-fn block_diagonal<G: StoredNumber, const D: usize>(block: &Block, grad_phi: &[G]) -> Vec<f64> {
+fn block_diagonal<G: GradientQuad, const D: usize>(block: &Block, grad_phi: &[G]) -> Vec<f64> {
     let ModuliAtRest { shear, pointwise, projected } = ModuliAtRest::of(block);
     let modulus = shear + (pointwise + shear) / D as f64;
     let mut diagonal = vec![0.0; block.nodes.len()];
-    for (point, weight) in block.quadrature_weights.iter().enumerate() {
-        let (nodes, gradients) = block.support::<G, D>(grad_phi, point);
-        for (&node, gradient) in nodes.iter().zip(gradients) {
-            let square: f64 = gradient.map(Into::into).iter().map(|g| g * g).sum();
-            diagonal[node as usize] += weight * modulus * square;
+    for lane in block.occupied() {
+        let factor = block.quadrature_weights[lane] * modulus;
+        for (node, gradient) in block.support::<G, D>(grad_phi, lane) {
+            diagonal[node] += factor * gradient.iter().map(|g| g * g).sum::<f64>();
         }
     }
     add_projected::<G, D>(block, grad_phi, projected / D as f64, &mut diagonal);
@@ -60,7 +58,7 @@ fn block_diagonal<G: StoredNumber, const D: usize>(block: &Block, grad_phi: &[G]
 }
 
 /// modulus · Σ_b |Σ_q w B_b Grad φ_a|² of every patch.
-fn add_projected<G: StoredNumber, const D: usize>(
+fn add_projected<G: GradientQuad, const D: usize>(
     block: &Block,
     grad_phi: &[G],
     modulus: f64,
@@ -68,25 +66,22 @@ fn add_projected<G: StoredNumber, const D: usize>(
 ) {
     let Some(projection) = &block.projection else { return };
     let mut moments = vec![[[0.0; D]; 4]; diagonal.len()];
-    for patch in block.chunks() {
-        for (i, point) in patch.points.clone().enumerate() {
-            let (nodes, gradients) = block.support::<G, D>(grad_phi, point);
-            let block_of_points = &projection.blocks[patch.groups.start + i / LANES];
-            for (&node, gradient) in nodes.iter().zip(gradients) {
-                for (moment, basis) in moments[node as usize].iter_mut().zip(&block_of_points.basis)
-                {
-                    let factor = block.quadrature_weights[point] * basis.0[i % LANES];
-                    let gradient = gradient.map(Into::into);
-                    moment.iter_mut().zip(gradient).for_each(|(m, g): (_, f64)| *m += factor * g);
+    for patch in &block.chunks {
+        for lane in patch.lanes.clone() {
+            let basis = projection.basis_at(lane);
+            for (node, gradient) in block.support::<G, D>(grad_phi, lane) {
+                for (moment, basis) in moments[node].iter_mut().zip(basis) {
+                    let factor = block.quadrature_weights[lane] * basis;
+                    moment.iter_mut().zip(gradient).for_each(|(m, g)| *m += factor * g);
                 }
             }
         }
-        for point in patch.points {
-            for &node in block.support::<G, D>(grad_phi, point).0 {
+        for lane in patch.lanes.clone() {
+            for (node, _) in block.support::<G, D>(grad_phi, lane) {
                 // Reset, so that a node in several supports is counted once.
-                let moment = std::mem::replace(&mut moments[node as usize], [[0.0; D]; 4]);
+                let moment = std::mem::replace(&mut moments[node], [[0.0; D]; 4]);
                 let square: f64 = moment.iter().flatten().map(|m| m * m).sum();
-                diagonal[node as usize] += modulus * square;
+                diagonal[node] += modulus * square;
             }
         }
     }

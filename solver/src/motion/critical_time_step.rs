@@ -112,10 +112,9 @@ fn local_squares(model: &Model, field: &[f64]) -> Vec<f64> {
     };
     let mut sums = vec![(0.0, 0.0); model.positions.len()];
     for block in &model.blocks {
-        for ends in block.starts.windows(2) {
-            let support = &block.supports[ends[0] as usize..ends[1] as usize];
-            let nodes = || support.iter().map(|&local| block.nodes[local as usize]);
-            let mean = nodes().map(square).sum::<f64>() / support.len() as f64;
+        for lane in block.occupied() {
+            let nodes = || block.support_nodes(lane, d).map(|local| block.nodes[local]);
+            let mean = nodes().map(square).sum::<f64>() / nodes().count() as f64;
             for node in nodes() {
                 let (sum, count) = &mut sums[node as usize];
                 (*sum, *count) = (*sum + mean, *count + 1.0);

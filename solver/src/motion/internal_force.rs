@@ -2,18 +2,18 @@
 //! eq. 11.1), their derivative, and the strain energy of the same points.
 #![allow(non_snake_case)]
 
-use crate::algebra::lanes::{Lanes, Number, PaddedVector, with_vectors};
+use crate::algebra::lanes::{Lanes, Number, with_vectors};
 use crate::algebra::real::Dual;
 use crate::algebra::tensor::Matrix3;
-use crate::model::blocks::{StoredNumber, with_gradients};
+use crate::model::blocks::{LocalVectors, with_gradients};
 use crate::model::{Block, Chunk, Model};
-use crate::motion::kernel::{Scratch, block_force};
+use crate::motion::kernel::{self, Scratch, block_force};
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
 /// Scratch memory of a run; nothing in it outlives a step.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Workspace {
     /// The vector instructions of this processor.
     pub level: Level,
@@ -42,8 +42,7 @@ impl SmallestJacobian {
 impl Workspace {
     /// For a model, at the widest vector instructions of this processor.
     pub fn new(model: &Model) -> Workspace {
-        let scratch = |block: &Block| Scratch::new(block, model.components);
-        Workspace { level: Level::new(), blocks: model.blocks.iter().map(scratch).collect() }
+        Workspace { level: Level::new(), blocks: model.blocks.iter().map(Scratch::new).collect() }
     }
 }
 
@@ -61,8 +60,8 @@ pub fn internal_force(
     f: &mut [f64],
 ) -> SmallestJacobian {
     match model.components {
-        2 => internal_force_in::<2>(model, u, None, workspace, f),
-        _ => internal_force_in::<3>(model, u, None, workspace, f),
+        2 => internal_force_in::<2>(model, u, false, workspace, f),
+        _ => internal_force_in::<3>(model, u, false, workspace, f),
     }
 }
 
@@ -75,42 +74,80 @@ pub fn stiffness_times(
     workspace: &mut Workspace,
     product: &mut [f64],
 ) {
+    linearise(model, u, workspace);
+    linearised_stiffness_times(model, v, workspace, product);
+}
+
+/// Prepares [`linearised_stiffness_times`] at displacements `u` \[m\].
+pub fn linearise(model: &Model, u: &[f64], workspace: &mut Workspace) {
     match model.components {
-        2 => internal_force_in::<2>(model, u, Some(v), workspace, product),
-        _ => internal_force_in::<3>(model, u, Some(v), workspace, product),
+        2 => linearise_in::<2>(model, u, workspace),
+        _ => linearise_in::<3>(model, u, workspace),
+    }
+}
+
+/// As [`stiffness_times`] at the displacements of the last [`linearise`].
+///
+/// # Panics
+/// If there has been none.
+pub fn linearised_stiffness_times(
+    model: &Model,
+    v: &[f64],
+    workspace: &mut Workspace,
+    product: &mut [f64],
+) {
+    match model.components {
+        2 => internal_force_in::<2>(model, v, true, workspace, product),
+        _ => internal_force_in::<3>(model, v, true, workspace, product),
     };
 }
 
+fn linearise_in<const D: usize>(model: &Model, u: &[f64], workspace: &mut Workspace) {
+    let level = workspace.level;
+    let run = |(block, scratch): (&Block, &mut Scratch)| {
+        scratch.u.gather::<D>(&block.nodes, u);
+        with_vectors!(level, (simd, numbers) => keep_gradients::<_, _, D>(simd, numbers, block, scratch));
+    };
+    match on_one_thread(model) {
+        true => model.blocks.iter().zip(&mut workspace.blocks).for_each(run),
+        false => model.blocks.par_iter().zip(&mut workspace.blocks).with_max_len(1).for_each(run),
+    }
+}
+
+/// Whether a pass over the blocks is faster without other threads.
+fn on_one_thread(model: &Model) -> bool {
+    model.point_positions.len() < POINTS_FOR_THREADS || rayon::current_num_threads() == 1
+}
+
+/// Forces at displacements `u`, or their derivative along `u` where the model was linearised.
 fn internal_force_in<const D: usize>(
     model: &Model,
     u: &[f64],
-    v: Option<&[f64]>,
+    along: bool,
     workspace: &mut Workspace,
     f: &mut [f64],
 ) -> SmallestJacobian {
     let level = workspace.level;
-    let run = |(block, scratch): (&Block, &mut Scratch)| {
-        gather::<D>(block, u, &mut scratch.u);
-        match v {
-            None => {
-                with_vectors!(level, (simd, numbers) => force::<_, _, D>(simd, numbers, block, scratch))
-            }
-            Some(v) => {
-                scratch.v.resize(block.nodes.len(), PaddedVector::default());
-                gather::<D>(block, v, &mut scratch.v);
-                with_vectors!(level, (simd, numbers) => {
-                    derivative::<_, _, D>(simd, numbers, block, scratch)
-                });
-            }
+    let run = |(block, scratch): (&Block, &mut Scratch)| match along {
+        false => {
+            scratch.u.gather::<D>(&block.nodes, u);
+            with_vectors!(level, (simd, numbers) => force::<_, _, D>(simd, numbers, block, scratch))
+        }
+        true => {
+            let v = scratch.v.get_or_insert_with(LocalVectors::zeros);
+            v.gather::<D>(&block.nodes, u);
+            with_vectors!(level, (simd, numbers) => {
+                derivative::<_, _, D>(simd, numbers, block, scratch)
+            });
         }
     };
     let pairs = model.blocks.iter().zip(&mut workspace.blocks);
     let nodes = f.as_chunks_mut::<D>().0;
-    if model.point_positions.len() < POINTS_FOR_THREADS || rayon::current_num_threads() == 1 {
+    if on_one_thread(model) {
         nodes.fill([0.0; D]);
         for (block, scratch) in pairs {
             run((block, scratch));
-            block.nodes.iter().zip(&scratch.f).for_each(|(&node, force)| {
+            block.nodes.iter().zip(scratch.f.iter::<D>()).for_each(|(&node, force)| {
                 add(&mut nodes[node as usize], force);
             });
         }
@@ -119,8 +156,8 @@ fn internal_force_in<const D: usize>(
         sum_in_order(model, &workspace.blocks, nodes);
     }
     let smallest = model.blocks.iter().zip(&workspace.blocks).map(|(block, scratch)| {
-        let (jacobian, point) = scratch.smallest;
-        SmallestJacobian { jacobian, point: block.points.start + point }
+        let (jacobian, lane) = scratch.smallest;
+        SmallestJacobian { jacobian, point: block.point(lane) }
     });
     smallest.fold(SmallestJacobian::NONE, SmallestJacobian::or)
 }
@@ -133,6 +170,16 @@ fn force<S: Simd, N: Lanes<S>, const D: usize>(
     scratch: &mut Scratch,
 ) {
     block_force::<S, N, D>(simd, block, scratch);
+}
+
+#[inline(always)]
+fn keep_gradients<S: Simd, N, const D: usize>(
+    simd: S,
+    _: PhantomData<N>,
+    block: &Block,
+    scratch: &mut Scratch,
+) {
+    kernel::linearise::<S, D>(simd, block, scratch);
 }
 
 #[inline(always)]
@@ -155,7 +202,7 @@ fn sum_in_order<const D: usize>(model: &Model, blocks: &[Scratch], nodes: &mut [
             for term in terms {
                 let forces = &blocks[term.block].f;
                 for (node, local) in &term.nodes {
-                    add(&mut nodes[*node as usize - chunk * length], &forces[*local as usize]);
+                    add(&mut nodes[*node as usize - chunk * length], &forces.at(*local as usize));
                 }
             }
         },
@@ -163,27 +210,15 @@ fn sum_in_order<const D: usize>(model: &Model, blocks: &[Scratch], nodes: &mut [
 }
 
 #[inline(always)]
-fn add<const D: usize>(node: &mut [f64; D], force: &PaddedVector) {
-    node.iter_mut().zip(force.0).for_each(|(sum, f)| *sum += f);
+fn add<const D: usize>(node: &mut [f64; D], force: &[f64; D]) {
+    node.iter_mut().zip(force).for_each(|(sum, f)| *sum += f);
 }
 
-fn gather<const D: usize>(block: &Block, u: &[f64], local: &mut [PaddedVector]) {
-    let global = u.as_chunks::<D>().0;
-    for (&node, value) in block.nodes.iter().zip(local) {
-        value.0[..D].copy_from_slice(&global[node as usize]);
-    }
-}
-
-/// F = I + Σ_a u_a ⊗ Grad φ_a; in a plane F₃₃ = 1.
+/// F = I + Σ_a u_a ⊗ Grad φ_a at the point in a lane; in a plane F₃₃ = 1.
 #[inline(always)]
-fn deformation_gradient<const D: usize>(
-    block: &Block,
-    point: usize,
-    u: &[PaddedVector],
-) -> Matrix3 {
+fn deformation_gradient<const D: usize>(block: &Block, lane: usize, u: &LocalVectors) -> Matrix3 {
     let sums = with_gradients!(&block.grad_phi, grad_phi => {
-        let (nodes, gradients) = block.support::<_, D>(grad_phi, point);
-        displacement_gradient(nodes, gradients, u)
+        displacement_gradient(block.support::<_, D>(grad_phi, lane), u)
     });
     let mut F = Matrix3::identity();
     for i in 0..D {
@@ -196,14 +231,13 @@ fn deformation_gradient<const D: usize>(
 
 /// Σ_a u_a ⊗ Grad φ_a.
 #[inline(always)]
-fn displacement_gradient<G: StoredNumber, const D: usize>(
-    nodes: &[u32],
-    gradients: &[[G; D]],
-    u: &[PaddedVector],
+fn displacement_gradient<const D: usize>(
+    support: impl Iterator<Item = (usize, [f64; D])>,
+    u: &LocalVectors,
 ) -> [[f64; D]; D] {
     let mut sums = [[0.0; D]; D];
-    for (&node, gradient) in nodes.iter().zip(gradients) {
-        let (displacement, gradient) = (u[node as usize].0, gradient.map(Into::into));
+    for (node, gradient) in support {
+        let displacement: [f64; D] = u.at(node);
         for i in 0..D {
             for j in 0..D {
                 sums[i][j] += displacement[i] * gradient[j];
@@ -223,19 +257,19 @@ pub fn strain_energy(model: &Model, u: &[f64], workspace: &mut Workspace) -> f64
     blocks.map(energy).sum()
 }
 
-fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [PaddedVector]) -> f64 {
-    gather::<D>(block, u, local);
+fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut LocalVectors) -> f64 {
+    local.gather::<D>(&block.nodes, u);
     let mut energy = 0.0;
     let mut jacobians = Vec::new();
-    for chunk in block.chunks() {
+    for Chunk { lanes, groups } in &block.chunks {
         jacobians.clear();
-        for point in chunk.points {
-            let F = deformation_gradient::<D>(block, point, local);
-            energy += block.quadrature_weights[point] * block.law.strain_energy(&F);
+        for lane in lanes.clone() {
+            let F = deformation_gradient::<D>(block, lane, local);
+            energy += block.quadrature_weights[lane] * block.law.strain_energy(&F);
             jacobians.push(F.determinant());
         }
         if let Some(projection) = &block.projection {
-            energy += projection.energy(&block.law, chunk.groups, &jacobians);
+            energy += projection.energy(&block.law, groups.clone(), &jacobians);
         }
     }
     energy
@@ -245,23 +279,24 @@ fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut [PaddedVec
 /// \[Pa\], at displacements `u` \[m\]; 0 without one. The pressure is
 /// −tr σ/3 less this.
 pub fn projected_mean_stress(model: &Model, u: &[f64]) -> Vec<f64> {
-    let stresses = |block: &Block| match model.components {
-        2 => block_mean_stress::<2>(block, u),
-        _ => block_mean_stress::<3>(block, u),
-    };
-    model.blocks.iter().flat_map(stresses).collect()
+    let mut stresses = vec![0.0; model.point_positions.len()];
+    for block in &model.blocks {
+        match model.components {
+            2 => block_mean_stress::<2>(block, u, &mut stresses),
+            _ => block_mean_stress::<3>(block, u, &mut stresses),
+        }
+    }
+    stresses
 }
 
-fn block_mean_stress<const D: usize>(block: &Block, u: &[f64]) -> Vec<f64> {
-    let Some(projection) = &block.projection else {
-        return vec![0.0; block.quadrature_weights.len()];
-    };
-    let mut local = vec![PaddedVector::default(); block.nodes.len()];
-    gather::<D>(block, u, &mut local);
-    let jacobian = |point: usize| deformation_gradient::<D>(block, point, &local).determinant();
-    let pressures = |chunk: Chunk| {
-        let jacobians: Vec<f64> = chunk.points.map(jacobian).collect();
-        projection.plain_pressures(&block.law, chunk.groups, &jacobians)
-    };
-    block.chunks().flat_map(pressures).collect()
+fn block_mean_stress<const D: usize>(block: &Block, u: &[f64], stresses: &mut [f64]) {
+    let Some(projection) = &block.projection else { return };
+    let mut local = LocalVectors::zeros();
+    local.gather::<D>(&block.nodes, u);
+    for Chunk { lanes, groups } in &block.chunks {
+        let jacobian = |lane| deformation_gradient::<D>(block, lane, &local).determinant();
+        let jacobians: Vec<f64> = lanes.clone().map(jacobian).collect();
+        let pressures = projection.plain_pressures(&block.law, groups.clone(), &jacobians);
+        lanes.clone().zip(pressures).for_each(|(lane, p)| stresses[block.point(lane)] = p);
+    }
 }

@@ -3,7 +3,7 @@
 
 use crate::model::Model;
 use crate::model::essential::ConstraintForces;
-use crate::motion::internal_force::{Workspace, stiffness_times};
+use crate::motion::internal_force::{Workspace, linearise, linearised_stiffness_times};
 
 /// v ↦ Π M^(−1/2) K M^(−1/2) Π v with Π the projection onto free displacements.
 pub(crate) struct Tangent<'a> {
@@ -26,6 +26,7 @@ impl<'a> Tangent<'a> {
         let d = model.components;
         let root_mass =
             model.inertia.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
+        linearise(model, u, workspace);
         Tangent { model, u, t, workspace, root_mass, forces: ConstraintForces::default() }
     }
 
@@ -67,7 +68,7 @@ impl<'a> Tangent<'a> {
 
     fn internal_stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.u.len()];
-        stiffness_times(self.model, self.u, direction, self.workspace, &mut product);
+        linearised_stiffness_times(self.model, direction, self.workspace, &mut product);
         product
     }
 }

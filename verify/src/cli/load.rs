@@ -80,9 +80,9 @@ fn diagnose(case: &Case, error: &Error) -> Diagnostic {
         | Error::TooFewPoints { .. }
         | Error::ZeroEnergyModes { .. } => "discretisation.grid",
         Error::MasslessNode { .. } => "discretisation.mass",
-        Error::SmallSupport { .. } | Error::SingularMomentMatrix { .. } => {
-            "discretisation.dilation"
-        }
+        Error::SmallSupport { .. }
+        | Error::SingularMomentMatrix { .. }
+        | Error::LargeSupports { .. } => "discretisation.dilation",
         Error::UnstableStep { .. } => "time.fixed_step",
         Error::TooMuchAddedMass { .. } | Error::UnscaledMass { .. } => "time.mass_scaling",
         Error::ProbeOutside { .. } => "probe",

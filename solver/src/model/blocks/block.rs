@@ -1,14 +1,22 @@
 //! A block of quadrature points.
 
-use super::stored_gradients::{StoredGradients, with_gradients};
+use super::local_vectors::{Place, stride};
+use super::stored_gradients::{GradientQuad, StoredGradients, with_gradients};
 use crate::algebra::lanes::LANES;
 use crate::material::Law;
 use crate::model::projection::Projection;
 use std::ops::Range;
 
+/// Quadrature points whose supports are read side by side.
+pub const QUAD: usize = 4;
+
 /// Consecutive quadrature points of one material, with a numbering of their own of
 /// the nodes in their supports. Blocks depend on the problem alone, never on the
 /// number of threads.
+///
+/// Points take lanes, [`LANES`] of them in a SIMD block, the larger supports of a chunk
+/// first. Four lanes make a quad, which reads its supports slot by slot, one entry for
+/// each lane (method book, section 11).
 #[derive(Debug, Clone)]
 pub struct Block {
     /// The constitutive law.
@@ -17,69 +25,108 @@ pub struct Block {
     pub points: Range<usize>,
     /// Global node of each local one.
     pub nodes: Vec<u32>,
-    /// Support of local point p: `starts[p]..starts[p + 1]`, padded to a multiple of
-    /// four with its last node and gradients of 0.
+    /// Local point in each lane; padding repeats one.
+    pub lanes: Vec<u32>,
+    /// Slots of quad g: `starts[g]..starts[g + 1]`.
     pub starts: Vec<u32>,
-    /// Local node indices \[support entry\].
-    pub supports: Vec<u32>,
-    /// Grad φ \[support entry\] \[1/m\].
+    /// The node in each lane of a slot. Lanes with fewer entries than others, and those
+    /// without a point, are filled up with gradients of 0.
+    pub places: Vec<[Place; QUAD]>,
+    /// Grad φ \[slot\]\[component\]\[lane of the quad\] \[1/m\].
     pub grad_phi: StoredGradients,
-    /// \[point\] \[m³\]
+    /// \[lane\] \[m³\], 0 for padding.
     pub quadrature_weights: Vec<f64>,
-    /// Local points of chunk c: `chunks[c]..chunks[c + 1]`; a patch, or a few points
-    /// where nothing is projected.
-    pub chunks: Vec<u32>,
+    /// In the order in which forces are computed.
+    pub chunks: Vec<Chunk>,
     /// Only where the material is nearly incompressible.
     pub projection: Option<Projection>,
 }
 
 impl Block {
-    /// Local nodes and gradients, D components each, of the support of a local point;
-    /// `grad_phi` are the numbers of [`Block::grad_phi`].
+    /// Places and gradients, D components each, of the slots of a quad; `grad_phi` are the
+    /// quads of [`Block::grad_phi`].
     #[inline(always)]
-    pub fn support<'a, G, const D: usize>(
+    pub fn slots<'a, G, const D: usize>(
         &'a self,
         grad_phi: &'a [G],
-        point: usize,
-    ) -> (&'a [u32], &'a [[G; D]]) {
-        let entries = self.starts[point] as usize..self.starts[point + 1] as usize;
-        (&self.supports[entries.clone()], &grad_phi.as_chunks::<D>().0[entries])
+        quad: usize,
+    ) -> (&'a [[Place; QUAD]], &'a [[G; D]]) {
+        let slots = self.starts[quad] as usize..self.starts[quad + 1] as usize;
+        let gradients = grad_phi.as_chunks::<D>().0;
+        (&self.places[slots.clone()], &gradients[slots])
     }
 
-    /// The entries from `ahead` entries after the start of a support on.
+    /// All slots that begin `ahead` slots after those of a quad.
     #[inline(always)]
-    pub fn entries_ahead<'a, G, const D: usize>(
+    pub fn slots_ahead<'a, G, const D: usize>(
         &'a self,
         grad_phi: &'a [G],
-        point: usize,
-        ahead: usize,
-    ) -> (&'a [u32], &'a [[G; D]]) {
-        let first = (self.starts[point] as usize + ahead).min(self.supports.len());
-        (&self.supports[first..], &grad_phi.as_chunks::<D>().0[first..])
+        quad: usize,
+        ahead: u32,
+    ) -> (&'a [[Place; QUAD]], &'a [[G; D]]) {
+        let first = ((self.starts[quad] + ahead) as usize).min(self.places.len());
+        (&self.places[first..], &grad_phi.as_chunks::<D>().0[first..])
+    }
+
+    /// Local nodes and gradients of the support of the point in a lane, one entry after the
+    /// other; what fills it up has gradients of 0.
+    pub fn support<'a, G: GradientQuad, const D: usize>(
+        &'a self,
+        grad_phi: &'a [G],
+        lane: usize,
+    ) -> impl Iterator<Item = (usize, [f64; D])> + Clone + 'a {
+        let (places, gradients) = self.slots::<G, D>(grad_phi, lane / QUAD);
+        places.iter().zip(gradients).map(move |(places, gradients)| {
+            let node = places[lane % QUAD] as usize / stride(D);
+            (node, gradients.map(|component| component.at(lane % QUAD)))
+        })
+    }
+
+    /// Local nodes of the support of the point in a lane, the last one again where it is filled up.
+    pub fn support_nodes(
+        &self,
+        lane: usize,
+        components: usize,
+    ) -> impl Iterator<Item = usize> + Clone {
+        let slots = self.starts[lane / QUAD] as usize..self.starts[lane / QUAD + 1] as usize;
+        let places = self.places[slots].iter();
+        places.map(move |places| places[lane % QUAD] as usize / stride(components))
+    }
+
+    /// The lanes with points, in order.
+    pub fn occupied(&self) -> impl Iterator<Item = usize> {
+        self.chunks.iter().flat_map(|chunk| chunk.lanes.clone())
+    }
+
+    /// Global quadrature point in a lane.
+    pub fn point(&self, lane: usize) -> usize {
+        self.points.start + self.lanes[lane] as usize
     }
 
     /// Bytes that one evaluation of the internal force reads.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.supports[..])
+        size_of_val(&self.places[..])
             + with_gradients!(&self.grad_phi, grad_phi => size_of_val(&grad_phi[..]))
-    }
-
-    /// The chunks, in order.
-    pub fn chunks(&self) -> impl Iterator<Item = Chunk> {
-        let mut groups = 0..0;
-        self.chunks.windows(2).map(move |ends| {
-            let points = ends[0] as usize..ends[1] as usize;
-            groups = groups.end..groups.end + points.len().div_ceil(LANES);
-            Chunk { points, groups: groups.clone() }
-        })
     }
 }
 
-/// Points whose forces are computed together.
+/// Points whose forces are computed together: a patch, or a few points where nothing is
+/// projected.
 #[derive(Debug, Clone)]
 pub struct Chunk {
-    /// Local points.
-    pub points: Range<usize>,
+    /// Lanes with points.
+    pub lanes: Range<usize>,
     /// Their SIMD blocks, counted through the block.
     pub groups: Range<usize>,
+}
+
+impl Chunk {
+    /// The chunk of some points that begins with a SIMD block.
+    pub fn new(first_group: usize, points: usize) -> Chunk {
+        let first = first_group * LANES;
+        Chunk {
+            lanes: first..first + points,
+            groups: first_group..first_group + points.div_ceil(LANES),
+        }
+    }
 }

@@ -2,12 +2,16 @@
 //! section 11).
 
 mod block;
+mod local_vectors;
+mod numbering;
+mod packing;
 mod partition;
 mod stored_gradients;
 mod summation;
 
-pub use block::{Block, Chunk};
+pub use block::{Block, Chunk, QUAD};
+pub use local_vectors::{Adder, LocalVectors, Place, Reader};
 pub use partition::blocks;
 pub(crate) use stored_gradients::with_gradients;
-pub use stored_gradients::{StoredGradients, StoredNumber};
+pub use stored_gradients::{GradientQuad, StoredGradients};
 pub use summation::Sums;

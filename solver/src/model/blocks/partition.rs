@@ -1,12 +1,16 @@
-//! How quadrature points are divided into blocks and packed.
+//! How quadrature points are divided into blocks.
 
-use super::block::Block;
-use super::stored_gradients::StoredGradients;
+use super::block::{Block, Chunk};
+use super::local_vectors::most_nodes;
+use super::numbering::Numbering;
+use super::packing::{Packed, pack};
+use crate::algebra::lanes::LANES;
 use crate::discretisation::Discretisation;
 use crate::discretisation::patches::orthonormal_basis;
 use crate::discretisation::rows::Rows;
+use crate::error::Error;
 use crate::model::projection::{BasisBlock, Projection};
-use crate::problem::{GradientStorage, Problem, VolumetricProjection};
+use crate::problem::{Problem, VolumetricProjection};
 use std::ops::Range;
 
 /// Points of a chunk where nothing is projected: their gradients stay in the first
@@ -17,132 +21,115 @@ const CHUNK: usize = 16;
 const BLOCK_POINTS: (usize, usize) = (1024, 8192);
 
 /// All quadrature points in blocks, which end where a patch does.
-pub fn blocks(problem: &Problem, discretisation: &Discretisation) -> Vec<Block> {
+///
+/// # Errors
+/// [`Error::LargeSupports`] if the points of one patch see more nodes than a block can have.
+pub fn blocks(problem: &Problem, discretisation: &Discretisation) -> Result<Vec<Block>, Error> {
     let regions = &discretisation.quadrature.regions;
-    let most = (regions.len() / 16).clamp(BLOCK_POINTS.0, BLOCK_POINTS.1);
+    let points = (regions.len() / 16).clamp(BLOCK_POINTS.0, BLOCK_POINTS.1);
+    let most = most_nodes(discretisation.dimension.components());
     let patches = &discretisation.patches;
+    let mut numbering = Numbering::new(discretisation.cloud.positions.len());
     let mut blocks = Vec::new();
     let mut first = 0;
     while first + 1 < patches.len() {
         let start = patches[first];
-        let last = (first + 1..patches.len())
-            .take_while(|&p| regions[patches[p] - 1] == regions[start])
-            .take_while(|&p| p == first + 1 || patches[p] - start <= most)
-            .last()
-            .unwrap_or(first + 1);
-        blocks.push(block(problem, first..last, discretisation));
+        let mut last = first;
+        while last + 1 < patches.len()
+            && regions[patches[last + 1] - 1] == regions[start]
+            && (last == first || patches[last + 1] - start <= points)
+            && numbering.add(&discretisation.supports, patches[last]..patches[last + 1], most)
+        {
+            last += 1;
+        }
+        if last == first {
+            let position = discretisation.quadrature.positions[start];
+            return Err(Error::LargeSupports { point: start, position, most });
+        }
+        blocks.push(block(problem, first..last, discretisation, &numbering));
+        numbering.clear();
         first = last;
     }
-    blocks
+    Ok(blocks)
 }
 
-fn block(problem: &Problem, patches: Range<usize>, discretisation: &Discretisation) -> Block {
-    let rows = &discretisation.supports;
+fn block(
+    problem: &Problem,
+    patches: Range<usize>,
+    discretisation: &Discretisation,
+    numbering: &Numbering,
+) -> Block {
     let starts = &discretisation.patches[patches.start..=patches.end];
     let points = starts[0]..starts[starts.len() - 1];
-    let components = discretisation.dimension.components();
-    let storage = problem.recipe.gradient_storage;
-    let Packed { nodes, starts: entries, supports, grad_phi } =
-        pack(rows, points.clone(), components, storage, discretisation.cloud.positions.len());
     let region = discretisation.quadrature.regions[points.start] as usize;
     let law = problem.regions[region].material.law;
     let fraction = match problem.recipe.volumetric_projection {
         VolumetricProjection::Patches => law.projected_fraction(),
         VolumetricProjection::None => 0.0,
     };
+    let projected = fraction > 0.0;
+    let order = by_size(starts, &discretisation.supports, projected);
+    let sizes: Vec<usize> = match projected {
+        true => starts.windows(2).map(|patch| patch[1] - patch[0]).collect(),
+        false => order.chunks(CHUNK).map(<[usize]>::len).collect(),
+    };
+    let mut chunks: Vec<Chunk> = Vec::with_capacity(sizes.len());
+    for size in sizes {
+        chunks.push(Chunk::new(chunks.last().map_or(0, |chunk| chunk.groups.end), size));
+    }
+    let mut lanes = vec![None; LANES * chunks.last().map_or(0, |chunk| chunk.groups.end)];
+    let taken = chunks.iter().flat_map(|chunk| chunk.lanes.clone());
+    taken.zip(&order).for_each(|(lane, &point)| lanes[lane] = Some(point));
+    let components = discretisation.dimension.components();
+    let storage = problem.recipe.gradient_storage;
+    let weights = &discretisation.quadrature.weights;
+    let Packed { starts: slots, places, grad_phi } =
+        pack(&discretisation.supports, &lanes, numbering, components, storage);
     Block {
         law,
-        starts: entries,
-        supports,
+        nodes: numbering.nodes().to_vec(),
+        lanes: lanes.iter().map(|q| q.map_or(0, |q| (q - points.start) as u32)).collect(),
+        starts: slots,
+        places,
         grad_phi,
-        quadrature_weights: discretisation.quadrature.weights[points.clone()].to_vec(),
-        chunks: match fraction > 0.0 {
-            true => starts.iter().map(|start| (start - points.start) as u32).collect(),
-            false => {
-                let count = points.len();
-                (0..=count.div_ceil(CHUNK)).map(|c| (c * CHUNK).min(count) as u32).collect()
-            }
-        },
-        projection: (fraction > 0.0).then(|| projection(fraction, starts, discretisation)),
-        nodes,
+        quadrature_weights: lanes.iter().map(|q| q.map_or(0.0, |q| weights[q])).collect(),
+        chunks,
+        projection: projected.then(|| projection(fraction, starts, &order, discretisation)),
         points,
     }
 }
 
-/// The supports of a [`Block`].
-struct Packed {
-    nodes: Vec<u32>,
-    starts: Vec<u32>,
-    supports: Vec<u32>,
-    grad_phi: StoredGradients,
-}
-
-/// Numbers the nodes in the order in which they appear, which is that of the
-/// points in space, and pads each support to a multiple of four.
-fn pack(
-    rows: &Rows,
-    points: Range<usize>,
-    components: usize,
-    storage: GradientStorage,
-    nodes: usize,
-) -> Packed {
-    const NONE: u32 = u32::MAX;
-    let mut numbers = vec![NONE; nodes];
-    let (mut nodes, mut starts, mut supports) = (Vec::new(), vec![0], Vec::new());
-    let padded = |point: usize| rows.row(point).len().next_multiple_of(4);
-    supports.reserve_exact(points.clone().map(padded).sum());
-    for point in points.clone() {
-        for entry in rows.row(point) {
-            let number = &mut numbers[rows.nodes[entry] as usize];
-            if *number == NONE {
-                *number = nodes.len() as u32;
-                nodes.push(rows.nodes[entry]);
-            }
-            supports.push(*number);
+/// The points of some patches, those of each by the size of their supports: the largest first,
+/// or the smallest first in every other patch where `apart` is false and four points can be of
+/// two patches.
+fn by_size(starts: &[usize], supports: &Rows, apart: bool) -> Vec<usize> {
+    let mut order: Vec<usize> = (starts[0]..starts[starts.len() - 1]).collect();
+    for (count, patch) in starts.windows(2).enumerate() {
+        let points = &mut order[patch[0] - starts[0]..patch[1] - starts[0]];
+        points.sort_by_key(|&q| std::cmp::Reverse(supports.row(q).len()));
+        if !apart && count % 2 == 1 {
+            points.reverse();
         }
-        let padded = supports.len().next_multiple_of(4);
-        supports.resize(padded, supports.last().copied().unwrap_or(0));
-        starts.push(padded as u32);
     }
-    let size = supports.len() * components;
-    let grad_phi = match storage {
-        GradientStorage::Double => {
-            StoredGradients::Double(padded_gradients(rows, points, components, size, |g| g))
-        }
-        GradientStorage::Single => {
-            StoredGradients::Single(padded_gradients(rows, points, components, size, |g| g as f32))
-        }
-    };
-    Packed { nodes, starts, supports, grad_phi }
+    order
 }
 
-/// The gradients at some points, `size` numbers in all: those of each point padded
-/// to a multiple of four entries.
-fn padded_gradients<G: Copy + Default>(
-    rows: &Rows,
-    points: Range<usize>,
-    components: usize,
-    size: usize,
-    stored: impl Fn(f64) -> G,
-) -> Vec<G> {
-    let mut gradients = Vec::with_capacity(size);
-    for point in points {
-        for gradient in &rows.grad_phi[rows.row(point)] {
-            gradients.extend(gradient.iter().take(components).map(|g| stored(*g)));
-        }
-        gradients.resize(gradients.len().next_multiple_of(4 * components), G::default());
-    }
-    gradients
-}
-
-fn projection(fraction: f64, starts: &[usize], discretisation: &Discretisation) -> Projection {
+fn projection(
+    fraction: f64,
+    starts: &[usize],
+    order: &[usize],
+    discretisation: &Discretisation,
+) -> Projection {
     let quadrature = &discretisation.quadrature;
     let components = discretisation.dimension.components();
     let blocks_of = |patch: &[usize]| {
         let points = patch[0]..patch[1];
         let (positions, weights) = (&quadrature.positions, &quadrature.weights);
-        let basis = orthonormal_basis(positions, weights, points.clone(), components);
-        BasisBlock::of_patch(&weights[points], &basis)
+        let basis = orthonormal_basis(positions, weights, points, components);
+        let order = &order[patch[0] - starts[0]..patch[1] - starts[0]];
+        let weights: Vec<f64> = order.iter().map(|&q| weights[q]).collect();
+        let basis: Vec<[f64; 4]> = order.iter().map(|&q| basis[q - patch[0]]).collect();
+        BasisBlock::of_patch(&weights, &basis)
     };
     Projection { fraction, blocks: starts.windows(2).flat_map(blocks_of).collect() }
 }

@@ -1,13 +1,16 @@
 //! Grad φ in the precision in which it is stored.
 
-/// Grad φ, `components` numbers per support entry \[1/m\].
+use super::block::QUAD;
+use fearless_simd::{Simd, f64x4, prelude::*};
+
+/// Grad φ, one quad of numbers for each component of a slot \[1/m\].
 #[derive(Debug, Clone)]
 pub enum StoredGradients {
-    Double(Vec<f64>),
-    Single(Vec<f32>),
+    Double(Vec<DoubleQuad>),
+    Single(Vec<SingleQuad>),
 }
 
-/// Runs `$body` with `$gradients` bound to the numbers of `$stored`.
+/// Runs `$body` with `$gradients` bound to the quads of `$stored`.
 macro_rules! with_gradients {
     ($stored:expr, $gradients:ident => $body:expr) => {
         match $stored {
@@ -18,38 +21,59 @@ macro_rules! with_gradients {
 }
 pub(crate) use with_gradients;
 
-/// A number type in which gradients are stored.
-pub trait StoredNumber: Copy + Into<f64> {
-    /// Four gradients in double precision, in `buffer` if stored in another one:
-    /// a copy of doubles would have to be completed before forces are written.
-    fn widen<'a, const D: usize>(
-        four: &'a [[Self; D]; 4],
-        buffer: &'a mut [[f64; D]; 4],
-    ) -> &'a [[f64; D]; 4];
+/// One component of Grad φ at four points, which never lies in two lines of a cache.
+pub trait GradientQuad: Copy {
+    /// Rounds to what is stored.
+    fn new(numbers: [f64; QUAD]) -> Self;
+    /// The component at one point.
+    fn at(&self, lane: usize) -> f64;
+    /// All four, in double precision.
+    fn widen<S: Simd>(&self, simd: S) -> f64x4<S>;
 }
 
-impl StoredNumber for f64 {
+/// In double precision.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub struct DoubleQuad([f64; QUAD]);
+
+impl GradientQuad for DoubleQuad {
+    fn new(numbers: [f64; QUAD]) -> DoubleQuad {
+        DoubleQuad(numbers)
+    }
+
     #[inline(always)]
-    fn widen<'a, const D: usize>(
-        four: &'a [[f64; D]; 4],
-        _buffer: &'a mut [[f64; D]; 4],
-    ) -> &'a [[f64; D]; 4] {
-        four
+    fn at(&self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+
+    #[inline(always)]
+    fn widen<S: Simd>(&self, simd: S) -> f64x4<S> {
+        self.0.simd_into(simd)
     }
 }
 
-impl StoredNumber for f32 {
+/// In single precision.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(16))]
+pub struct SingleQuad([f32; QUAD]);
+
+impl GradientQuad for SingleQuad {
+    fn new(numbers: [f64; QUAD]) -> SingleQuad {
+        SingleQuad(numbers.map(|x| x as f32))
+    }
+
     #[inline(always)]
-    fn widen<'a, const D: usize>(
-        four: &'a [[f32; D]; 4],
-        buffer: &'a mut [[f64; D]; 4],
-    ) -> &'a [[f64; D]; 4] {
+    fn at(&self, lane: usize) -> f64 {
+        self.0[lane] as f64
+    }
+
+    #[inline(always)]
+    fn widen<S: Simd>(&self, simd: S) -> f64x4<S> {
         // Not `map`: its closure would be a call where it is not inlined.
-        for (wide, stored) in buffer.iter_mut().zip(four) {
-            for j in 0..D {
-                wide[j] = stored[j] as f64;
-            }
+        let mut wide = [0.0; QUAD];
+        for (wide, stored) in wide.iter_mut().zip(self.0) {
+            *wide = stored as f64;
         }
-        buffer
+        wide.simd_into(simd)
     }
 }

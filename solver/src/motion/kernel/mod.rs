@@ -1,33 +1,32 @@
-//! The hot loop over the quadrature points of one block, eight points or one node at a
-//! time: chunk by chunk the gradients of the displacement, J, the projected pressure,
-//! the stress and the nodal forces (method book, section 11).
+//! The hot loop over the quadrature points of one block: chunk by chunk the deformation
+//! gradients, J, the projected pressure, the stress and the nodal forces, four points side by
+//! side where nodes are read and eight in the law (method book, section 11).
 #![allow(non_snake_case)]
 
 mod nodes;
 mod points;
 
-use crate::algebra::lanes::{LANES, Lanes, PaddedVector, Parts, SimdBlock};
+use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock};
 use crate::material::with_law;
-use crate::model::blocks::with_gradients;
+use crate::model::blocks::{LocalVectors, with_gradients};
 use crate::model::{Block, Chunk};
 use fearless_simd::Simd;
-use nodes::{add_forces, displacement_gradients};
-use points::{jacobians, pressures, read_columns, stresses, write_columns};
-use std::ops::Range;
+use nodes::{add_forces, deformation_gradients};
+use points::{jacobians, pressures, stresses};
 
 /// Scratch memory of one block; nothing in it outlives a step.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Scratch {
     /// Displacements of the block's nodes \[m\].
-    pub u: Vec<PaddedVector>,
-    /// Displacements of the direction of a derivative \[m\]; empty without one.
-    pub v: Vec<PaddedVector>,
+    pub u: LocalVectors,
+    /// Displacements of the direction of a derivative \[m\], once there has been one.
+    pub v: Option<LocalVectors>,
     /// Forces on the block's nodes, or their derivative \[N\].
-    pub f: Vec<PaddedVector>,
-    /// The smallest J and its local point.
+    pub f: LocalVectors,
+    /// The smallest J and its lane.
     pub smallest: (f64, usize),
-    /// Columns of ∂u/∂X \[–\], later of P \[Pa\], of each point of a chunk.
-    columns: Parts<PaddedVector>,
+    /// F \[–\] of all points at the displacements of a derivative, once there has been one.
+    linearised: Vec<SimdBlock>,
     /// F \[–\], row by row, of each eight points of a chunk.
     deformation: Parts<SimdBlock>,
     /// P \[Pa\] in the same order.
@@ -37,19 +36,19 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    pub fn new(block: &Block, components: usize) -> Scratch {
-        let groups = block.chunks().map(|chunk| chunk.groups.len()).max().unwrap_or(0);
+    pub fn new(block: &Block) -> Scratch {
+        let groups = block.chunks.iter().map(|chunk| chunk.groups.len()).max().unwrap_or(0);
         let mut deformation: Parts<SimdBlock> = Parts::new(9 * groups);
         // What a plane leaves as it is: F₃₃ = 1.
         for rows in deformation.values.chunks_exact_mut(9) {
             (0..3).for_each(|i| rows[4 * i] = SimdBlock([1.0; LANES]));
         }
         Scratch {
-            u: vec![PaddedVector::default(); block.nodes.len()],
-            v: Vec::new(),
-            f: vec![PaddedVector::default(); block.nodes.len()],
+            u: LocalVectors::zeros(),
+            v: None,
+            f: LocalVectors::zeros(),
             smallest: (f64::INFINITY, 0),
-            columns: Parts::new(LANES * groups * components),
+            linearised: Vec::new(),
             deformation,
             stress: Parts::new(9 * groups),
             jacobians: Parts::new(groups),
@@ -58,36 +57,52 @@ impl Scratch {
     }
 }
 
+/// Keeps F at `scratch.u` for the derivatives there, of which each would compute it again.
+#[inline(always)]
+pub fn linearise<S: Simd, const D: usize>(simd: S, block: &Block, scratch: &mut Scratch) {
+    let Scratch { u, linearised, deformation, .. } = scratch;
+    linearised.clear();
+    for Chunk { groups, .. } in &block.chunks {
+        let rows = &mut deformation.values[..9 * groups.len()];
+        with_gradients!(&block.grad_phi, grad_phi => {
+            let stream = (block, &grad_phi[..]);
+            deformation_gradients::<S, _, D>(simd, stream, groups.clone(), u, 1.0, rows);
+        });
+        linearised.extend_from_slice(rows);
+    }
+}
+
 /// f_a = Σ_q w_q P(F_q) Grad φ_a(X_q) of the block's points at `scratch.u`; with
-/// dual numbers its derivative along `scratch.v`.
+/// dual numbers its derivative along `scratch.v` where the block was linearised.
 #[inline(always)]
 pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
     simd: S,
     block: &Block,
     scratch: &mut Scratch,
 ) {
-    scratch.f.fill(PaddedVector::default());
+    scratch.f.clear::<D>(block.nodes.len());
     scratch.smallest = (f64::INFINITY, 0);
-    let Scratch { u, v, f, smallest, columns, deformation, stress, .. } = scratch;
+    let Scratch { u, v, f, smallest, linearised, deformation, stress, .. } = scratch;
     let (jacobian, pressure) = (&mut scratch.jacobians, &mut scratch.pressures);
-    for Chunk { points, groups } in block.chunks() {
+    for Chunk { lanes, groups } in &block.chunks {
         let count = groups.len();
         with_gradients!(&block.grad_phi, grad_phi => {
-            let stream = (block, &grad_phi[..]);
-            displacement_gradients::<S, _, D>(simd, stream, &points, u, &mut columns.values);
-            if R::SLOPES {
-                displacement_gradients::<S, _, D>(simd, stream, &points, v, &mut columns.slopes);
+            let (stream, groups) = ((block, &grad_phi[..]), groups.clone());
+            let Parts { values, slopes } = &mut *deformation;
+            match (R::SLOPES, &*v) {
+                (true, Some(v)) => {
+                    let known = &linearised[9 * groups.start..9 * groups.end];
+                    values[..known.len()].copy_from_slice(known);
+                    deformation_gradients::<S, _, D>(simd, stream, groups, v, 0.0, slopes);
+                }
+                _ => deformation_gradients::<S, _, D>(simd, stream, groups, u, 1.0, values),
             }
         });
-        read_columns::<S, D>(simd, &columns.values, count, 1.0, &mut deformation.values);
-        if R::SLOPES {
-            read_columns::<S, D>(simd, &columns.slopes, count, 0.0, &mut deformation.slopes);
-        }
         let projection = block.projection.as_ref();
         with_law!(&block.law, law => {
             if let Some(projection) = projection {
                 jacobians::<S, R>(simd, count, deformation, jacobian);
-                pressures::<S, R, _>(simd, law, projection, groups, jacobian, pressure);
+                pressures::<S, R, _>(simd, law, projection, groups.clone(), jacobian, pressure);
             }
             let pressure = projection.map(|_| &*pressure);
             let results = (&mut *stress, &mut *jacobian);
@@ -97,24 +112,15 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
                 false => stresses::<S, R, _, 3>(simd, law, count, deformation, pressure, results),
             }
         });
-        keep_smallest(&points, &jacobian.values, smallest);
-        let (stress, columns) = match R::SLOPES {
-            true => (&stress.slopes, &mut columns.slopes),
-            false => (&stress.values, &mut columns.values),
-        };
-        write_columns::<D>(stress, count, columns);
-        with_gradients!(&block.grad_phi, grad_phi => {
-            add_forces::<S, _, D>(simd, (block, &grad_phi[..]), &points, columns, f);
-        });
-    }
-}
-
-#[inline(always)]
-fn keep_smallest(chunk: &Range<usize>, jacobians: &[SimdBlock], smallest: &mut (f64, usize)) {
-    let jacobians = jacobians.iter().flat_map(|block| block.0);
-    for (point, jacobian) in chunk.clone().zip(jacobians) {
-        if jacobian < smallest.0 {
-            *smallest = (jacobian, point);
+        for (lane, value) in lanes.clone().zip(jacobian.values.iter().flat_map(|block| block.0)) {
+            if value < smallest.0 {
+                *smallest = (value, lane);
+            }
         }
+        let stress = if R::SLOPES { &stress.slopes } else { &stress.values };
+        with_gradients!(&block.grad_phi, grad_phi => {
+            let stream = (block, &grad_phi[..]);
+            add_forces::<S, _, D>(simd, stream, groups.clone(), stress, f);
+        });
     }
 }

@@ -3,60 +3,12 @@
 //! compiled once per kind of number.
 #![allow(non_snake_case)]
 
-use crate::algebra::lanes::{LANES, Lanes, PaddedVector, Parts, SimdBlock};
+use crate::algebra::lanes::{Lanes, Parts, SimdBlock};
 use crate::algebra::tensor::{Tensor, map};
 use crate::material::{ConstitutiveLaw, Deformation};
 use crate::model::projection::Projection;
-use fearless_simd::{Simd, f64x8, prelude::*};
+use fearless_simd::Simd;
 use std::ops::Range;
-
-/// Rows of F from the columns of ∂u/∂X of the first `count` SIMD blocks; `identity` is 1, or 0 for
-/// its derivative. In a plane the third row and column are left alone.
-#[inline(always)]
-pub fn read_columns<S: Simd, const D: usize>(
-    simd: S,
-    columns: &[PaddedVector],
-    count: usize,
-    identity: f64,
-    deformation: &mut [SimdBlock],
-) {
-    let columns = columns.as_chunks::<D>().0.as_chunks::<LANES>().0;
-    for (columns, rows) in columns.iter().zip(deformation.as_chunks_mut::<9>().0).take(count) {
-        for i in 0..D {
-            for j in 0..D {
-                // In registers: eight short stores would hold up the long load after them.
-                let slopes = f64x8::from_fn(
-                    simd,
-                    #[inline(always)]
-                    |lane| columns[lane][j].0[i],
-                );
-                let entries = if i == j { slopes + identity } else { slopes };
-                rows[3 * i + j].0 = entries.into();
-            }
-        }
-    }
-}
-
-/// The columns of P of the first `count` SIMD blocks: the opposite of [`read_columns`].
-#[inline(always)]
-pub fn write_columns<const D: usize>(
-    stress: &[SimdBlock],
-    count: usize,
-    columns: &mut [PaddedVector],
-) {
-    let columns = columns.as_chunks_mut::<D>().0.as_chunks_mut::<LANES>().0;
-    for (columns, rows) in columns.iter_mut().zip(stress.as_chunks::<9>().0).take(count) {
-        for (lane, columns) in columns.iter_mut().enumerate() {
-            for (j, column) in columns.iter_mut().enumerate() {
-                let mut entries = [0.0; 4];
-                for i in 0..D {
-                    entries[i] = rows[3 * i + j].0[lane];
-                }
-                *column = PaddedVector(entries);
-            }
-        }
-    }
-}
 
 /// J of the first `count` SIMD blocks.
 pub fn jacobians<S: Simd, R: Lanes<S>>(

@@ -1,7 +1,6 @@
 //! The stiffness at rest of smooth displacements.
 #![allow(non_snake_case)]
 
-use crate::algebra::lanes::LANES;
 use crate::algebra::sparse::Sparse;
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::spline_lattice::Lattice;
@@ -178,8 +177,8 @@ impl Functions {
                 matrix.add_elastic(&found, weight * moduli.shear, weight * moduli.pointwise);
             }
             if moduli.projected > 0.0 {
-                for chunk in block.chunks() {
-                    let moments = self.patch_moments(model, block, &chunk);
+                for chunk in &block.chunks {
+                    let moments = self.patch_moments(model, block, chunk);
                     matrix.add_squares(&moments, moduli.projected);
                 }
             }
@@ -189,12 +188,12 @@ impl Functions {
     /// Weights \[m³\] and centres \[m\] of the points of a block, a few for each cell.
     fn lumps(&self, model: &Model, block: &Block) -> Vec<(f64, Vector3)> {
         let mut lumps: BTreeMap<[u32; 3], (f64, Vector3)> = BTreeMap::new();
-        for (weight, X) in
-            block.quadrature_weights.iter().zip(&model.point_positions[block.points.clone()])
-        {
+        for lane in block.occupied() {
+            let (weight, X) =
+                (block.quadrature_weights[lane], &model.point_positions[block.point(lane)]);
             let (sum, moment) = lumps.entry(self.lattice.subcell(X, LUMPS)).or_default();
             *sum += weight;
-            *moment += *weight * X;
+            *moment += weight * X;
         }
         lumps.into_values().map(|(weight, moment)| (weight, moment / weight)).collect()
     }
@@ -209,11 +208,9 @@ impl Functions {
         let mut moments: BTreeMap<u32, [Vector3; 4]> = BTreeMap::new();
         let Some(projection) = &block.projection else { return Vec::new() };
         let mut found = Vec::new();
-        for (place, point) in chunk.points.clone().enumerate() {
-            let group = &projection.blocks[chunk.groups.start + place / LANES];
-            let factors =
-                group.basis.map(|basis| block.quadrature_weights[point] * basis.0[place % LANES]);
-            self.at(&model.point_positions[block.points.start + point], &mut found);
+        for lane in chunk.lanes.clone() {
+            let factors = projection.basis_at(lane).map(|b| block.quadrature_weights[lane] * b);
+            self.at(&model.point_positions[block.point(lane)], &mut found);
             for (number, gradient) in &found {
                 let sums = moments.entry(*number).or_default();
                 sums.iter_mut().zip(factors).for_each(|(sum, factor)| *sum += factor * gradient);
