@@ -249,6 +249,7 @@ fn an_inspection_of_a_valid_case_reports_its_size_and_its_critical_step() {
     let seen = inspected("", "", &[]);
     assert_eq!(seen["zero_energy_modes"]["count"], 0);
     assert_eq!(seen["zero_energy_modes"]["free_rigid_motions"], 0);
+    assert_eq!(seen["extent_m"], serde_json::json!([[0.0, 0.0, 0.0], [0.1, 0.1, 0.1]]));
     assert!(seen["points_per_node"].as_f64().unwrap() > 1.0, "{seen}");
     assert!(seen["critical_time_step_s"].as_f64() > seen["per_point_bound_s"].as_f64());
     assert_eq!(

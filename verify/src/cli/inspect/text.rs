@@ -32,6 +32,7 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
     let (discretisation, model) = (&prepared.discretisation, &prepared.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let (few, many) = inspection.support;
+    let (lower, upper) = extent(&model.positions);
     let mut lines = vec![
         std::iter::once(format!("{}: {}", case.name, case.title))
             .chain(case.overrides().iter().map(|set| format!("  with {set}")))
@@ -42,6 +43,7 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
             "nodes               {nodes}, {} of them on the boundary; all are covered",
             discretisation.cloud.on_boundary.iter().filter(|b| **b).count()
         ),
+        format!("                    from ({}) to ({})", show(&lower), show(&upper)),
         format!(
             "quadrature points   {points}: {} per node",
             four_digits(points as f64 / nodes as f64)
@@ -75,6 +77,12 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
         }
     }
     lines
+}
+
+/// Opposite corners of the smallest axis-parallel box around the nodes.
+fn extent(positions: &[Vector3]) -> (Vector3, Vector3) {
+    let first = positions.first().copied().unwrap_or_default();
+    positions.iter().fold((first, first), |(lower, upper), x| (lower.inf(x), upper.sup(x)))
 }
 
 /// The critical time step and the memory that a step reads.
@@ -208,6 +216,7 @@ pub fn to_json(inspection: &Inspection) -> Value {
     let (discretisation, model) = (&prepared.discretisation, &prepared.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let [smallest, largest] = &inspection.spacings;
+    let (lower, upper) = extent(&model.positions);
     json!({
         "schema_version": 1,
         "case": case.name,
@@ -216,6 +225,7 @@ pub fn to_json(inspection: &Inspection) -> Value {
             Dimension::PlaneStrain { .. } => "plane_strain",
         },
         "nodes": nodes,
+        "extent_m": [array(&lower), array(&upper)],
         "quadrature_points": points,
         "points_per_node": points as f64 / nodes as f64,
         "support": {
