@@ -208,6 +208,10 @@ fn a_condition_that_selects_nothing_is_located() {
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{err}");
         assert!(err.contains(&format!("case.toml:{line}")), "{err}");
         assert!(err.contains("prescribe[0].where") || err.contains("prescribe.bottom"), "{err}");
+        assert!(
+            err.contains("between (0.0000, 0.0000, 0.0000) and (0.1000, 0.1000, 0.1000) m"),
+            "{err}"
+        );
     }
 }
 

@@ -1,7 +1,7 @@
 //! An inspection as text and as JSON.
 
 use super::inspection::{Inspection, LARGEST_SEARCH, Place};
-use mtled::algebra::tensor::Vector3;
+use mtled::algebra::tensor::{Vector3, bounding_box};
 use mtled::discretisation::Footprint;
 use mtled::discretisation::Warning;
 use mtled::model::zero_energy::{CapturedMotion, ZERO_ENERGY_FRACTION, ZeroEnergyModes};
@@ -32,7 +32,7 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
     let (discretisation, model) = (&prepared.discretisation, &prepared.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let (few, many) = inspection.support;
-    let (lower, upper) = extent(&model.positions);
+    let (lower, upper) = bounding_box(&model.positions);
     let mut lines = vec![
         std::iter::once(format!("{}: {}", case.name, case.title))
             .chain(case.overrides().iter().map(|set| format!("  with {set}")))
@@ -77,12 +77,6 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
         }
     }
     lines
-}
-
-/// Opposite corners of the smallest axis-parallel box around the nodes.
-fn extent(positions: &[Vector3]) -> (Vector3, Vector3) {
-    let first = positions.first().copied().unwrap_or_default();
-    positions.iter().fold((first, first), |(lower, upper), x| (lower.inf(x), upper.sup(x)))
 }
 
 /// The critical time step and the memory that a step reads.
@@ -216,7 +210,7 @@ pub fn to_json(inspection: &Inspection) -> Value {
     let (discretisation, model) = (&prepared.discretisation, &prepared.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let [smallest, largest] = &inspection.spacings;
-    let (lower, upper) = extent(&model.positions);
+    let (lower, upper) = bounding_box(&model.positions);
     json!({
         "schema_version": 1,
         "case": case.name,
