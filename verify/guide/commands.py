@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Runs the commands of the guide as a reader would: each page in an empty folder, its blocks in
-their order, with the program on the path.
+their order, with the program on the path; two pages at a time.
 
 usage: commands.py --mtled PROGRAM [--pictures] [PAGE …]
 
@@ -24,6 +24,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from pages import GUIDE, ROOT, Page, blocks, pages
@@ -49,11 +50,18 @@ def absent(expected, printed):
     return [line for line in expected.splitlines() if line.strip() and not stands(line)]
 
 
+def programs_of(mtled, scratch):
+    """A folder with the program under its own name."""
+    programs = scratch / "programs"
+    programs.mkdir()
+    (programs / "mtled").symlink_to(mtled.resolve())
+    return programs
+
+
 class Runner:
-    def __init__(self, mtled, scratch):
-        programs = scratch / "programs"
-        programs.mkdir()
-        (programs / "mtled").symlink_to(mtled.resolve())
+    """Runs one page."""
+
+    def __init__(self, programs, scratch):
         python = Path(sys.executable).parent
         self.scratch = scratch
         self.environment = dict(os.environ, NO_COLOR="1", PATH=f"{programs}:{python}:{os.environ['PATH']}")
@@ -63,7 +71,7 @@ class Runner:
         """All blocks of a page."""
         folder = self.scratch / page.name
         folder.mkdir()
-        where, start, run, printed = page.source.relative_to(ROOT), time.monotonic(), self.run, ""
+        where, start, printed = page.source.relative_to(ROOT), time.monotonic(), ""
         for block in blocks(page.source):
             if "file" in block.options:
                 (folder / block.options["file"]).write_text(block.text, encoding="utf-8")
@@ -78,9 +86,9 @@ class Runner:
             elif "output" in block.options:
                 for line in absent(block.text, printed):
                     self.faults.append(f"{place}: not printed by the command: {line}")
-        if self.run > run:
-            print(f"{where}: {self.run - run} blocks, {time.monotonic() - start:.1f} s", flush=True)
-        return folder
+        if self.run:
+            print(f"{where}: {self.run} blocks, {time.monotonic() - start:.1f} s", flush=True)
+        return self
 
     def block(self, block, place, folder):
         self.run, start = self.run + 1, time.monotonic()
@@ -117,17 +125,19 @@ def main():
     readme = Page("README", ROOT / "README.md", "first_page")
     chosen = [page for page in [readme, *pages()] if not arguments.names or page.name in arguments.names]
     with tempfile.TemporaryDirectory() as scratch:
-        runner = Runner(arguments.mtled, Path(scratch))
-        for page in chosen:
-            folder = runner.page(page)
-            if page.name == "gallery":
-                pictures(folder, runner.faults, arguments.pictures)
-    for line in runner.skipped:
+        programs = programs_of(arguments.mtled, Path(scratch))
+        with ThreadPoolExecutor(max_workers=2) as pool:
+            done = list(pool.map(lambda page: Runner(programs, Path(scratch)).page(page), chosen))
+        faults = [fault for runner in done for fault in runner.faults]
+        if any(page.name == "gallery" for page in chosen):
+            pictures(Path(scratch) / "gallery", faults, arguments.pictures)
+    skipped = [reason for runner in done for reason in runner.skipped]
+    for line in skipped:
         print(f"not run: {line}")
-    for line in runner.faults:
+    for line in faults:
         print(line, file=sys.stderr)
-    print(f"{runner.run} blocks of commands run, {len(runner.skipped)} not run, {len(runner.faults)} faults")
-    return 1 if runner.faults else 0
+    print(f"{sum(runner.run for runner in done)} blocks of commands run, {len(skipped)} not run, {len(faults)} faults")
+    return 1 if faults else 0
 
 
 if __name__ == "__main__":
