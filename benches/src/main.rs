@@ -1,4 +1,4 @@
-//! Fills the tables of the README from the output of the commands, so that no figure in it is
+//! Fills the tables of the README and of the guide from the output of the commands, so that no figure in it is
 //! typed by hand.
 
 mod bench;
@@ -9,8 +9,8 @@ use anyhow::Context;
 use clap::Parser;
 use std::path::{Path, PathBuf};
 
-/// Fill the tables of the README from the output of `mtled verify`, `mtled bench` and
-/// `mtled study race`, or print the table of `cargo bench`.
+/// Fill the tables of the README and of the guide from the output of `mtled verify`, `mtled bench`
+/// and `mtled study race`, or print the table of `cargo bench`.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
@@ -26,9 +26,9 @@ struct Arguments {
     /// Fill the table of `mtled study race` from its race.md.
     #[arg(long, value_name = "RACE")]
     race: Option<PathBuf>,
-    /// The file with the markers between which the tables stand.
-    #[arg(long, default_value = "README.md")]
-    readme: PathBuf,
+    /// The files with the markers between which the tables stand.
+    #[arg(long, default_values = ["README.md", "verify/guide/src/results.md"])]
+    page: Vec<PathBuf>,
 }
 
 fn main() -> anyhow::Result<()> {
@@ -42,10 +42,23 @@ fn main() -> anyhow::Result<()> {
             return Ok(());
         }
     };
-    let readme = &arguments.readme;
-    std::fs::write(readme, markers::fill(&read(readme)?, name, &table)?)
-        .with_context(|| format!("cannot write {}", readme.display()))?;
+    fill(&arguments.page, name, &table)?;
     print!("{table}");
+    Ok(())
+}
+
+/// Every page that has the markers of this table; one of them must.
+fn fill(pages: &[PathBuf], name: &str, table: &str) -> anyhow::Result<()> {
+    let mut filled = 0;
+    for page in pages {
+        let text = read(page)?;
+        if markers::has(&text, name) {
+            std::fs::write(page, markers::fill(&text, name, table)?)
+                .with_context(|| format!("cannot write {}", page.display()))?;
+            filled += 1;
+        }
+    }
+    anyhow::ensure!(filled > 0, "no page has a marker of {name}");
     Ok(())
 }
 
@@ -53,7 +66,7 @@ fn read(path: &Path) -> anyhow::Result<String> {
     std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))
 }
 
-/// The README has a title of its own.
+/// The pages have titles of their own.
 fn without_title(page: &str) -> String {
     page.lines()
         .filter(|line| !line.starts_with('#'))

@@ -2,6 +2,11 @@
 
 use anyhow::{Result, anyhow};
 
+/// Whether a page has a place for this table.
+pub fn has(text: &str, name: &str) -> bool {
+    text.contains(&format!("<!-- {name}:begin -->"))
+}
+
 /// `text` with new content between the markers of `name`.
 pub fn fill(text: &str, name: &str, content: &str) -> Result<String> {
     let (begin, end) = (format!("<!-- {name}:begin -->"), format!("<!-- {name}:end -->"));
@@ -43,5 +48,6 @@ mod tests {
     fn a_missing_marker_is_named() {
         let error = fill(PAGE, "verify", "").unwrap_err().to_string();
         assert!(error.contains("<!-- verify:begin -->"), "{error}");
+        assert!(!has(PAGE, "verify") && has(PAGE, "bench"));
     }
 }

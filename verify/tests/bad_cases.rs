@@ -77,7 +77,7 @@ const BAD_CASES: &[Expected] = &[
     ("empty_probe", 26, "probe[0]", "exactly one of point, points, lattice, centre_of_mass"),
     ("points_without_unit", 28, "probe[0].points.file", "with `unit` in the case file, or all with their unit"),
     ("points_in_metres", 26, "probe[0]", "`marks.tip` at (50, 50, 50) m lies 86.429 m outside the body, and so do 1 more of 3"),
-    ("probe_outside", 26, "probe[0]", "lies 0.100 m outside the body"),
+    ("probe_outside", 26, "probe[0]", "lies 0.100 m outside the body; the body lies between (0.000"),
     ("plane_in_3d", 4, "plane", "belongs to dimension = \"plane_strain\""),
     ("missing_plane", 3, "dimension", "needs a [plane]"),
     ("z_in_plane_strain", 26, "prescribe[0].displacement.z", "there is no motion along z in plane strain"),

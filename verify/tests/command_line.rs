@@ -208,6 +208,10 @@ fn a_condition_that_selects_nothing_is_located() {
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{err}");
         assert!(err.contains(&format!("case.toml:{line}")), "{err}");
         assert!(err.contains("prescribe[0].where") || err.contains("prescribe.bottom"), "{err}");
+        assert!(
+            err.contains("between (0.0000, 0.0000, 0.0000) and (0.1000, 0.1000, 0.1000) m"),
+            "{err}"
+        );
     }
 }
 
@@ -249,6 +253,7 @@ fn an_inspection_of_a_valid_case_reports_its_size_and_its_critical_step() {
     let seen = inspected("", "", &[]);
     assert_eq!(seen["zero_energy_modes"]["count"], 0);
     assert_eq!(seen["zero_energy_modes"]["free_rigid_motions"], 0);
+    assert_eq!(seen["extent_m"], serde_json::json!([[0.0, 0.0, 0.0], [0.1, 0.1, 0.1]]));
     assert!(seen["points_per_node"].as_f64().unwrap() > 1.0, "{seen}");
     assert!(seen["critical_time_step_s"].as_f64() > seen["per_point_bound_s"].as_f64());
     assert_eq!(

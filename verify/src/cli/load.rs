@@ -97,5 +97,17 @@ fn diagnose(case: &Case, error: &Error) -> Diagnostic {
         | Error::NeitherSolver { .. }
         | Error::FictitiousMass => "time",
     };
-    case.diagnostic(key, error.to_string())
+    case.diagnostic(key, error.to_string() + &searched_elsewhere(case, error))
+}
+
+/// Where the body is, if a selection missed it.
+fn searched_elsewhere(case: &Case, error: &Error) -> String {
+    match error {
+        Error::EmptySelection { .. }
+        | Error::EmptyTraction { .. }
+        | Error::EmptyPressure { .. }
+        | Error::EmptyBodyForce { .. }
+        | Error::EmptyInitialVelocity { .. } => case.place(),
+        _ => String::new(),
+    }
 }

@@ -4,6 +4,7 @@ use crate::scene::diagnostic::{Diagnostic, Location};
 use crate::scene::document::Document;
 use crate::scene::edit::Override;
 use mtled::algebra::tensor::Vector3;
+use mtled::geometry::Shape;
 use mtled::problem::Problem;
 
 /// A case file without mistakes.
@@ -125,9 +126,29 @@ impl Case {
         self.document.text()
     }
 
+    /// Where the body lies, for those who look for it elsewhere.
+    pub fn place(&self) -> String {
+        place(&self.problem.body)
+    }
+
     /// A mistake that shows only after reading, such as a condition that
     /// selects no node, located like the others.
     pub fn diagnostic(&self, key: &str, message: String) -> Diagnostic {
         self.document.diagnostic(key, message)
     }
+}
+
+/// Where a solid lies, for those who look for it elsewhere, with three digits of its size; empty
+/// for an unbounded one.
+pub fn place(solid: &Shape) -> String {
+    let Some((lower, upper)) = solid.bounding_box() else { return String::new() };
+    // A cross-section has no ends along z.
+    let axes = if lower.z.is_finite() && upper.z.is_finite() { 3 } else { 2 };
+    let size = (0..axes).map(|axis| upper[axis] - lower[axis]).fold(f64::MIN_POSITIVE, f64::max);
+    let digits = (3.0 - size.log10().ceil()).clamp(0.0, 12.0) as usize;
+    let corner = |corner: &Vector3| {
+        let numbers: Vec<_> = (0..axes).map(|axis| format!("{:.digits$}", corner[axis])).collect();
+        numbers.join(", ")
+    };
+    format!("; the body lies between ({}) and ({}) m", corner(&lower), corner(&upper))
 }

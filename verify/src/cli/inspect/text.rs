@@ -1,7 +1,7 @@
 //! An inspection as text and as JSON.
 
 use super::inspection::{Inspection, LARGEST_SEARCH, Place};
-use mtled::algebra::tensor::Vector3;
+use mtled::algebra::tensor::{Vector3, bounding_box};
 use mtled::discretisation::Footprint;
 use mtled::discretisation::Warning;
 use mtled::model::zero_energy::{CapturedMotion, ZERO_ENERGY_FRACTION, ZeroEnergyModes};
@@ -32,6 +32,7 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
     let (discretisation, model) = (&prepared.discretisation, &prepared.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let (few, many) = inspection.support;
+    let (lower, upper) = bounding_box(&model.positions);
     let mut lines = vec![
         std::iter::once(format!("{}: {}", case.name, case.title))
             .chain(case.overrides().iter().map(|set| format!("  with {set}")))
@@ -42,6 +43,7 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
             "nodes               {nodes}, {} of them on the boundary; all are covered",
             discretisation.cloud.on_boundary.iter().filter(|b| **b).count()
         ),
+        format!("                    from ({}) to ({})", show(&lower), show(&upper)),
         format!(
             "quadrature points   {points}: {} per node",
             four_digits(points as f64 / nodes as f64)
@@ -208,6 +210,7 @@ pub fn to_json(inspection: &Inspection) -> Value {
     let (discretisation, model) = (&prepared.discretisation, &prepared.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let [smallest, largest] = &inspection.spacings;
+    let (lower, upper) = bounding_box(&model.positions);
     json!({
         "schema_version": 1,
         "case": case.name,
@@ -216,6 +219,7 @@ pub fn to_json(inspection: &Inspection) -> Value {
             Dimension::PlaneStrain { .. } => "plane_strain",
         },
         "nodes": nodes,
+        "extent_m": [array(&lower), array(&upper)],
         "quadrature_points": points,
         "points_per_node": points as f64 / nodes as f64,
         "support": {

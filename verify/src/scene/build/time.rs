@@ -3,7 +3,7 @@
 use crate::files::LengthUnit;
 use crate::files::points::{Landmark, read_named_points};
 use crate::scene::build::builder::Builder;
-use crate::scene::case::{Outputs, Probe, ProbeKind};
+use crate::scene::case::{Outputs, Probe, ProbeKind, place};
 use crate::scene::format::{
     CaseFormat, LatticeFormat, MethodFormat, OutputFormat, PointsFormat, ProbeFormat, SolverFormat,
     TimeFormat,
@@ -212,14 +212,13 @@ impl Builder<'_> {
         });
         let Some((name, position, distance)) = outside.next() else { return };
         let [x, y, z]: [f64; 3] = position.into();
-        let place = format!("({x}, {y}, {z}) m lies {distance:.3} m outside the body");
-        match (probes.len(), outside.count()) {
-            (1, _) => self.mistake(key, place),
-            (_, 0) => self.mistake(key, format!("`{name}` at {place}")),
-            (all, more) => {
-                self.mistake(key, format!("`{name}` at {place}, and so do {more} more of {all}"));
-            }
-        }
+        let found = format!("({x}, {y}, {z}) m lies {distance:.3} m outside the body");
+        let message = match (probes.len(), outside.count()) {
+            (1, _) => found,
+            (_, 0) => format!("`{name}` at {found}"),
+            (all, more) => format!("`{name}` at {found}, and so do {more} more of {all}"),
+        };
+        self.mistake(key, message + &place(&body));
     }
 
     fn lattice(&mut self, key: &str, format: &LatticeFormat) -> Option<ProbeKind> {

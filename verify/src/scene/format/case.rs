@@ -29,38 +29,39 @@ pub struct CaseFormat {
     pub source: String,
     #[serde(default)]
     pub dimension: DimensionFormat,
-    /// The slice of a plane-strain problem; absent in three dimensions.
+    /// The slice of a plane-strain problem; left out in three dimensions.
     pub plane: Option<PlaneFormat>,
     pub geometry: GeometryFormat,
-    /// Parts of the body, the first that contains a point owns it. May be left
+    /// Parts of the body, the first that contains a point owns it; may be left
     /// out where there is one material.
     #[serde(default)]
     pub region: Vec<RegionFormat>,
     /// Materials by name.
     pub material: BTreeMap<String, MaterialFormat>,
     pub discretisation: DiscretisationFormat,
-    /// Prescribed displacements.
+    /// Prescribed displacements; none if left out.
     #[serde(default)]
     pub prescribe: Vec<PrescribeFormat>,
-    /// Forces per mass on the body or parts of it.
+    /// Forces per mass on the body or parts of it; none if left out.
     #[serde(default)]
     pub body_force: Vec<BodyForceFormat>,
-    /// Dead tractions on parts of the boundary.
+    /// Dead tractions on parts of the boundary; none if left out.
     #[serde(default)]
     pub traction: Vec<TractionFormat>,
-    /// Pressures that follow the deformed surface.
+    /// Pressures that follow the deformed surface; none if left out.
     #[serde(default)]
     pub pressure: Vec<PressureFormat>,
-    /// Velocities at t = 0; the first part that contains a node counts.
+    /// Velocities at t = 0; the first part that contains a node counts; zero if left out.
     #[serde(default)]
     pub initial_velocity: Vec<InitialVelocityFormat>,
-    /// Rigid obstacles that nodes may not enter.
+    /// Rigid obstacles that nodes may not enter; none if left out.
     #[serde(default)]
     pub obstacle: Vec<ObstacleFormat>,
     pub time: TimeFormat,
-    /// Where displacements are recorded.
+    /// Where displacements are recorded; nowhere if left out.
     #[serde(default)]
     pub probe: Vec<ProbeFormat>,
+    /// What is written; as below if left out.
     #[serde(default)]
     pub output: OutputFormat,
 }
@@ -89,6 +90,7 @@ pub struct PlaneFormat {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GeometryFormat {
+    /// Its shape at rest.
     pub shape: ShapeFormat,
 }
 
@@ -96,6 +98,7 @@ pub struct GeometryFormat {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionFormat {
+    /// Its name in results and for probes.
     pub name: String,
     #[serde(rename = "where")]
     pub part: SelectorFormat,

@@ -12,14 +12,19 @@ use std::path::PathBuf;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PrescribeFormat {
+    /// Its name in results.
     pub name: String,
     /// Whether nodes are taken from the boundary only or from everywhere.
     pub of: ExtentFormat,
     #[serde(rename = "where")]
     pub part: SelectorFormat,
+    /// The same displacement everywhere; left out where another kind is given.
     pub displacement: Option<DisplacementFormat>,
+    /// A rotation; left out where another kind is given.
     pub rotation: Option<RotationFormat>,
+    /// A function of the position; left out where another kind is given.
     pub formula: Option<FormulaFormat>,
+    /// Displacements from a file; left out where another kind is given.
     pub data: Option<DataFormat>,
     #[serde(default)]
     pub amplitude: AmplitudeFormat,
@@ -41,8 +46,11 @@ choice! {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DisplacementFormat {
+    /// Component along x [m]; free if left out.
     pub x: Option<f64>,
+    /// Component along y [m]; free if left out.
     pub y: Option<f64>,
+    /// Component along z [m]; free if left out.
     pub z: Option<f64>,
 }
 
@@ -52,7 +60,7 @@ pub struct DisplacementFormat {
 pub struct RotationFormat {
     /// A point on the axis [m].
     pub point: Triple,
-    /// Direction of the axis, of any length.
+    /// Direction of the axis, of any length [–].
     pub axis: Triple,
     /// Angle at amplitude 1 [rad].
     pub angle: f64,
@@ -64,11 +72,13 @@ pub struct RotationFormat {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FormulaFormat {
+    /// Component along x [m].
     pub x: String,
+    /// Component along y [m].
     pub y: String,
-    /// Left out in plane strain.
+    /// Component along z [m]; left out in plane strain only.
     pub z: Option<String>,
-    /// Multiplies all of them.
+    /// Multiplies all of them [–].
     #[serde(default = "one")]
     pub factor: f64,
 }
@@ -91,7 +101,7 @@ pub struct DataFormat {
     /// What happens to selected nodes that are farther.
     #[serde(default)]
     pub beyond: BeyondFormat,
-    /// Multiplies the displacements.
+    /// Multiplies the displacements [–].
     #[serde(default = "one")]
     pub factor: f64,
 }
@@ -129,12 +139,12 @@ pub enum AmplitudeFormat {
     Constant,
     /// From 0 to 1 in a straight line, then 1.
     Linear {
-        /// [s]
+        /// Time from 0 to 1 [s].
         duration: f64,
     },
     /// 10s³ − 15s⁴ + 6s⁵ with s = t/duration, then 1.
     Smooth {
-        /// [s]
+        /// Time from 0 to 1 [s].
         duration: f64,
     },
     /// Straight lines through rows of time [s] and factor, constant outside.
@@ -148,7 +158,7 @@ pub struct BodyForceFormat {
     /// The part that it acts on, such as what lies above a fluid; everything if left out.
     #[serde(rename = "where")]
     pub part: Option<SelectorFormat>,
-    /// [m/s²]
+    /// Force per mass [m/s²].
     pub acceleration: Triple,
     #[serde(default)]
     pub amplitude: AmplitudeFormat,
@@ -158,6 +168,7 @@ pub struct BodyForceFormat {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TractionFormat {
+    /// Its name in results.
     pub name: String,
     #[serde(rename = "where")]
     pub part: SelectorFormat,
@@ -171,6 +182,7 @@ pub struct TractionFormat {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PressureFormat {
+    /// Its name in results.
     pub name: String,
     #[serde(rename = "where")]
     pub part: SelectorFormat,
@@ -186,7 +198,7 @@ pub struct PressureFormat {
 pub struct InitialVelocityFormat {
     #[serde(rename = "where")]
     pub part: SelectorFormat,
-    /// [m/s]
+    /// Its components [m/s].
     pub velocity: Triple,
 }
 
@@ -194,7 +206,9 @@ pub struct InitialVelocityFormat {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleFormat {
+    /// Its name in results.
     pub name: String,
+    /// The obstacle or, with side = "inside", the cavity.
     pub shape: ShapeFormat,
     /// The shape is grown by this much first [m].
     #[serde(default)]

@@ -15,24 +15,59 @@ pub type Triple = [f64; 3];
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ShapeFormat {
     /// Axis-parallel, between two corners [m].
-    Box { min: Triple, max: Triple },
+    Box {
+        /// Corner with the smallest coordinates [m].
+        min: Triple,
+        /// Opposite corner [m].
+        max: Triple,
+    },
     /// From `base` [m] along `axis` (of any length) over `height` [m].
-    Cylinder { base: Triple, axis: Triple, radius: f64, height: f64 },
+    Cylinder {
+        /// Centre of the circle at its foot [m].
+        base: Triple,
+        /// Direction from there, of any length [–].
+        axis: Triple,
+        /// Radius [m].
+        radius: f64,
+        /// Length along the axis [m].
+        height: f64,
+    },
     /// Centre and radius [m].
-    Sphere { centre: Triple, radius: f64 },
+    Sphere {
+        /// Centre [m].
+        centre: Triple,
+        /// Radius [m].
+        radius: f64,
+    },
     /// Axis-parallel with three semi-axes [m].
-    Ellipsoid { centre: Triple, radii: Triple },
+    Ellipsoid {
+        /// Centre [m].
+        centre: Triple,
+        /// Semi-axes along x, y and z [m].
+        radii: Triple,
+    },
     /// A simple polygon in x and y [m], extruded from z[0] to z[1] [m].
-    Polygon { points: Vec<[f64; 2]>, z: [f64; 2] },
+    Polygon {
+        /// Its corners in order, x and y of each [m].
+        points: Vec<[f64; 2]>,
+        /// Lower and upper end [m].
+        z: [f64; 2],
+    },
     /// Everything behind the plane through `point` [m]; `normal` (of any
     /// length) points out.
-    HalfSpace { point: Triple, normal: Triple },
+    HalfSpace {
+        /// A point of the plane [m].
+        point: Triple,
+        /// Outward direction, of any length [–].
+        normal: Triple,
+    },
     /// In at least one of these.
     Union(Vec<ShapeFormat>),
     /// The first without the second.
     Difference(Box<ShapeFormat>, Box<ShapeFormat>),
     /// A closed surface from an STL file, path relative to the case file.
     Stl {
+        /// The STL file, ASCII or binary.
         file: PathBuf,
         /// Unit of the coordinates in the file.
         unit: UnitFormat,
@@ -40,9 +75,12 @@ pub enum ShapeFormat {
     /// The voxels of some labels of an NRRD or NIfTI file, in the file's world
     /// coordinates turned to RAS. Path relative to the case file.
     LabelMap {
+        /// The NRRD or NIfTI file.
         file: PathBuf,
+        /// Values of the voxels that belong to the shape.
         labels: Vec<u32>,
-        /// Overrides the unit that the file states (mm if it states none).
+        /// Overrides the unit that the file states (mm if it states none); that of the file if
+        /// left out.
         unit: Option<UnitFormat>,
         /// Standard deviation of the smoothing of the surface [voxel], at most 4: 0.7 if
         /// left out; 1.4 flattens the steps between voxels that contact would feel.
@@ -67,22 +105,51 @@ pub enum SelectorFormat {
     /// Everything.
     All,
     /// Within `tolerance` of a plane.
-    Plane { point: Triple, normal: Triple, tolerance: Option<f64> },
+    Plane {
+        /// A point of the plane [m].
+        point: Triple,
+        /// Its normal, of any length [–].
+        normal: Triple,
+        /// Distance that still counts [m]; a thousandth of the nodal spacing if left out.
+        tolerance: Option<f64>,
+    },
     /// Behind a plane; `normal` points out.
-    HalfSpace { point: Triple, normal: Triple, tolerance: Option<f64> },
+    HalfSpace {
+        /// A point of the plane [m].
+        point: Triple,
+        /// Outward direction, of any length [–].
+        normal: Triple,
+        /// Distance that still counts [m]; a thousandth of the nodal spacing if left out.
+        tolerance: Option<f64>,
+    },
     /// In an axis-parallel box.
-    Box { min: Triple, max: Triple, tolerance: Option<f64> },
+    Box {
+        /// Corner with the smallest coordinates [m].
+        min: Triple,
+        /// Opposite corner [m].
+        max: Triple,
+        /// Distance that still counts [m]; a thousandth of the nodal spacing if left out.
+        tolerance: Option<f64>,
+    },
     /// In a sphere.
-    Sphere { centre: Triple, radius: f64, tolerance: Option<f64> },
+    Sphere {
+        /// Centre [m].
+        centre: Triple,
+        /// Radius [m].
+        radius: f64,
+        /// Distance that still counts [m]; a thousandth of the nodal spacing if left out.
+        tolerance: Option<f64>,
+    },
     /// In any shape.
     Shape(ShapeFormat),
     /// In a voxel of this label.
     Label {
+        /// The label.
         value: u32,
         /// A label map, path relative to the case file; the body's own if
         /// left out.
         file: Option<PathBuf>,
-        /// As for the shape `label_map`.
+        /// Overrides the unit that the file states; that of the file if left out.
         unit: Option<UnitFormat>,
     },
     /// In at least one of these.

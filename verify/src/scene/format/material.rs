@@ -10,28 +10,29 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialFormat {
+    /// Its strain energy.
     pub law: LawFormat,
     /// Per reference volume [kg/m³].
     pub density: f64,
-    /// E [Pa], with poisson_ratio.
+    /// E [Pa], with poisson_ratio; left out where another pair is given.
     pub young_modulus: Option<f64>,
-    /// ν [–], -1 < ν < 0.5.
+    /// ν [–], -1 < ν < 0.5, with young_modulus, A and B, or terms; else left out.
     pub poisson_ratio: Option<f64>,
-    /// First Lamé modulus λ [Pa], with shear_modulus.
+    /// First Lamé modulus λ [Pa], with shear_modulus; left out where another pair is given.
     pub lame_modulus: Option<f64>,
-    /// μ [Pa], with lame_modulus or bulk_modulus.
+    /// μ [Pa], with lame_modulus or bulk_modulus; left out where another pair is given.
     pub shear_modulus: Option<f64>,
-    /// K [Pa], with shear_modulus or terms.
+    /// K [Pa], with shear_modulus or terms; left out where another pair is given.
     pub bulk_modulus: Option<f64>,
-    /// Mooney-Rivlin A [Pa].
+    /// A of mooney_rivlin [Pa]; left out for other laws.
     #[serde(rename = "A")]
     pub a: Option<f64>,
-    /// Mooney-Rivlin B [Pa].
+    /// B of mooney_rivlin [Pa]; left out for other laws.
     #[serde(rename = "B")]
     pub b: Option<f64>,
-    /// One to three terms of ogden.
+    /// One to three terms of ogden; left out for other laws.
     pub terms: Option<Vec<OgdenTermFormat>>,
-    /// Volumetric energy of neo_hookean_isochoric and ogden; quadratic if left out.
+    /// Volumetric energy of neo_hookean_isochoric and ogden; "quadratic" if left out.
     pub volumetric: Option<VolumetricFormat>,
 }
 
@@ -41,7 +42,7 @@ pub struct MaterialFormat {
 pub struct OgdenTermFormat {
     /// Its part of the shear modulus at rest [Pa], positive.
     pub mu: f64,
-    /// [–], not 0; -4.7 for brain tissue.
+    /// Exponent α [–], not 0; -4.7 for brain tissue.
     pub alpha: f64,
 }
 

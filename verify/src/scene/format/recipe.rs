@@ -14,44 +14,48 @@ use std::path::PathBuf;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiscretisationFormat {
+    /// Where the nodes come from.
     pub cloud: CloudFormat,
-    /// Distance of neighbouring nodes [m]; not for cloud "file".
+    /// Distance of neighbouring nodes [m]; left out only for cloud "file".
     pub spacing: Option<f64>,
-    /// Largest random move over the spacing [–], in [0, 0.5); for "jittered".
+    /// Largest random move over the spacing [–], in [0, 0.5); for "jittered", where it
+    /// may not be left out.
     pub jitter: Option<f64>,
     /// Of the random numbers; for "jittered", 1 if left out, and for "graded", 0 if
     /// left out, which moves nothing.
     pub seed: Option<u64>,
     /// Node positions [m] (CSV, NPY, VTU, VTK), path relative to the case
-    /// file; for "file".
+    /// file; for "file", where it may not be left out.
     pub file: Option<PathBuf>,
-    /// Smaller spacings inside parts of the body; for "graded".
+    /// Smaller spacings inside parts of the body; for "graded", none if left out.
     pub refine: Option<Vec<RefineSpacingFormat>>,
-    /// Largest growth of the spacing per length [–]; for "graded".
+    /// Largest growth of the spacing per length [–]; for "graded", 0.25 if left out.
     pub growth: Option<f64>,
-    /// Influence radius over nodal spacing [–], larger than 1; 1.8 by default,
-    /// 2.6 with the quadratic basis, 2 with the modified one.
+    /// Influence radius over nodal spacing [–], larger than 1; 1.8 if left
+    /// out, 2.6 with the quadratic basis, 2 with the modified one.
     pub dilation: Option<f64>,
-    /// "linear" by default.
+    /// Polynomial basis of the moving least squares; "linear" if left out.
     pub basis: Option<BasisFormat>,
     /// Weight of the second-order coefficients over that of the nodes [–], in
     /// (0, 1]; for "modified_quadratic", 1e-7 if left out.
     pub regularisation: Option<f64>,
-    /// "quartic_spline" by default.
+    /// Weight function of the moving least squares; "quartic_spline" if left out.
     pub weight_function: Option<WeightFunctionFormat>,
-    /// "row_sum" by default, "even_split" with the quadratic bases, whose row
-    /// sums are negative at some corners.
+    /// How the mass of a quadrature point is given to nodes; "row_sum" if left out, "even_split"
+    /// with the quadratic bases, whose row sums are negative at some corners.
     pub mass: Option<MassFormat>,
+    /// How prescribed displacements are enforced; "collocation" if left out.
     pub enforcement: Option<EnforcementFormat>,
-    /// "second_order" by default.
+    /// Which gradients of the shape functions are used; "second_order" if left out.
     pub gradients: Option<GradientsFormat>,
     /// Of consistent gradients, over the defect of plain ones [–]; 1e-3 if
     /// left out.
     pub gradient_tolerance: Option<f64>,
-    /// "double" by default.
+    /// How many digits of the gradients the forces read; "double" if left out.
     pub gradient_storage: Option<GradientStorageFormat>,
-    /// "patches" by default.
+    /// Projection of the change of volume in the bulk energy; "patches" if left out.
     pub volumetric_projection: Option<VolumetricProjectionFormat>,
+    /// The background grid that quadrature points come from; as below if left out.
     #[serde(default)]
     pub grid: GridFormat,
 }
@@ -93,7 +97,7 @@ choice! {
 pub struct RefineSpacingFormat {
     #[serde(rename = "where")]
     pub part: SelectorFormat,
-    /// [m]
+    /// Distance of neighbouring nodes there [m].
     pub spacing: f64,
 }
 
@@ -175,20 +179,21 @@ choice! {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GridFormat {
-    /// Edge of the largest cells [m]; instead of cells_per_spacing. With it, or with
+    /// Edge of the largest cells [m]; instead of cells_per_spacing, which counts if it is left out. With it, or with
     /// refine, the grid is made by hand and does not follow the nodes of a graded cloud
     /// or of a file.
     pub cell: Option<f64>,
     /// Cells along one nodal spacing [–], along the local one where it varies; instead
     /// of cell. 1.26 if both are left out, two points per node in three dimensions.
     pub cells_per_spacing: Option<f64>,
-    /// Cells on the boundary are halved down to this edge [m].
+    /// Cells on the boundary are halved down to this edge [m]; they are as the others if left out.
     pub boundary_cell: Option<f64>,
-    /// Smaller cells in parts of the body.
+    /// Smaller cells in parts of the body; none if left out.
     #[serde(default)]
     pub refine: Vec<RefineCellFormat>,
     /// Gauss points per cell and direction, 1 to 5; 1 if left out.
     pub gauss_points: Option<usize>,
+    /// What becomes of a cell that the boundary cuts; "volume_fraction" if left out.
     pub inside: Option<InsideFormat>,
 }
 
@@ -198,12 +203,12 @@ pub struct GridFormat {
 pub struct RefineCellFormat {
     #[serde(rename = "where")]
     pub part: SelectorFormat,
-    /// [m]
+    /// Edge of the largest cells there [m].
     pub cell: f64,
 }
 
 choice! {
-    /// What becomes of a cell that the boundary cuts; volume_fraction if left out.
+    /// What becomes of a cell that the boundary cuts.
     InsideFormat for InsideRule {
         /// Kept whole if its centre is inside.
         "centre" Centre,

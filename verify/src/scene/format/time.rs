@@ -12,32 +12,34 @@ use std::path::PathBuf;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeFormat {
+    /// Whether the body moves in time or the state at rest is wanted.
     pub method: MethodFormat,
     /// How a static solution is found; "auto" if left out.
     pub solver: Option<SolverFormat>,
-    /// Simulated time of a dynamic run [s].
+    /// Simulated time of a dynamic run [s]; left out for method "static" only.
     pub end: Option<f64>,
     /// Mass-proportional damping [1/s]; 0 if left out.
     pub damping: Option<f64>,
     /// Step over the critical step [–], in (0, 1]; 0.94 if left out, 0.8 for
     /// motion without damping.
     pub safety_factor: Option<f64>,
-    /// The critical step is found again after this many steps at the latest.
+    /// The critical step is found again after this many steps at the latest; 1000 if left out.
     pub reevaluate_every: Option<usize>,
     /// Factor by which heavier nodes lengthen the critical step of a slow
-    /// dynamic run [–]; refused if it takes more than 10 % of the body's mass.
+    /// dynamic run [–]; 1 if left out; refused if it takes more than 10 % of the body's mass.
     pub mass_scaling: Option<f64>,
-    /// A step to be used instead [s]; refused if it is not stable.
+    /// A step to be used instead [s]; refused if it is not stable. If left out, the step follows
+    /// the critical one.
     pub fixed_step: Option<f64>,
     /// Amplitudes run up to this time [s] in a static run; 1 if left out.
     pub load_end: Option<f64>,
-    /// Steps over which relaxation applies the load.
+    /// Steps over which relaxation applies the load; 500 if left out.
     pub load_steps: Option<usize>,
-    /// Requested relative error of the largest displacement [–], 1e-4 if left
-    /// out; of solver "newton" the largest unbalanced nodal force over the
-    /// largest nodal force, 1e-10 if left out.
+    /// Requested relative error of the largest displacement [–], 1e-4 if left out, which Newton's
+    /// method takes for a hundredth of it in nodal forces; of solver "newton" the largest unbalanced
+    /// nodal force over the largest nodal force, 1e-10 if left out.
     pub tolerance: Option<f64>,
-    /// A relaxation that needs more steps has failed.
+    /// A relaxation that needs more steps has failed; 200000 if left out.
     pub max_steps: Option<usize>,
 }
 
@@ -67,12 +69,15 @@ choice! {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeFormat {
+    /// Its name in results.
     pub name: String,
-    /// A reference position [m].
+    /// A reference position [m]; left out where another kind is given.
     pub point: Option<Triple>,
+    /// Positions from a file; left out where another kind is given.
     pub points: Option<PointsFormat>,
+    /// Positions on a lattice; left out where another kind is given.
     pub lattice: Option<LatticeFormat>,
-    /// Name of a region.
+    /// Name of a region; left out where another kind is given.
     pub centre_of_mass: Option<String>,
 }
 
@@ -84,7 +89,7 @@ pub struct PointsFormat {
     /// CSV with a header that names name, x, y and z, or x_mm, y_mm and z_mm. Path relative to
     /// the case file.
     pub file: PathBuf,
-    /// Unit of the positions; needed where the header states none.
+    /// Unit of the positions; may be left out where the header states it.
     pub unit: Option<UnitFormat>,
 }
 
@@ -92,11 +97,11 @@ pub struct PointsFormat {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeFormat {
-    /// [m]
+    /// First corner [m].
     pub min: Triple,
-    /// [m]
+    /// Opposite corner [m].
     pub max: Triple,
-    /// Positions along x, y and z.
+    /// Positions along x, y and z [–]; 1 along z in plane strain.
     pub counts: [usize; 3],
 }
 
