@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A case without mistakes.
-#[pyclass(frozen, module = "mtled", subclass)]
+#[pyclass(frozen, module = "mtled")]
 pub struct Case {
     case: Arc<scene::Case>,
     /// Where the files are that it names relative to it; none of a bundled case.

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What a run has come to. Displacements are those of the field, not nodal parameters.
-#[pyclass(frozen, module = "mtled", subclass)]
+#[pyclass(frozen, module = "mtled")]
 pub struct Result {
     case: Arc<Case>,
     finished: Arc<Finished>,

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// A warped image, and where its voxels came from.
-#[pyclass(frozen, module = "mtled", subclass)]
+#[pyclass(frozen, module = "mtled")]
 pub struct WarpedImage {
     image: Image,
     sources: Vec<[f32; 3]>,
