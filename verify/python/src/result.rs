@@ -15,6 +15,9 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// Vertices, cells, regions of cells, and fields by their names.
+type MeshArrays<'py> = (Rows, Rows<u32>, Py<PyArray1<u16>>, Bound<'py, PyDict>);
+
 /// What a run has come to. Displacements are those of the field, not nodal parameters.
 #[pyclass(frozen, module = "mtled")]
 pub struct Result {
@@ -101,10 +104,7 @@ impl Result {
 
     /// The mesh to look at: vertices [m], cells by their vertices, region of each cell, and the
     /// fields at the vertices.
-    fn mesh<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Rows, Rows<u32>, Py<PyArray1<u16>>, Bound<'py, PyDict>)> {
+    fn mesh<'py>(&self, py: Python<'py>) -> PyResult<MeshArrays<'py>> {
         let body = self.body(py)?;
         let fields = PyDict::new(py);
         for field in body.fields {
