@@ -1,12 +1,12 @@
 //! `mtled case …`.
 
 use super::common::{COULD_NOT_RUN, Common, Format};
-use super::load::{SetArgs, load, located};
+use super::load::{SetArgs, located};
 use super::messages::place;
 use super::migrate::{MigrateArgs, migrate};
 use super::streams::{print_data, print_json, print_text};
 use crate::bundled::CASES;
-use crate::run::prepare_to_run;
+use crate::run::{load, prepare_to_run};
 use crate::scene::{Diagnostic, Mistakes, Override, schema};
 use anyhow::{Result, bail};
 use clap::Subcommand;

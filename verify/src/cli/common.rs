@@ -3,7 +3,9 @@
 use super::streams::{print_data, print_json, print_text};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
+use std::ffi::OsString;
 use std::io::IsTerminal;
+use std::sync::OnceLock;
 
 /// Exit code where something could not be run.
 pub const COULD_NOT_RUN: u8 = 2;
@@ -89,9 +91,18 @@ impl Common {
     }
 }
 
+/// What stands behind the name of the program on the command line.
+pub static ARGUMENTS: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// [`ARGUMENTS`] as text.
+pub fn arguments() -> Vec<String> {
+    let arguments = ARGUMENTS.get().into_iter().flatten();
+    arguments.map(|argument| argument.to_string_lossy().into_owned()).collect()
+}
+
 /// The command as it was typed.
 pub fn command_line() -> String {
-    let arguments = std::env::args().skip(1).map(|argument| match argument.contains(' ') {
+    let arguments = arguments().into_iter().map(|argument| match argument.contains(' ') {
         true => format!("\"{argument}\""),
         false => argument,
     });

@@ -1,12 +1,9 @@
-//! Cases named on the command line, and their mistakes.
+//! Options about cases, and errors in running one.
 
-use crate::bundled::{CASES, unpack};
-use crate::run::refuse_beyond_memory;
-use crate::scene::{Case, Diagnostic, Override, one_error, parse_overridden, read_overridden};
-use anyhow::{Context, Result};
+use crate::run;
+use crate::scene::{Case, Override, one_error};
 use clap::Args;
 use mtled::error::Error;
-use std::path::Path;
 
 /// Values in place of those of a case file.
 #[derive(Debug, Args)]
@@ -20,94 +17,7 @@ pub struct SetArgs {
     pub overrides: Vec<Override>,
 }
 
-/// Reads a case file, or a bundled case by its name, with overrides. It fits into the memory.
-pub fn load(case: &Path, overrides: &[Override]) -> Result<Case> {
-    let case = read(case, overrides)?;
-    match refuse_beyond_memory(&case) {
-        Ok(()) => Ok(case),
-        Err(shortage) => {
-            Err(one_error(vec![case.diagnostic("discretisation", shortage.to_string())]))
-        }
-    }
-}
-
-fn read(case: &Path, overrides: &[Override]) -> Result<Case> {
-    let bundled = CASES.iter().find(|(name, _)| Path::new(name) == case);
-    let absent = matches!(case.try_exists(), Ok(false));
-    // A folder of that name is no case.
-    match bundled.filter(|_| absent || case.is_dir()) {
-        None if absent => {
-            let message = "cannot be read: there is no such file, and no bundled case of that name \
-                           (`mtled case list` prints their names)";
-            let file = case.display().to_string();
-            Err(one_error(vec![Diagnostic::of_file(&file, message.into())]))
-        }
-        None => read_overridden(case, overrides).map_err(one_error),
-        Some((name, text)) => {
-            let folder = tempfile::tempdir().context("cannot make a folder for a bundled case")?;
-            let cases = unpack(folder.path())?;
-            parse_overridden(text, &format!("{name}.toml"), &cases, overrides).map_err(one_error)
-        }
-    }
-}
-
 /// An error of the solver as the mistake in the case file that causes it.
 pub fn located(case: &Case, error: &Error) -> anyhow::Error {
-    one_error(vec![diagnose(case, error)])
-}
-
-/// An error of the solver, located at the key of the case file that causes it.
-fn diagnose(case: &Case, error: &Error) -> Diagnostic {
-    let key = match error {
-        Error::NothingHolds { .. } => "prescribe",
-        Error::EmptySelection { name } => &format!("prescribe.{name}.where"),
-        Error::BeyondData { name, .. } => &format!("prescribe.{name}.data"),
-        Error::NoDisplacement { name, .. } => &format!("prescribe.{name}"),
-        Error::ContradictingConditions { second, .. } => &format!("prescribe.{second}"),
-        Error::DrivenIntoObstacle { condition, .. } => &format!("prescribe.{condition}"),
-        Error::NodesInObstacle { name, .. } | Error::EmptyObstacle { name } => {
-            &format!("obstacle.{name}")
-        }
-        Error::EmptyInitialVelocity { index } => &format!("initial_velocity[{index}]"),
-        Error::EmptyRegion { .. } => "probe",
-        Error::EmptyTraction { name } => &format!("traction.{name}.where"),
-        Error::EmptyBodyForce { index } => &format!("body_force[{index}].where"),
-        Error::EmptyPressure { name } => &format!("pressure.{name}.where"),
-        Error::DependentConstraints { .. } => "discretisation.enforcement",
-        Error::NoQuadraturePoints
-        | Error::UncoveredNode { .. }
-        | Error::DivergedCorrection { .. }
-        | Error::TooFewPoints { .. }
-        | Error::ZeroEnergyModes { .. } => "discretisation.grid",
-        Error::MasslessNode { .. } => "discretisation.mass",
-        Error::SmallSupport { .. }
-        | Error::SingularMomentMatrix { .. }
-        | Error::LargeSupports { .. } => "discretisation.dilation",
-        Error::UnstableStep { .. } => "time.fixed_step",
-        Error::TooMuchAddedMass { .. } | Error::UnscaledMass { .. } => "time.mass_scaling",
-        Error::ProbeOutside { .. } => "probe",
-        Error::PointWithoutRegion { .. } => "region",
-        Error::Geometry(_) => "discretisation",
-        Error::NoEquilibrium { .. } => "time.solver",
-        Error::Diverged { .. }
-        | Error::Inverted { .. }
-        | Error::NotConverged { .. }
-        | Error::Unstable { .. }
-        | Error::NotHeld { .. }
-        | Error::NeitherSolver { .. }
-        | Error::FictitiousMass => "time",
-    };
-    case.diagnostic(key, error.to_string() + &searched_elsewhere(case, error))
-}
-
-/// Where the body is, if a selection missed it.
-fn searched_elsewhere(case: &Case, error: &Error) -> String {
-    match error {
-        Error::EmptySelection { .. }
-        | Error::EmptyTraction { .. }
-        | Error::EmptyPressure { .. }
-        | Error::EmptyBodyForce { .. }
-        | Error::EmptyInitialVelocity { .. } => case.place(),
-        _ => String::new(),
-    }
+    one_error(vec![run::located(case, error)])
 }

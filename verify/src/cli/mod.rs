@@ -23,8 +23,9 @@ mod view;
 mod warp;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use common::{COULD_NOT_RUN, Common, Format, STOPPED};
+use common::{ARGUMENTS, COULD_NOT_RUN, Common, Format, STOPPED, arguments};
 use explore::{budget, runs, tune};
+use std::ffi::OsString;
 use std::process::ExitCode;
 use streams::{or_reader_has_ended, print_data};
 
@@ -109,11 +110,19 @@ enum Command {
     Completions { shell: clap_complete::Shell },
 }
 
-/// Runs the command line and returns the exit code.
+/// Runs the command line of this process and returns the exit code.
 pub fn run() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    ExitCode::from(run_with(std::env::args_os().skip(1).collect()))
+}
+
+/// Runs a command with the arguments behind the name of the program, once in a process, and
+/// returns the exit code.
+pub fn run_with(arguments: Vec<OsString>) -> u8 {
+    let arguments = ARGUMENTS.get_or_init(|| arguments);
+    let program = OsString::from("mtled");
+    let cli = match Cli::try_parse_from(std::iter::once(&program).chain(arguments)) {
         Ok(cli) => cli,
-        Err(answer) => return ExitCode::from(without_a_command(&answer)),
+        Err(answer) => return without_a_command(&answer),
     };
     let pool = cli.common.threads.map(|threads| {
         rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global()
@@ -131,10 +140,10 @@ pub fn run() -> ExitCode {
         _ => dispatch(&cli),
     };
     match result {
-        Ok(code) => ExitCode::from(code),
+        Ok(code) => code,
         Err(error) => {
             cli.common.failure(&error);
-            ExitCode::from(COULD_NOT_RUN)
+            COULD_NOT_RUN
         }
     }
 }
@@ -160,8 +169,7 @@ fn without_a_command(answer: &clap::Error) -> u8 {
 
 /// The format that is asked for where the arguments as a whole cannot be read.
 fn requested_format() -> Format {
-    let arguments: Vec<String> =
-        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let arguments = arguments();
     let apart = arguments.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json");
     match apart || arguments.iter().any(|argument| argument == "--format=json") {
         true => Format::Json,

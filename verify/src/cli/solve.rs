@@ -1,15 +1,13 @@
 //! `mtled solve`.
 
 use super::common::{Common, STOPPED};
-use super::load::{SetArgs, load, located};
+use super::load::{SetArgs, located};
 use super::progress::progress_bar;
-use crate::run::{
-    Estimated, PAGE_FILE, Prepared, Recorder, Recording, Solved, contact_results, error_bars,
-    integrate_prepared, prepare_to_run, summary_text, write_failed, write_outputs,
-};
+use crate::run::{Failed, Finished, PAGE_FILE, load, prepare_to_run, solve_recorded};
 use crate::scene::Case;
 use clap::Args;
 use mtled::error::Error;
+use mtled::motion::observe::Continue;
 use mtled_checks::escape::file_name;
 use mtled_checks::report::ensure_writable;
 use std::path::{Path, PathBuf};
@@ -59,42 +57,24 @@ fn solve_to(
             bar.set_position(position);
             bar.set_message(format!("step {step}"));
         }
+        Continue::Yes
     };
-    let mut recorder = Recorder::new(case, &prepared, case.outputs.frames)?.with_progress(&show);
-    let solution = integrate_prepared(&case.problem, &prepared, &mut recorder);
+    let outcome = solve_recorded(case, prepared, with_bars, &show);
     bar.finish_and_clear();
-    let mut record = recorder.finish();
-    record.unstable_mode = match &solution {
-        Ok(solution) => solution.summary.instability.as_ref(),
-        Err(error) => error.instability(),
-    }
-    .map(|found| found.mode.clone());
-    match solution {
-        Ok(solution) => {
-            let solved = Solved::new(prepared, solution);
-            let bars =
-                with_bars.then(|| error_bars(case, &solved, &record, !record.frames.is_empty()));
-            Ok(finish(case, &solved, &record, bars.as_ref(), out, common))
-        }
-        Err(error) => match write_partial(case, &prepared, &record, &error, out, common) {
-            Ok(()) => Err(error),
+    match outcome {
+        Ok(finished) => Ok(finish(case, &finished, out, common)),
+        Err(failed) => match write_partial(case, &failed, out, common) {
+            Ok(()) => Err(failed.error),
             Err(unwritable) => Ok(Err(unwritable)),
         },
     }
 }
 
 /// Writes what a failed run has recorded.
-fn write_partial(
-    case: &Case,
-    prepared: &Prepared,
-    record: &Recording,
-    error: &Error,
-    out: &Path,
-    common: &Common,
-) -> anyhow::Result<()> {
-    let result = write_failed(case, prepared, record, error, out)?;
+fn write_partial(case: &Case, failed: &Failed, out: &Path, common: &Common) -> anyhow::Result<()> {
+    let result = failed.write(case, out)?;
     common.print_summary(&|| Ok(result.clone()), &|| String::new())?;
-    if let Some(last) = record.samples.last() {
+    if let Some(last) = failed.record.samples.last() {
         common.complain(format!(
             "{} contains the run up to step {}, t = {:.6} s, and result.json says that it failed",
             out.display(),
@@ -105,20 +85,13 @@ fn write_partial(
     Ok(())
 }
 
-fn finish(
-    case: &Case,
-    solved: &Solved,
-    record: &Recording,
-    bars: Option<&Estimated>,
-    out: &Path,
-    common: &Common,
-) -> anyhow::Result<u8> {
-    let contacts = contact_results(&case.problem, &solved.prepared, &solved.state)?;
-    let result = write_outputs(case, solved, record, &contacts, bars, out)?;
+fn finish(case: &Case, finished: &Finished, out: &Path, common: &Common) -> anyhow::Result<u8> {
+    let result = finished.write(case, out)?;
     common.print_summary(&|| Ok(result.clone()), &|| {
-        let summary = summary_text(case, solved, record, &contacts, bars);
+        let summary = finished.text(case);
         format!("{summary}\n  results in {}, to be looked at in {PAGE_FILE} there\n", out.display())
     })?;
+    let solved = &finished.solved;
     for doubt in solved.doubts() {
         common.warn(doubt);
     }

@@ -33,6 +33,15 @@ pub enum Shown {
     Cut,
 }
 
+impl Shown {
+    /// What is shown unless it is chosen: a body in space cut open too.
+    pub fn usual(mesh: &Mesh) -> Vec<Shown> {
+        let mut shown = vec![Shown::Before, Shown::After];
+        shown.extend((mesh.corners == 4).then_some(Shown::Cut));
+        shown
+    }
+}
+
 /// What is drawn, and from where.
 #[derive(Debug, Clone)]
 pub struct Choice {

@@ -2,7 +2,9 @@
 
 mod contact;
 mod error_bar;
+mod finished;
 mod interrupt;
+mod load;
 mod memory;
 mod numbers;
 mod output;
@@ -20,10 +22,12 @@ pub use contact::contact_results;
 pub use error_bar::{
     CoarserCloud, ErrorBar, ErrorBars, Estimated, Indicator, NoErrorBar, error_bars,
 };
+pub use finished::{Failed, Finished, solve_recorded};
 pub use interrupt::{interrupt, interrupted};
+pub use load::{ensure_fits, load, located};
 pub use memory::{MemoryShortage, estimated_memory, refuse_beyond_memory};
 pub use numbers::numbers;
-pub use output::{PAGE_FILE, last_body_frame, write_failed, write_outputs};
+pub use output::{PAGE_FILE, field_at_nodes, history, last_body_frame};
 pub use prepare::{Prepared, prepare, prepare_to_run};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Recorder, Recording, Sample};

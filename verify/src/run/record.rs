@@ -110,7 +110,7 @@ pub struct Recorder<'a> {
     references: Vec<Vec<Vector3>>,
     samples: Series<Sample>,
     frames: Series<Frame>,
-    progress: Option<&'a dyn Fn(f64, usize)>,
+    progress: Option<&'a dyn Fn(f64, usize) -> Continue>,
 }
 
 impl<'a> Recorder<'a> {
@@ -150,8 +150,8 @@ impl<'a> Recorder<'a> {
         })
     }
 
-    /// Calls `report(progress, step)` during the run.
-    pub fn with_progress(mut self, report: &'a dyn Fn(f64, usize)) -> Recorder<'a> {
+    /// Calls `report(progress, step)` during the run, which it can end.
+    pub fn with_progress(mut self, report: &'a dyn Fn(f64, usize) -> Continue) -> Recorder<'a> {
         self.progress = Some(report);
         self
     }
@@ -160,6 +160,12 @@ impl<'a> Recorder<'a> {
     pub fn finish(self) -> Recording {
         let Recorder { references, samples, frames, .. } = self;
         Recording { references, samples: samples.kept, frames: frames.kept, unstable_mode: None }
+    }
+
+    /// Whether the run is to end.
+    fn is_stopped(&self, progress: f64, step: usize) -> bool {
+        let reported = self.progress.map(|report| report(progress, step));
+        interrupted() || reported == Some(Continue::Stop)
     }
 
     fn sample(&self, view: &View, energies: Energies) -> Sample {
@@ -189,7 +195,7 @@ impl<'a> Recorder<'a> {
 
 impl Observer for Recorder<'_> {
     fn observe(&mut self, view: &mut View) -> Continue {
-        let stop = interrupted();
+        let stop = self.is_stopped(view.progress, view.state.step);
         let frame = self.frames.is_due(view.progress, stop);
         let sample = self.samples.is_due(view.progress, stop);
         // A state whose energy is no number fails in the next step and is not a result.
@@ -209,17 +215,11 @@ impl Observer for Recorder<'_> {
                 self.samples.keep(sample, view.progress);
             }
         }
-        if let Some(report) = self.progress {
-            report(view.progress, view.state.step);
-        }
         if stop { Continue::Stop } else { Continue::Yes }
     }
 
     fn iterate(&mut self, progress: f64, corrections: usize) -> Continue {
-        if let Some(report) = self.progress {
-            report(progress, corrections);
-        }
-        if interrupted() { Continue::Stop } else { Continue::Yes }
+        if self.is_stopped(progress, corrections) { Continue::Stop } else { Continue::Yes }
     }
 
     fn restart(&mut self) {

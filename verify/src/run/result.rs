@@ -16,7 +16,6 @@ use mtled::motion::summary::Summary;
 use mtled::problem::Motion;
 use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
-use serde::Serialize;
 use serde_json::{Value, json};
 
 /// More points than this are not listed in the summary.
@@ -58,7 +57,7 @@ pub fn failed_json(case: &Case, prepared: &Prepared, record: &Recording, error: 
     result["warnings"] = json!(prepared.doubts(&case.problem));
     result["motion"] = json!({
         "method": method(case),
-        "outcome": Outcome::of_error(error),
+        "outcome": outcome_of(error),
         "complete": false,
         "error": error.to_string(),
         "steps": record.samples.last().map_or(0, |last| last.step),
@@ -107,8 +106,7 @@ fn recorded_json(case: &Case, prepared: &Prepared, record: &Recording) -> Value 
 }
 
 /// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
     /// A motion reached its end.
     Completed,
@@ -133,6 +131,17 @@ impl Outcome {
         }
     }
 
+    fn name(self) -> &'static str {
+        match self {
+            Outcome::Completed => "completed",
+            Outcome::Converged => "converged",
+            Outcome::Stopped => "stopped",
+            Outcome::NotConverged => "not_converged",
+            Outcome::Diverged => "diverged",
+            Outcome::Failed => "failed",
+        }
+    }
+
     fn of_error(error: &Error) -> Outcome {
         match error {
             Error::NotConverged { .. } | Error::NoEquilibrium { .. } => Outcome::NotConverged,
@@ -143,6 +152,11 @@ impl Outcome {
             _ => Outcome::Failed,
         }
     }
+}
+
+/// How a run ended with this error.
+pub fn outcome_of(error: &Error) -> &'static str {
+    Outcome::of_error(error).name()
 }
 
 fn method(case: &Case) -> &'static str {
@@ -182,7 +196,7 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
     });
     json!({
         "method": method(case),
-        "outcome": Outcome::of(case, summary),
+        "outcome": Outcome::of(case, summary).name(),
         "complete": !summary.stopped,
         "steps": summary.steps,
         "time_s": summary.time,

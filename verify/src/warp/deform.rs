@@ -1,11 +1,13 @@
 //! Images and fields on the grid of an image.
 #![allow(non_snake_case)]
 
+use super::error::WarpError;
 use super::field::DisplacementField;
 use super::inverse::{Source, TOLERANCE, source_of};
 use crate::files::image::{Grid, Image, Interpolation};
 use mtled::algebra::tensor::Vector3;
 use rayon::prelude::*;
+use std::path::Path;
 
 /// An image in the deformed space, and where its voxels came from.
 #[derive(Debug)]
@@ -101,7 +103,21 @@ pub fn forward_field(field: &DisplacementField, grid: &Grid) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// Number of nodes of the body that lie in the voxels of a grid.
-pub fn nodes_inside(field: &DisplacementField, grid: &Grid) -> usize {
-    field.nodes().iter().filter(|X| grid.contains(&grid.index_of(X))).count()
+/// Number of nodes of the body that lie outside of the voxels of an image; an image without
+/// any of them, at `path`, is refused.
+pub fn nodes_outside(
+    field: &DisplacementField,
+    grid: &Grid,
+    path: &Path,
+) -> Result<usize, WarpError> {
+    let nodes = field.nodes();
+    let inside = nodes.iter().filter(|X| grid.contains(&grid.index_of(X))).count();
+    match inside {
+        0 => Err(WarpError::OtherSpace {
+            path: path.to_path_buf(),
+            image: grid.bounds(),
+            body: field.node_bounds(),
+        }),
+        inside => Ok(nodes.len() - inside),
+    }
 }

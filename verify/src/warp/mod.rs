@@ -7,7 +7,7 @@ mod inverse;
 mod landmarks;
 mod surfaces;
 
-pub use deform::{Deformed, deform, forward_field, nodes_inside};
+pub use deform::{Deformed, deform, forward_field, nodes_outside};
 pub use error::WarpError;
 pub use field::DisplacementField;
 pub use inverse::{MOST_ITERATIONS, Source, TOLERANCE, source_of};

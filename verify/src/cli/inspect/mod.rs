@@ -4,9 +4,9 @@ mod inspection;
 mod text;
 
 use super::common::{Common, Format};
-use super::load::{SetArgs, load, located};
+use super::load::{SetArgs, located};
 use super::streams::{print_json, print_text};
-use crate::run::prepare;
+use crate::run::{load, prepare};
 use clap::Args;
 use inspection::{Search, examine};
 use std::path::PathBuf;

@@ -37,8 +37,7 @@ pub fn view(arguments: &ViewArgs, common: &Common) -> Result<u8> {
     let mut shown: Vec<Shown> = arguments.show.iter().map(|name| (*name).into()).collect();
     let plane = body.mesh.corners == 3;
     if shown.is_empty() {
-        shown = vec![Shown::Before, Shown::After];
-        shown.extend((!plane).then_some(Shown::Cut));
+        shown = Shown::usual(&body.mesh);
     }
     ensure!(
         !plane || !shown.contains(&Shown::Cut),

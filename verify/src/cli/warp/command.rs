@@ -4,16 +4,15 @@ use super::arguments::WarpArgs;
 use super::outputs::{Outputs, write_all};
 use super::summary::Summary;
 use crate::cli::common::Common;
-use crate::cli::load::load;
 use crate::files::LengthUnit;
 use crate::files::image::{Image, Interpolation, field_bytes, image_bytes, read_image};
 use crate::files::points::read_landmarks;
 use crate::files::stl::to_stl;
-use crate::run::StoredField;
+use crate::run::{StoredField, load};
 use crate::scene::Case;
 use crate::warp::{
     DisplacementField, RegionSurface, WarpError, deform, forward_field, move_landmarks,
-    nodes_inside, region_surfaces, to_csv,
+    nodes_outside, region_surfaces, to_csv,
 };
 use anyhow::{Context, Result};
 use mtled::problem::Problem;
@@ -105,16 +104,9 @@ fn refuse_other_space(
     field: &DisplacementField,
     common: &Common,
 ) -> Result<(), WarpError> {
-    let (inside, all) = (nodes_inside(field, &image.grid), field.nodes().len());
-    if inside == 0 {
-        return Err(WarpError::OtherSpace {
-            path: path.to_path_buf(),
-            image: image.grid.bounds(),
-            body: field.node_bounds(),
-        });
-    }
-    if inside < all {
-        let outside = all - inside;
+    let outside = nodes_outside(field, &image.grid, path)?;
+    if outside > 0 {
+        let all = field.nodes().len();
         common.warn_about(
             path,
             format!("{outside} of {all} nodes of the body lie outside of this image"),

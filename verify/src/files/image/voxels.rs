@@ -37,6 +37,17 @@ pub enum Interpolation {
 }
 
 impl Image {
+    /// The type of the stored numbers as in NumPy's array interface, such as `<f4`.
+    pub fn array_type(&self) -> String {
+        let order = if self.order == ByteOrder::Little { '<' } else { '>' };
+        let kind = match self.scalar {
+            Scalar::I8 | Scalar::I16 | Scalar::I32 | Scalar::I64 => 'i',
+            Scalar::U8 | Scalar::U16 | Scalar::U32 | Scalar::U64 => 'u',
+            Scalar::F32 | Scalar::F64 => 'f',
+        };
+        format!("{order}{kind}{}", self.scalar.size())
+    }
+
     /// Appends the stored number at an index to `out`; 0 outside of all voxels. Within half a
     /// voxel of the faces the outermost voxels count. Returns whether the index is inside.
     pub fn sample(&self, index: &Vector3, how: Interpolation, out: &mut Vec<u8>) -> bool {

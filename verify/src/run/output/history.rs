@@ -1,14 +1,13 @@
-//! Histories as CSV.
+//! Histories as a table and as CSV.
 
-use crate::run::record::Recording;
+use crate::run::record::{Recording, Sample};
 use crate::scene::Case;
 use anyhow::Result;
 use mtled_checks::escape::csv_text;
 
-/// One row per sample; probes with one position only (lattices are in
-/// `result.json`).
-pub fn history_csv(case: &Case, record: &Recording) -> Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
+/// Names of columns with units, and one row per sample; probes with one position only (lattices
+/// are in `result.json`).
+pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) {
     let axes = ["x", "y", "z"];
     let single: Vec<usize> =
         (0..case.probes.len()).filter(|&i| record.references[i].len() == 1).collect();
@@ -28,8 +27,7 @@ pub fn history_csv(case: &Case, record: &Recording) -> Result<String> {
     for obstacle in &case.problem.obstacles {
         header.extend(axes.map(|axis| format!("{}.contact_f{axis}_n", obstacle.name)));
     }
-    writer.write_record(header.iter().map(|name| csv_text(name)))?;
-    for sample in &record.samples {
+    let row = |sample: &Sample| {
         let e = &sample.energies;
         let mut row =
             vec![sample.step as f64, sample.time, sample.smallest_jacobian, sample.touching as f64];
@@ -41,6 +39,17 @@ pub fn history_csv(case: &Case, record: &Recording) -> Result<String> {
             row.extend(reaction.force.iter().chain(reaction.moment.iter()));
         }
         row.extend(sample.contact_forces.iter().flatten());
+        row
+    };
+    (header, record.samples.iter().map(row).collect())
+}
+
+/// [`history`] as CSV.
+pub fn history_csv(case: &Case, record: &Recording) -> Result<String> {
+    let (header, rows) = history(case, record);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header.iter().map(|name| csv_text(name)))?;
+    for row in rows {
         writer.write_record(row.iter().map(f64::to_string))?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)

@@ -20,7 +20,9 @@ use anyhow::Result;
 use earlier::remove_earlier_run;
 
 pub use earlier::PAGE_FILE;
-pub use frames::last_body_frame;
+pub use frames::{body_at_end, last_body_frame};
+pub use history::history;
+pub use node_fields::field_at_nodes;
 
 use frames::write_frames;
 use history::history_csv;
