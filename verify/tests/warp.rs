@@ -12,7 +12,7 @@ use mtled_verify::files::image::{
 use mtled_verify::run::{StoredField, prepare};
 use mtled_verify::scene::parse_case;
 use mtled_verify::warp::{
-    DisplacementField, TOLERANCE, deform, forward_field, nodes_inside, source_of,
+    DisplacementField, TOLERANCE, deform, forward_field, nodes_outside, source_of,
 };
 use std::path::Path;
 
@@ -215,9 +215,11 @@ fn the_lines_of_an_nrrd_header_are_kept() {
 #[test]
 fn an_image_of_another_space_has_no_node_of_the_body() {
     let field = rotated();
-    let inside = |middle: Vector3| {
-        nodes_inside(&field, &read(&nifti(&around(middle), Kind::I16, noise), "i.nii").grid)
+    let outside = |middle: Vector3| {
+        let image = read(&nifti(&around(middle), Kind::I16, noise), "i.nii");
+        nodes_outside(&field, &image.grid, Path::new("i.nii"))
     };
-    assert!(inside(1e3 * MIDDLE) > 0);
-    assert_eq!(inside(Vector3::new(-200.0, 50.0, 50.0)), 0);
+    assert!(outside(1e3 * MIDDLE).is_ok());
+    let refusal = outside(Vector3::new(-200.0, 50.0, 50.0)).unwrap_err().to_string();
+    assert!(refusal.contains("i.nii"), "{refusal}");
 }
