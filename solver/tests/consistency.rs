@@ -242,13 +242,13 @@ fn gradients_in_single_precision_change_displacements_by_one_in_a_million() {
 }
 
 #[test]
-fn gradients_in_single_precision_take_16_bytes_per_entry_in_place_of_28() {
+fn gradients_in_single_precision_take_14_bytes_per_entry_in_place_of_26() {
     let bytes = [GradientStorage::Double, GradientStorage::Single].map(|storage| {
         let mut problem = cube(5);
         problem.recipe.gradient_storage = storage;
         build(&problem).1.bytes_per_step()
     });
-    assert_eq!(16 * bytes[0], 28 * bytes[1]);
+    assert_eq!(14 * bytes[0], 26 * bytes[1]);
 }
 
 #[test]

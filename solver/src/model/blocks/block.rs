@@ -1,14 +1,11 @@
 //! A block of quadrature points.
 
-use super::local_vectors::{Place, stride};
+use super::local_vectors::{Place, QUAD, stride};
 use super::stored_gradients::{GradientQuad, StoredGradients, with_gradients};
 use crate::algebra::lanes::LANES;
 use crate::material::Law;
 use crate::model::projection::Projection;
 use std::ops::Range;
-
-/// Quadrature points whose supports are read side by side.
-pub const QUAD: usize = 4;
 
 /// Consecutive quadrature points of one material, with a numbering of their own of
 /// the nodes in their supports. Blocks depend on the problem alone, never on the

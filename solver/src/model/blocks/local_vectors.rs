@@ -2,6 +2,9 @@
 
 use fearless_simd::{Simd, f64x2, f64x4, prelude::*};
 
+/// Quadrature points whose supports are read side by side.
+pub const QUAD: usize = 4;
+
 /// Where the vector of a node begins among [`LocalVectors`].
 pub type Place = u16;
 

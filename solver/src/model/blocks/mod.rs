@@ -9,8 +9,8 @@ mod partition;
 mod stored_gradients;
 mod summation;
 
-pub use block::{Block, Chunk, QUAD};
-pub use local_vectors::{Adder, LocalVectors, Place, Reader};
+pub use block::{Block, Chunk};
+pub use local_vectors::{Adder, LocalVectors, Place, QUAD, Reader};
 pub use partition::blocks;
 pub(crate) use stored_gradients::with_gradients;
 pub use stored_gradients::{GradientQuad, StoredGradients};

@@ -1,7 +1,6 @@
 //! How the supports of a block are packed: four side by side (method book, section 11).
 
-use super::block::QUAD;
-use super::local_vectors::{Place, stride};
+use super::local_vectors::{Place, QUAD, stride};
 use super::numbering::Numbering;
 use super::stored_gradients::{GradientQuad, StoredGradients};
 use crate::discretisation::rows::Rows;

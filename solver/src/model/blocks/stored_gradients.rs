@@ -1,6 +1,6 @@
 //! Grad φ in the precision in which it is stored.
 
-use super::block::QUAD;
+use super::local_vectors::QUAD;
 use fearless_simd::{Simd, f64x4, prelude::*};
 
 /// Grad φ, one quad of numbers for each component of a slot \[1/m\].
