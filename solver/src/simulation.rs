@@ -8,7 +8,6 @@ use crate::model::Model;
 use crate::model::essential::Reaction;
 use crate::model::zero_energy::refuse_zero_energy_modes;
 use crate::motion::energy::{Energies, energies};
-use crate::motion::internal_force::Workspace;
 use crate::motion::mass_scaling::raise_masses;
 use crate::motion::observe::Observer;
 use crate::motion::simulate::simulate;
@@ -72,6 +71,6 @@ impl Simulation {
 
     /// Energies \[J\] half a step before the time of the state.
     pub fn energies(&self) -> Energies {
-        energies(&self.model, &self.state, &mut Workspace::new(&self.model))
+        energies(&self.model, &self.state)
     }
 }

@@ -9,7 +9,7 @@ use mtled::discretisation::Discretisation;
 use mtled::geometry::{Field, Panel, Selector, Shape};
 use mtled::model::Model;
 use mtled::model::essential::ConstraintForces;
-use mtled::motion::internal_force::{Workspace, strain_energy};
+use mtled::motion::internal_force::strain_energy;
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -150,16 +150,15 @@ fn projected_forces_are_the_derivative_of_the_projected_energy() {
         problem.recipe.volumetric_projection = VolumetricProjection::Patches;
         let discretisation = Discretisation::new(&problem).unwrap();
         let model = Model::new(&problem, &discretisation).unwrap();
-        let mut workspace = Workspace::new(&model);
         let wave = |i: usize| 1e-3 * (1.7 * i as f64).sin();
         let u: Vec<f64> = (0..model.size()).map(wave).collect();
         let f = forces(&model, &u);
         let scale = largest(&f);
         for i in (0..model.size()).step_by(37) {
-            let mut energy = |shift: f64| {
+            let energy = |shift: f64| {
                 let mut moved = u.clone();
                 moved[i] += shift;
-                strain_energy(&model, &moved, &mut workspace)
+                strain_energy(&model, &moved)
             };
             let difference = (energy(1e-7) - energy(-1e-7)) / 2e-7;
             assert!((difference - f[i]).abs() < 1e-5 * scale, "{law:?}: {difference} {}", f[i]);

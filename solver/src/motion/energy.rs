@@ -1,7 +1,7 @@
 //! Energies and their balance.
 
 use crate::model::Model;
-use crate::motion::internal_force::{Workspace, strain_energy};
+use crate::motion::internal_force::strain_energy;
 use crate::motion::state::State;
 
 /// Energies \[J\] half a step before the time of the state, like velocities.
@@ -29,7 +29,7 @@ impl Energies {
 
 /// Kinetic energy ½ Σ m v² at t − Δt/2, strain energy as the mean of those at
 /// t − Δt and t, and the accumulated work.
-pub fn energies(model: &Model, state: &State, workspace: &mut Workspace) -> Energies {
+pub fn energies(model: &Model, state: &State) -> Energies {
     let d = model.components;
     let mut kinetic = 0.0;
     for (node, mass) in model.inertia.iter().enumerate() {
@@ -42,9 +42,7 @@ pub fn energies(model: &Model, state: &State, workspace: &mut Workspace) -> Ener
         .zip(&state.velocity)
         .map(|(u, v)| u - state.time_step * v)
         .collect();
-    let strain = 0.5
-        * (strain_energy(model, &before, workspace)
-            + strain_energy(model, &state.displacement, workspace));
+    let strain = 0.5 * (strain_energy(model, &before) + strain_energy(model, &state.displacement));
     Energies {
         kinetic,
         strain,

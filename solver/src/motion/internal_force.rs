@@ -7,9 +7,10 @@ use crate::algebra::real::Dual;
 use crate::algebra::tensor::Matrix3;
 use crate::model::blocks::{LocalVectors, with_gradients};
 use crate::model::{Block, Chunk, Model};
-use crate::motion::kernel::{self, Scratch, block_force};
+use crate::motion::kernel::{self, Local, Scratch, block_force};
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
+use std::cell::RefCell;
 use std::marker::PhantomData;
 
 /// Scratch memory of a run; nothing in it outlives a step.
@@ -105,13 +106,26 @@ pub fn linearised_stiffness_times(
 fn linearise_in<const D: usize>(model: &Model, u: &[f64], workspace: &mut Workspace) {
     let level = workspace.level;
     let run = |(block, scratch): (&Block, &mut Scratch)| {
-        scratch.u.gather::<D>(&block.nodes, u);
-        with_vectors!(level, (simd, numbers) => keep_gradients::<_, _, D>(simd, numbers, block, scratch));
+        with_local(|Local { u: local, .. }| {
+            local.gather::<D>(&block.nodes, u);
+            with_vectors!(level, (simd, numbers) => {
+                keep_gradients::<_, _, D>(simd, numbers, block, local, scratch)
+            });
+        })
     };
     match on_one_thread(model) {
         true => model.blocks.iter().zip(&mut workspace.blocks).for_each(run),
         false => model.blocks.par_iter().zip(&mut workspace.blocks).with_max_len(1).for_each(run),
     }
+}
+
+thread_local! {
+    static LOCAL: RefCell<Local> = RefCell::new(Local::zeros());
+}
+
+/// Runs with the vectors of this thread.
+fn with_local<T>(run: impl FnOnce(&mut Local) -> T) -> T {
+    LOCAL.with_borrow_mut(run)
 }
 
 /// Whether a pass over the blocks is faster without other threads.
@@ -128,31 +142,34 @@ fn internal_force_in<const D: usize>(
     f: &mut [f64],
 ) -> SmallestJacobian {
     let level = workspace.level;
-    let run = |(block, scratch): (&Block, &mut Scratch)| match along {
-        false => {
-            scratch.u.gather::<D>(&block.nodes, u);
-            with_vectors!(level, (simd, numbers) => force::<_, _, D>(simd, numbers, block, scratch))
-        }
-        true => {
-            let v = scratch.v.get_or_insert_with(LocalVectors::zeros);
-            v.gather::<D>(&block.nodes, u);
-            with_vectors!(level, (simd, numbers) => {
-                derivative::<_, _, D>(simd, numbers, block, scratch)
-            });
-        }
+    let run = |block: &Block, local: &mut Local, scratch: &mut Scratch| {
+        local.u.gather::<D>(&block.nodes, u);
+        with_vectors!(level, (simd, numbers) => match along {
+            false => force::<_, _, D>(simd, numbers, block, local, scratch),
+            true => derivative::<_, _, D>(simd, numbers, block, local, scratch),
+        });
     };
-    let pairs = model.blocks.iter().zip(&mut workspace.blocks);
     let nodes = f.as_chunks_mut::<D>().0;
     if on_one_thread(model) {
         nodes.fill([0.0; D]);
-        for (block, scratch) in pairs {
-            run((block, scratch));
-            block.nodes.iter().zip(scratch.f.iter::<D>()).for_each(|(&node, force)| {
-                add(&mut nodes[node as usize], force);
-            });
-        }
+        with_local(|local| {
+            for (block, scratch) in model.blocks.iter().zip(&mut workspace.blocks) {
+                run(block, local, scratch);
+                block.nodes.iter().zip(local.f.iter::<D>()).for_each(|(&node, force)| {
+                    add(&mut nodes[node as usize], force);
+                });
+            }
+        });
     } else {
-        model.blocks.par_iter().zip(&mut workspace.blocks).with_max_len(1).for_each(run);
+        let blocks = model.blocks.par_iter().zip(&mut workspace.blocks).with_max_len(1);
+        blocks.for_each(|(block, scratch)| {
+            with_local(|local| {
+                run(block, local, scratch);
+                let forces = local.f.iter::<D>().take(block.nodes.len());
+                scratch.forces.clear();
+                scratch.forces.extend(forces.flatten());
+            });
+        });
         sum_in_order(model, &workspace.blocks, nodes);
     }
     let smallest = model.blocks.iter().zip(&workspace.blocks).map(|(block, scratch)| {
@@ -167,9 +184,10 @@ fn force<S: Simd, N: Lanes<S>, const D: usize>(
     simd: S,
     _: PhantomData<N>,
     block: &Block,
+    local: &mut Local,
     scratch: &mut Scratch,
 ) {
-    block_force::<S, N, D>(simd, block, scratch);
+    block_force::<S, N, D>(simd, block, local, scratch);
 }
 
 #[inline(always)]
@@ -177,9 +195,10 @@ fn keep_gradients<S: Simd, N, const D: usize>(
     simd: S,
     _: PhantomData<N>,
     block: &Block,
+    u: &LocalVectors,
     scratch: &mut Scratch,
 ) {
-    kernel::linearise::<S, D>(simd, block, scratch);
+    kernel::linearise::<S, D>(simd, block, u, scratch);
 }
 
 #[inline(always)]
@@ -187,9 +206,10 @@ fn derivative<S: Simd, N: Number<S>, const D: usize>(
     simd: S,
     _: PhantomData<N>,
     block: &Block,
+    local: &mut Local,
     scratch: &mut Scratch,
 ) {
-    block_force::<S, Dual<N>, D>(simd, block, scratch);
+    block_force::<S, Dual<N>, D>(simd, block, local, scratch);
 }
 
 /// The forces of all blocks, chunk by chunk of the nodes; each node gets its
@@ -200,9 +220,9 @@ fn sum_in_order<const D: usize>(model: &Model, blocks: &[Scratch], nodes: &mut [
         |(chunk, (nodes, terms))| {
             nodes.fill([0.0; D]);
             for term in terms {
-                let forces = &blocks[term.block].f;
+                let forces = blocks[term.block].forces.as_chunks::<D>().0;
                 for (node, local) in &term.nodes {
-                    add(&mut nodes[*node as usize - chunk * length], &forces.at(*local as usize));
+                    add(&mut nodes[*node as usize - chunk * length], &forces[*local as usize]);
                 }
             }
         },
@@ -248,13 +268,14 @@ fn displacement_gradient<const D: usize>(
 }
 
 /// Strain energy Σ_q w_q ψ(F_q) \[J\] at displacements `u` \[m\].
-pub fn strain_energy(model: &Model, u: &[f64], workspace: &mut Workspace) -> f64 {
-    let blocks = model.blocks.iter().zip(&mut workspace.blocks);
-    let energy = |(block, scratch): (&Block, &mut Scratch)| match model.components {
-        2 => block_energy::<2>(block, u, &mut scratch.u),
-        _ => block_energy::<3>(block, u, &mut scratch.u),
+pub fn strain_energy(model: &Model, u: &[f64]) -> f64 {
+    let energy = |block: &Block| {
+        with_local(|Local { u: local, .. }| match model.components {
+            2 => block_energy::<2>(block, u, local),
+            _ => block_energy::<3>(block, u, local),
+        })
     };
-    blocks.map(energy).sum()
+    model.blocks.iter().map(energy).sum()
 }
 
 fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut LocalVectors) -> f64 {
@@ -280,21 +301,27 @@ fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut LocalVecto
 /// −tr σ/3 less this.
 pub fn projected_mean_stress(model: &Model, u: &[f64]) -> Vec<f64> {
     let mut stresses = vec![0.0; model.point_positions.len()];
-    for block in &model.blocks {
-        match model.components {
-            2 => block_mean_stress::<2>(block, u, &mut stresses),
-            _ => block_mean_stress::<3>(block, u, &mut stresses),
+    with_local(|Local { u: local, .. }| {
+        for block in &model.blocks {
+            match model.components {
+                2 => block_mean_stress::<2>(block, u, local, &mut stresses),
+                _ => block_mean_stress::<3>(block, u, local, &mut stresses),
+            }
         }
-    }
+    });
     stresses
 }
 
-fn block_mean_stress<const D: usize>(block: &Block, u: &[f64], stresses: &mut [f64]) {
+fn block_mean_stress<const D: usize>(
+    block: &Block,
+    u: &[f64],
+    local: &mut LocalVectors,
+    stresses: &mut [f64],
+) {
     let Some(projection) = &block.projection else { return };
-    let mut local = LocalVectors::zeros();
     local.gather::<D>(&block.nodes, u);
     for Chunk { lanes, groups } in &block.chunks {
-        let jacobian = |lane| deformation_gradient::<D>(block, lane, &local).determinant();
+        let jacobian = |lane| deformation_gradient::<D>(block, lane, local).determinant();
         let jacobians: Vec<f64> = lanes.clone().map(jacobian).collect();
         let pressures = projection.plain_pressures(&block.law, groups.clone(), &jacobians);
         lanes.clone().zip(pressures).for_each(|(lane, p)| stresses[block.point(lane)] = p);

@@ -5,7 +5,6 @@ use crate::model::Model;
 use crate::model::essential::Reaction;
 use crate::motion::energy::{Energies, energies};
 use crate::motion::state::State;
-use crate::motion::step::Buffers;
 
 /// A run after a step, as an observer sees it; energies and reactions are computed
 /// on request.
@@ -14,7 +13,6 @@ pub struct View<'a> {
     pub model: &'a Model,
     /// What has evolved.
     pub state: &'a State,
-    pub(crate) buffers: &'a mut Buffers,
     /// Smallest J over all quadrature points, before the last step \[–\].
     pub smallest_jacobian: f64,
     /// Completed fraction of the run \[–\].
@@ -23,8 +21,8 @@ pub struct View<'a> {
 
 impl View<'_> {
     /// Energies half a step ago; two passes over the quadrature points.
-    pub fn energies(&mut self) -> Energies {
-        energies(self.model, self.state, &mut self.buffers.workspace)
+    pub fn energies(&self) -> Energies {
+        energies(self.model, self.state)
     }
 
     /// Force and moment about `about` \[m\] that each condition exerts on the
@@ -77,10 +75,9 @@ impl Observer for Unobserved {
 pub(crate) fn notify(
     model: &Model,
     state: &State,
-    buffers: &mut Buffers,
     smallest_jacobian: f64,
     progress: f64,
     observer: &mut dyn Observer,
 ) -> Continue {
-    observer.observe(&mut View { model, state, buffers, smallest_jacobian, progress })
+    observer.observe(&mut View { model, state, smallest_jacobian, progress })
 }

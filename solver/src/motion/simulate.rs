@@ -104,7 +104,7 @@ fn integrate(
 ) -> Result<Summary, Error> {
     let mut buffers = Buffers::new(model, observer.tracks_work());
     let mut control = StepController::new(model, settings, state, &mut buffers)?;
-    let mut stopped = notify(model, state, &mut buffers, 1.0, 0.0, observer) == Continue::Stop;
+    let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
     while !stopped && state.time < end * (1.0 - 1e-12) {
         control.reevaluate(model, state, &mut buffers);
         let remaining = end - state.time;
@@ -118,8 +118,7 @@ fn integrate(
         check_divergence(model, state, &report)?;
         let progress = state.time / end;
         let jacobian = report.smallest_jacobian.jacobian;
-        stopped =
-            notify(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
+        stopped = notify(model, state, jacobian, progress, observer) == Continue::Stop;
     }
     // A step evaluates J before it moves the nodes: the last state is still to be checked.
     let smallest_jacobian =

@@ -14,15 +14,27 @@ use fearless_simd::Simd;
 use nodes::{add_forces, deformation_gradients};
 use points::{jacobians, pressures, stresses};
 
-/// Scratch memory of one block; nothing in it outlives a step.
+/// Vectors at the nodes of the block that a thread works on.
+#[derive(Debug)]
+pub struct Local {
+    /// Displacements \[m\].
+    pub u: LocalVectors,
+    /// Forces, or their derivative \[N\].
+    pub f: LocalVectors,
+}
+
+impl Local {
+    /// All are 0.
+    pub fn zeros() -> Local {
+        Local { u: LocalVectors::zeros(), f: LocalVectors::zeros() }
+    }
+}
+
+/// Scratch memory of one block; but for [`linearise`], nothing in it outlives a step.
 #[derive(Debug)]
 pub struct Scratch {
-    /// Displacements of the block's nodes \[m\].
-    pub u: LocalVectors,
-    /// Displacements of the direction of a derivative \[m\], once there has been one.
-    pub v: Option<LocalVectors>,
-    /// Forces on the block's nodes, or their derivative \[N\].
-    pub f: LocalVectors,
+    /// Forces on the block's nodes, where they are added later \[component of node\] \[N\].
+    pub forces: Vec<f64>,
     /// The smallest J and its lane.
     pub smallest: (f64, usize),
     /// F \[–\] of all points at the displacements of a derivative, once there has been one.
@@ -44,9 +56,7 @@ impl Scratch {
             (0..3).for_each(|i| rows[4 * i] = SimdBlock([1.0; LANES]));
         }
         Scratch {
-            u: LocalVectors::zeros(),
-            v: None,
-            f: LocalVectors::zeros(),
+            forces: Vec::new(),
             smallest: (f64::INFINITY, 0),
             linearised: Vec::new(),
             deformation,
@@ -57,10 +67,15 @@ impl Scratch {
     }
 }
 
-/// Keeps F at `scratch.u` for the derivatives there, of which each would compute it again.
+/// Keeps F at displacements `u` for the derivatives there, of which each would compute it again.
 #[inline(always)]
-pub fn linearise<S: Simd, const D: usize>(simd: S, block: &Block, scratch: &mut Scratch) {
-    let Scratch { u, linearised, deformation, .. } = scratch;
+pub fn linearise<S: Simd, const D: usize>(
+    simd: S,
+    block: &Block,
+    u: &LocalVectors,
+    scratch: &mut Scratch,
+) {
+    let Scratch { linearised, deformation, .. } = scratch;
     linearised.clear();
     for Chunk { groups, .. } in &block.chunks {
         let rows = &mut deformation.values[..9 * groups.len()];
@@ -72,30 +87,30 @@ pub fn linearise<S: Simd, const D: usize>(simd: S, block: &Block, scratch: &mut 
     }
 }
 
-/// f_a = Σ_q w_q P(F_q) Grad φ_a(X_q) of the block's points at `scratch.u`; with
-/// dual numbers its derivative along `scratch.v` where the block was linearised.
+/// f_a = Σ_q w_q P(F_q) Grad φ_a(X_q) of the block's points at the local displacements; with
+/// dual numbers the derivative along them where the block was linearised.
 #[inline(always)]
 pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
     simd: S,
     block: &Block,
+    Local { u, f }: &mut Local,
     scratch: &mut Scratch,
 ) {
-    scratch.f.clear::<D>(block.nodes.len());
+    f.clear::<D>(block.nodes.len());
     scratch.smallest = (f64::INFINITY, 0);
-    let Scratch { u, v, f, smallest, linearised, deformation, stress, .. } = scratch;
+    let Scratch { smallest, linearised, deformation, stress, .. } = scratch;
     let (jacobian, pressure) = (&mut scratch.jacobians, &mut scratch.pressures);
     for Chunk { lanes, groups } in &block.chunks {
         let count = groups.len();
         with_gradients!(&block.grad_phi, grad_phi => {
             let (stream, groups) = ((block, &grad_phi[..]), groups.clone());
             let Parts { values, slopes } = &mut *deformation;
-            match (R::SLOPES, &*v) {
-                (true, Some(v)) => {
-                    let known = &linearised[9 * groups.start..9 * groups.end];
-                    values[..known.len()].copy_from_slice(known);
-                    deformation_gradients::<S, _, D>(simd, stream, groups, v, 0.0, slopes);
-                }
-                _ => deformation_gradients::<S, _, D>(simd, stream, groups, u, 1.0, values),
+            if R::SLOPES {
+                let known = &linearised[9 * groups.start..9 * groups.end];
+                values[..known.len()].copy_from_slice(known);
+                deformation_gradients::<S, _, D>(simd, stream, groups, u, 0.0, slopes);
+            } else {
+                deformation_gradients::<S, _, D>(simd, stream, groups, u, 1.0, values);
             }
         });
         let projection = block.projection.as_ref();

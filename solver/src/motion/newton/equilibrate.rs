@@ -29,7 +29,7 @@ pub(crate) fn equilibrate(
 ) -> Result<Summary, Error> {
     let mut buffers = Buffers::new(model, false);
     let mut solver = Solver::new(model, settings, state, &mut buffers);
-    let mut stopped = notify(model, state, &mut buffers, 1.0, 0.0, observer) == Continue::Stop;
+    let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
     let (mut reached, mut increment) = (0.0, 1.0f64);
     while reached < 1.0 && !stopped {
         // No tiny last increment.
@@ -42,13 +42,13 @@ pub(crate) fn equilibrate(
                 solver.accept(equilibrium, fraction, state, &mut buffers);
                 reached = fraction;
                 increment *= 2.0;
-                let stop = notify(model, state, &mut buffers, jacobian, reached, observer);
+                let stop = notify(model, state, jacobian, reached, observer);
                 stopped = stop == Continue::Stop;
             }
             Err(Unsolved::Stopped(here)) => {
                 let jacobian = here.imbalance.smallest_jacobian.jacobian;
                 solver.accept(*here, fraction, state, &mut buffers);
-                notify(model, state, &mut buffers, jacobian, reached, observer);
+                notify(model, state, jacobian, reached, observer);
                 stopped = true;
             }
             Err(Unsolved::Failed { residual, indefinite }) => {
@@ -87,8 +87,7 @@ impl Solver<'_> {
         self.counts.increments += 1;
         self.counts.residual = imbalance.relative(model);
         self.smallest_jacobian = self.smallest_jacobian.or(imbalance.smallest_jacobian);
-        let stored = strain_energy(model, &u, &mut buffers.workspace)
-            - strain_energy(model, &state.displacement, &mut buffers.workspace);
+        let stored = strain_energy(model, &u) - strain_energy(model, &state.displacement);
         external_force(model, state.time, &mut buffers.f_ext);
         add_pressures(model, state.time, &state.displacement, &mut buffers.f_ext);
         let before = std::mem::take(&mut state.displacement);

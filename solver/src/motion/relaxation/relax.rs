@@ -34,7 +34,7 @@ pub(crate) fn relax(
     let mut stability = Stability::default();
     let mut decay = Decay::default();
     let mut convergence = Convergence { estimated_error: f64::INFINITY, residual: f64::INFINITY };
-    notify(model, state, &mut buffers, 1.0, 0.0, observer);
+    notify(model, state, 1.0, 0.0, observer);
     // At a turning point a single increment says nothing: take the largest
     // since the last assessment.
     let (mut increment, mut increment_before) = (0.0f64, f64::INFINITY);
@@ -77,8 +77,7 @@ pub(crate) fn relax(
             && convergence.residual <= 10.0 * settings.tolerance;
         let progress = if converged { 1.0 } else { progress(count, settings, &convergence, size) };
         let jacobian = report.smallest_jacobian.jacobian;
-        let stop =
-            notify(model, state, &mut buffers, jacobian, progress, observer) == Continue::Stop;
+        let stop = notify(model, state, jacobian, progress, observer) == Continue::Stop;
         if converged || stop {
             let stability_products = match converged {
                 true => stability.search(model, state, &mut buffers.workspace),
@@ -92,7 +91,7 @@ pub(crate) fn relax(
         }
         if last || decay.has_stalled(count, report.largest_increment) && loaded {
             // For the records: the state that is kept.
-            notify(model, state, &mut buffers, jacobian, 1.0, observer);
+            notify(model, state, jacobian, 1.0, observer);
             let error = not_converged(model, settings, state, &convergence, count);
             return Err(stability.explain(error));
         }

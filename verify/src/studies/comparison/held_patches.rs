@@ -8,7 +8,7 @@ use crate::studies::workbench::Workbench;
 use anyhow::Result;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
-use mtled::motion::internal_force::{Workspace, strain_energy};
+use mtled::motion::internal_force::strain_energy;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{Amplitude, Cloud, Dimension, EssentialCondition, Problem, Recipe};
 use mtled_checks::study::{Cell, Study, Table, number, text};
@@ -97,7 +97,7 @@ fn energy(patch: &Patch, spacing: f64, poisson_ratio: f64, seed: u64) -> Result<
     let problem = problem(patch, spacing, poisson_ratio, seed)?;
     let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
     let model = &solved.prepared.model;
-    Ok(strain_energy(model, &solved.state.displacement, &mut Workspace::new(model)))
+    Ok(strain_energy(model, &solved.state.displacement))
 }
 
 /// Energies of several clouds against one another and against that of a finer cloud.
