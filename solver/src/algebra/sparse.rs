@@ -1,9 +1,21 @@
 //! Sparse matrices that act alike on every component of a nodal field.
 
+use fearless_simd::{Level, Simd, dispatch, f64x4, prelude::*};
 use rayon::prelude::*;
 
 /// Rows that are multiplied one after the other.
 const ROWS_PER_TASK: usize = 512;
+
+/// A vector at a node: its components, then zeros.
+pub(crate) type Padded = [f64; 4];
+
+/// What becomes of the product.
+#[derive(Clone, Copy)]
+pub(crate) enum Combine {
+    Replace,
+    Add,
+    Subtract,
+}
 
 /// A matrix by rows, in single precision.
 #[derive(Debug, Clone)]
@@ -49,28 +61,74 @@ impl Sparse {
         Sparse { starts, columns, values }
     }
 
-    /// The product with every component of `field`, combined with the entries of
-    /// `result`: `combine(entry, product)`.
-    pub fn product<const D: usize>(
-        &self,
-        field: &[[f64; D]],
-        result: &mut [[f64; D]],
-        combine: impl Fn(&mut f64, f64) + Sync,
-    ) {
-        let row = |(i, result): (usize, &mut [f64; D])| {
-            let mut sum = [0.0; D];
-            for entry in self.starts[i]..self.starts[i + 1] {
-                let value = f64::from(self.values[entry]);
-                let factors = &field[self.columns[entry] as usize];
-                sum.iter_mut().zip(factors).for_each(|(sum, x)| *sum += value * x);
-            }
-            result.iter_mut().zip(sum).for_each(|(entry, sum)| combine(entry, sum));
+    /// Product with a nodal field, which the entries of `result` take as `how` says.
+    pub fn product(&self, field: &[Padded], result: &mut [Padded], how: Combine) {
+        let level = Level::new();
+        let rows = |(task, result): (usize, &mut [Padded])| {
+            dispatch!(level, simd => self.rows(simd, task * ROWS_PER_TASK, field, result, how));
         };
         match result.len() <= ROWS_PER_TASK {
-            true => result.iter_mut().enumerate().for_each(row),
-            false => {
-                result.par_iter_mut().with_min_len(ROWS_PER_TASK).enumerate().for_each(row);
-            }
+            true => rows((0, result)),
+            false => result.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(rows),
         }
     }
+
+    /// The rows from `first` on.
+    #[inline(always)]
+    fn rows<S: Simd>(
+        &self,
+        simd: S,
+        first: usize,
+        field: &[Padded],
+        result: &mut [Padded],
+        how: Combine,
+    ) {
+        for (ends, result) in self.starts[first..].windows(2).zip(result) {
+            let (columns, values) =
+                (&self.columns[ends[0]..ends[1]], &self.values[ends[0]..ends[1]]);
+            let sum = row_product(simd, columns, values, field);
+            *result = match how {
+                Combine::Replace => sum,
+                Combine::Add => f64x4::from_slice(simd, result) + sum,
+                Combine::Subtract => f64x4::from_slice(simd, result) - sum,
+            }
+            .into();
+        }
+    }
+}
+
+/// Σ_j values_j field_j in four sums side by side, none of which waits for another.
+#[inline(always)]
+fn row_product<S: Simd>(simd: S, columns: &[u32], values: &[f32], field: &[Padded]) -> f64x4<S> {
+    let term = |sum: f64x4<S>, column: u32, value: f32| {
+        let factors = f64x4::from_slice(simd, &field[column as usize]);
+        f64x4::splat(simd, f64::from(value)).mul_add(factors, sum)
+    };
+    let mut sums = [f64x4::splat(simd, 0.0); 4];
+    let (columns, last_columns) = columns.as_chunks::<4>();
+    let (values, last_values) = values.as_chunks::<4>();
+    for (columns, values) in columns.iter().zip(values) {
+        for k in 0..4 {
+            sums[k] = term(sums[k], columns[k], values[k]);
+        }
+    }
+    for (&column, &value) in last_columns.iter().zip(last_values) {
+        sums[0] = term(sums[0], column, value);
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+/// The vectors of a field of `components` in space or in a plane, padded.
+pub(crate) fn padded(field: &[f64], components: usize) -> Vec<Padded> {
+    let vector = |packed: &[f64]| {
+        let mut vector = [0.0; 4];
+        vector[..components].copy_from_slice(packed);
+        vector
+    };
+    field.chunks_exact(components).map(vector).collect()
+}
+
+/// A padded field without its padding.
+pub(crate) fn packed(field: &[Padded], components: usize) -> Vec<f64> {
+    field.iter().flat_map(|vector| &vector[..components]).copied().collect()
 }

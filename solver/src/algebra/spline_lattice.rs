@@ -103,11 +103,21 @@ fn cell(s: f64, cells: usize) -> (usize, f64) {
 }
 
 impl Lattice {
+    /// With cells of about `edge` whose number can be halved.
     pub fn new(nodes: &[Vector3], edge: f64, components: usize) -> Lattice {
+        Lattice::of_axes(nodes, components, |extent| Axis::new(extent, edge))
+    }
+
+    /// With as few cells as are at most as wide as `edge`.
+    pub fn of_cells(nodes: &[Vector3], edge: f64, components: usize) -> Lattice {
+        let axis = |extent: f64| Axis::Splines((extent / edge).ceil().max(1.0) as usize);
+        Lattice::of_axes(nodes, components, axis)
+    }
+
+    fn of_axes(nodes: &[Vector3], components: usize, axis: impl Fn(f64) -> Axis) -> Lattice {
         let (min, max) = bounding_box(nodes);
         let extent = max - min;
-        let axes =
-            [0, 1, 2].map(|k| if k < components { Axis::new(extent[k], edge) } else { Axis::Flat });
+        let axes = [0, 1, 2].map(|k| if k < components { axis(extent[k]) } else { Axis::Flat });
         Lattice { origin: min, extent, axes, counts: axes.map(Axis::count) }
     }
 

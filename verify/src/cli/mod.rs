@@ -137,7 +137,8 @@ pub fn run_with(arguments: Vec<OsString>) -> u8 {
     let result = match (pool, handler) {
         (Some(Err(error)), _) => Err(error.into()),
         (_, Err(error)) => Err(error.into()),
-        _ => dispatch(&cli),
+        // In the pool: threads outside it would have to wake those inside for every sum.
+        _ => rayon::scope(|_| dispatch(&cli)),
     };
     match result {
         Ok(code) => code,

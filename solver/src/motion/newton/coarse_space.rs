@@ -1,7 +1,7 @@
 //! The stiffness at rest of smooth displacements.
 #![allow(non_snake_case)]
 
-use crate::algebra::sparse::Sparse;
+use crate::algebra::sparse::{Combine, Padded, Sparse, packed, padded};
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::spline_lattice::Lattice;
 use crate::algebra::tensor::Vector3;
@@ -43,7 +43,7 @@ impl CoarseSpace {
         let d = model.components;
         let volume: f64 = model.blocks.iter().flat_map(|b| &b.quadrature_weights).sum();
         let spacing = (volume / model.positions.len() as f64).powf(1.0 / d as f64);
-        let lattice = Lattice::new(&model.positions, SPACING * spacing, d);
+        let lattice = Lattice::of_cells(&model.positions, SPACING * spacing, d);
         let mut numbers = Numbers { of: vec![None; lattice.len()], count: 0 };
         let mut rows = Vec::with_capacity(model.positions.len());
         for X in &model.positions {
@@ -90,13 +90,16 @@ impl CoarseSpace {
         }
     }
 
-    /// z += P A₀⁻¹ Pᵀ r.
-    pub fn add<const D: usize>(&mut self, r: &[[f64; D]], z: &mut [[f64; D]]) {
-        let Some(cholesky) = &self.cholesky else { return };
-        let mut moments = vec![[0.0; D]; self.free.len()];
-        self.values[1].product(r, &mut moments, |entry, sum| *entry = sum);
-        cholesky.solve(moments.as_flattened_mut(), &mut self.scratch);
-        self.values[0].product(&moments, z, |entry, sum| *entry += sum);
+    /// P A₀⁻¹ Pᵀ r.
+    pub fn apply(&mut self, components: usize, r: &[Padded]) -> Vec<Padded> {
+        let mut result = vec![[0.0; 4]; r.len()];
+        let Some(cholesky) = &self.cholesky else { return result };
+        let mut moments = vec![[0.0; 4]; self.free.len()];
+        self.values[1].product(r, &mut moments, Combine::Replace);
+        let mut moments = packed(&moments, components);
+        cholesky.solve(&mut moments, &mut self.scratch);
+        self.values[0].product(&padded(&moments, components), &mut result, Combine::Replace);
+        result
     }
 }
 

@@ -11,7 +11,7 @@ use crate::motion::tangent::Tangent;
 
 /// Held displacements that may change before the preconditioner is made anew, over their
 /// number \[–\].
-const CHANGED: f64 = 0.1;
+const CHANGED: f64 = 0.02;
 /// The same for the shift, as a factor \[–\].
 const SHIFTED: f64 = 3.0;
 /// Bodies of fewer nodes, and those in a plane, take no more products with the diagonal alone.

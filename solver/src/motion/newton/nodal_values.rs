@@ -1,7 +1,7 @@
 //! Nodal parameters from nodal values of the displacement, approximately.
 #![allow(non_snake_case)]
 
-use crate::algebra::sparse::Sparse;
+use crate::algebra::sparse::{Combine, Padded, Sparse};
 use crate::discretisation::Rows;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
@@ -53,38 +53,32 @@ impl NodalValues {
         transposed.starts.windows(2).map(mean).collect()
     }
 
-    /// Tᵀ r into `forces` and Qᵀ r into `rest`.
-    pub fn to_values<const D: usize>(
-        &self,
-        r: &[[f64; D]],
-        forces: &mut [[f64; D]],
-        rest: &mut [[f64; D]],
-    ) {
-        let ([_, phi], [_, local]) = (&self.phi, &self.local);
-        local.product(r, forces, |entry, sum| *entry = sum);
-        rest.copy_from_slice(r);
-        phi.product(forces, rest, |entry, sum| *entry -= sum);
-        local.product(rest, forces, |entry, sum| *entry += sum);
-    }
-
-    /// T v + Q rest, into `result`.
-    pub fn to_parameters<const D: usize>(
-        &self,
-        v: &[[f64; D]],
-        mut rest: Vec<[f64; D]>,
-        result: &mut [[f64; D]],
-    ) {
-        let ([phi, _], [local, _]) = (&self.phi, &self.local);
-        local.product(v, result, |entry, sum| *entry = sum);
-        let mut values = vec![[0.0; D]; v.len()];
-        for (rest, result) in rest.iter_mut().zip(result.iter_mut()) {
-            for (rest, result) in rest.iter_mut().zip(result) {
+    /// T D⁻¹ Tᵀ r + Q E⁻¹ Qᵀ r with the inverses of D and E, one number for each node.
+    pub fn apply(&self, r: &[Padded], inverses: impl Fn(usize) -> [f64; 2]) -> Vec<Padded> {
+        let ([phi, phi_t], [local, local_t]) = (&self.phi, &self.local);
+        // Tᵀ r and Qᵀ r.
+        let mut values = vec![[0.0; 4]; r.len()];
+        let mut rest = r.to_vec();
+        local_t.product(r, &mut values, Combine::Replace);
+        phi_t.product(&values, &mut rest, Combine::Subtract);
+        local_t.product(&rest, &mut values, Combine::Add);
+        for (a, (values, rest)) in values.iter_mut().zip(&mut rest).enumerate() {
+            let [value, hidden] = inverses(a);
+            values.iter_mut().for_each(|x| *x *= value);
+            rest.iter_mut().for_each(|x| *x *= hidden);
+        }
+        // T v + Q w = 2 S v + w − S Φ (S v + w).
+        let mut result = vec![[0.0; 4]; r.len()];
+        local.product(&values, &mut result, Combine::Replace);
+        for (result, rest) in result.iter_mut().zip(&mut rest) {
+            for (result, rest) in result.iter_mut().zip(rest) {
                 *rest += *result;
                 *result += *rest;
             }
         }
-        phi.product(&rest, &mut values, |entry, sum| *entry = sum);
-        local.product(&values, result, |entry, sum| *entry -= sum);
+        phi.product(&rest, &mut values, Combine::Replace);
+        local.product(&values, &mut result, Combine::Subtract);
+        result
     }
 }
 

@@ -4,15 +4,15 @@
 
 use super::coarse_space::{CoarseSpace, Held};
 use super::nodal_values::NodalValues;
+use crate::algebra::sparse::{packed, padded};
 use crate::model::Model;
 
 /// Flexibility of parameters without values over that of values \[–\].
 const HIDDEN: f64 = 50.0;
 
-/// B = T (D⁻¹ + P A₀⁻¹ Pᵀ) Tᵀ + 50 Q D⁻¹ Qᵀ: from forces on nodal parameters to those on
-/// nodal values, there the inverse of the diagonal and of the stiffness of smooth
-/// displacements, and back; the last term is for parameters without values (method book,
-/// eq. 21.5).
+/// B = T D⁻¹ Tᵀ + 50 Q D⁻¹ Qᵀ + P A₀⁻¹ Pᵀ: from forces on nodal parameters to those on nodal
+/// values, there the inverse of the diagonal, and back; the second term is for parameters
+/// without values, the last one for smooth displacements (method book, eq. 21.5).
 pub(super) struct Preconditioner {
     values: NodalValues,
     coarse: CoarseSpace,
@@ -37,27 +37,16 @@ impl Preconditioner {
         self.coarse.factor(model, held, shift);
     }
 
-    /// B r \[m\].
+    /// B r \[m\]; its two parts at the same time.
     pub fn apply(&mut self, components: usize, r: &[f64]) -> Vec<f64> {
-        let mut result = vec![0.0; r.len()];
-        match components {
-            2 => self.apply_in::<2>(r, &mut result),
-            _ => self.apply_in::<3>(r, &mut result),
+        let Preconditioner { values, coarse, flexibility } = self;
+        let r = padded(r, components);
+        let inverses = |a: usize| [flexibility[a], HIDDEN * flexibility[a]];
+        let (mut moved, smooth) =
+            rayon::join(|| values.apply(&r, inverses), || coarse.apply(components, &r));
+        for (moved, smooth) in moved.iter_mut().flatten().zip(smooth.as_flattened()) {
+            *moved += smooth;
         }
-        result
-    }
-
-    fn apply_in<const D: usize>(&mut self, r: &[f64], result: &mut [f64]) {
-        let (r, result) = (r.as_chunks::<D>().0, result.as_chunks_mut::<D>().0);
-        let mut forces = vec![[0.0; D]; r.len()];
-        let mut rest = vec![[0.0; D]; r.len()];
-        self.values.to_values(r, &mut forces, &mut rest);
-        let mut moved = forces.clone();
-        for ((moved, rest), flexibility) in moved.iter_mut().zip(&mut rest).zip(&self.flexibility) {
-            moved.iter_mut().for_each(|x| *x *= flexibility);
-            rest.iter_mut().for_each(|x| *x *= HIDDEN * flexibility);
-        }
-        self.coarse.add(&forces, &mut moved);
-        self.values.to_parameters(&moved, rest, result);
+        packed(&moved, components)
     }
 }
