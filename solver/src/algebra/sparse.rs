@@ -118,17 +118,16 @@ fn row_product<S: Simd>(simd: S, columns: &[u32], values: &[f32], field: &[Padde
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The vectors of a field of `components` in space or in a plane, padded.
-pub(crate) fn padded(field: &[f64], components: usize) -> Vec<Padded> {
-    let vector = |packed: &[f64]| {
-        let mut vector = [0.0; 4];
+/// Pads the vectors of a field of `components`, in space or in a plane.
+pub(crate) fn pad(field: &[f64], components: usize, padded: &mut Vec<Padded>) {
+    padded.resize(field.len() / components, [0.0; 4]);
+    for (vector, packed) in padded.iter_mut().zip(field.chunks_exact(components)) {
         vector[..components].copy_from_slice(packed);
-        vector
-    };
-    field.chunks_exact(components).map(vector).collect()
+    }
 }
 
-/// A padded field without its padding.
-pub(crate) fn packed(field: &[Padded], components: usize) -> Vec<f64> {
-    field.iter().flat_map(|vector| &vector[..components]).copied().collect()
+/// Takes the padding away.
+pub(crate) fn unpad(padded: &[Padded], components: usize, field: &mut Vec<f64>) {
+    field.clear();
+    field.extend(padded.iter().flat_map(|vector| &vector[..components]));
 }

@@ -1,7 +1,7 @@
 //! The stiffness at rest of smooth displacements.
 #![allow(non_snake_case)]
 
-use crate::algebra::sparse::{Combine, Padded, Sparse, packed, padded};
+use crate::algebra::sparse::{Combine, Padded, Sparse, pad, unpad};
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::spline_lattice::Lattice;
 use crate::algebra::tensor::Vector3;
@@ -90,16 +90,17 @@ impl CoarseSpace {
         }
     }
 
-    /// P A₀⁻¹ Pᵀ r.
-    pub fn apply(&mut self, components: usize, r: &[Padded]) -> Vec<Padded> {
-        let mut result = vec![[0.0; 4]; r.len()];
-        let Some(cholesky) = &self.cholesky else { return result };
+    /// P A₀⁻¹ Pᵀ r into `result`.
+    pub fn apply(&mut self, components: usize, r: &[Padded], result: &mut Vec<Padded>) {
+        result.resize(r.len(), [0.0; 4]);
+        let Some(cholesky) = &self.cholesky else { return result.fill([0.0; 4]) };
         let mut moments = vec![[0.0; 4]; self.free.len()];
         self.values[1].product(r, &mut moments, Combine::Replace);
-        let mut moments = packed(&moments, components);
-        cholesky.solve(&mut moments, &mut self.scratch);
-        self.values[0].product(&padded(&moments, components), &mut result, Combine::Replace);
-        result
+        let mut right = Vec::with_capacity(components * moments.len());
+        unpad(&moments, components, &mut right);
+        cholesky.solve(&mut right, &mut self.scratch);
+        pad(&right, components, &mut moments);
+        self.values[0].product(&moments, result, Combine::Replace);
     }
 }
 

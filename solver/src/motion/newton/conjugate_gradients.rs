@@ -165,7 +165,7 @@ impl Solver {
             *r = model.inertia[i / d] * z;
         }
         if let Some(preconditioner) = &mut self.preconditioner {
-            descent = preconditioner.apply(d, residual);
+            preconditioner.apply(d, residual, &mut descent);
             free.project(&mut descent);
         }
         descent

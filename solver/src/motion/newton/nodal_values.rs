@@ -53,32 +53,38 @@ impl NodalValues {
         transposed.starts.windows(2).map(mean).collect()
     }
 
-    /// T D⁻¹ Tᵀ r + Q E⁻¹ Qᵀ r with the inverses of D and E, one number for each node.
-    pub fn apply(&self, r: &[Padded], inverses: impl Fn(usize) -> [f64; 2]) -> Vec<Padded> {
+    /// T D⁻¹ Tᵀ r + Q E⁻¹ Qᵀ r into the last of the buffers, with the inverses of D and E, one
+    /// number for each node.
+    pub fn apply(
+        &self,
+        r: &[Padded],
+        inverses: impl Fn(usize) -> [f64; 2],
+        [values, rest, result]: &mut [Vec<Padded>; 3],
+    ) {
         let ([phi, phi_t], [local, local_t]) = (&self.phi, &self.local);
+        values.resize(r.len(), [0.0; 4]);
+        result.resize(r.len(), [0.0; 4]);
         // Tᵀ r and Qᵀ r.
-        let mut values = vec![[0.0; 4]; r.len()];
-        let mut rest = r.to_vec();
-        local_t.product(r, &mut values, Combine::Replace);
-        phi_t.product(&values, &mut rest, Combine::Subtract);
-        local_t.product(&rest, &mut values, Combine::Add);
-        for (a, (values, rest)) in values.iter_mut().zip(&mut rest).enumerate() {
+        rest.clear();
+        rest.extend_from_slice(r);
+        local_t.product(r, values, Combine::Replace);
+        phi_t.product(values, rest, Combine::Subtract);
+        local_t.product(rest, values, Combine::Add);
+        for (a, (values, rest)) in values.iter_mut().zip(&mut *rest).enumerate() {
             let [value, hidden] = inverses(a);
             values.iter_mut().for_each(|x| *x *= value);
             rest.iter_mut().for_each(|x| *x *= hidden);
         }
         // T v + Q w = 2 S v + w − S Φ (S v + w).
-        let mut result = vec![[0.0; 4]; r.len()];
-        local.product(&values, &mut result, Combine::Replace);
-        for (result, rest) in result.iter_mut().zip(&mut rest) {
+        local.product(values, result, Combine::Replace);
+        for (result, rest) in result.iter_mut().zip(&mut *rest) {
             for (result, rest) in result.iter_mut().zip(rest) {
                 *rest += *result;
                 *result += *rest;
             }
         }
-        phi.product(&rest, &mut values, Combine::Replace);
-        local.product(&values, &mut result, Combine::Subtract);
-        result
+        phi.product(rest, values, Combine::Replace);
+        local.product(values, result, Combine::Subtract);
     }
 }
 

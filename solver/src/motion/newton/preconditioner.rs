@@ -4,7 +4,7 @@
 
 use super::coarse_space::{CoarseSpace, Held};
 use super::nodal_values::NodalValues;
-use crate::algebra::sparse::{packed, padded};
+use crate::algebra::sparse::{Padded, pad, unpad};
 use crate::model::Model;
 
 /// Flexibility of parameters without values over that of values \[–\].
@@ -18,6 +18,11 @@ pub(super) struct Preconditioner {
     coarse: CoarseSpace,
     /// D⁻¹ \[m/N\].
     flexibility: Vec<f64>,
+    /// What it is applied to, its smooth part, and what the other part needs; kept, for memory
+    /// that is new each time costs as much as a product.
+    padded: Vec<Padded>,
+    smooth: Vec<Padded>,
+    parts: [Vec<Padded>; 3],
 }
 
 impl Preconditioner {
@@ -29,6 +34,9 @@ impl Preconditioner {
             values,
             coarse: CoarseSpace::new(model),
             flexibility: stiffness.iter().map(|k| 1.0 / k).collect(),
+            padded: Vec::new(),
+            smooth: Vec::new(),
+            parts: Default::default(),
         })
     }
 
@@ -37,16 +45,19 @@ impl Preconditioner {
         self.coarse.factor(model, held, shift);
     }
 
-    /// B r \[m\]; its two parts at the same time.
-    pub fn apply(&mut self, components: usize, r: &[f64]) -> Vec<f64> {
-        let Preconditioner { values, coarse, flexibility } = self;
-        let r = padded(r, components);
+    /// B r \[m\] into `product`; the two parts of B at the same time.
+    pub fn apply(&mut self, components: usize, r: &[f64], product: &mut Vec<f64>) {
+        let Preconditioner { values, coarse, flexibility, padded, smooth, parts } = self;
+        pad(r, components, padded);
         let inverses = |a: usize| [flexibility[a], HIDDEN * flexibility[a]];
-        let (mut moved, smooth) =
-            rayon::join(|| values.apply(&r, inverses), || coarse.apply(components, &r));
+        rayon::join(
+            || values.apply(padded, inverses, parts),
+            || coarse.apply(components, padded, smooth),
+        );
+        let [.., moved] = parts;
         for (moved, smooth) in moved.iter_mut().flatten().zip(smooth.as_flattened()) {
             *moved += smooth;
         }
-        packed(&moved, components)
+        unpad(moved, components, product);
     }
 }
