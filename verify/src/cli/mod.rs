@@ -7,6 +7,7 @@ mod explore;
 mod init;
 mod inspect;
 mod load;
+mod manual;
 mod messages;
 mod migrate;
 mod progress;
@@ -27,7 +28,7 @@ use common::{ARGUMENTS, COULD_NOT_RUN, Common, Format, STOPPED, arguments};
 use explore::{budget, runs, tune};
 use std::ffi::OsString;
 use std::process::ExitCode;
-use streams::{or_reader_has_ended, print_data};
+use streams::or_reader_has_ended;
 
 /// Meshless soft-tissue solver with its verification.
 ///
@@ -108,6 +109,8 @@ enum Command {
     Bench(bench::BenchArgs),
     /// Print a completion script for a shell.
     Completions { shell: clap_complete::Shell },
+    /// Print the manual page of the program, or write a page for every command.
+    Man(manual::ManArgs),
 }
 
 /// Runs the command line of this process and returns the exit code.
@@ -195,11 +198,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Reference(command) => reference::reference(command, &cli.common),
         Command::Protocol(command) => protocol::protocol(command, &cli.common),
         Command::Bench(arguments) => bench::bench(arguments, &cli.common),
-        Command::Completions { shell } => {
-            let mut script = Vec::new();
-            clap_complete::generate(*shell, &mut Cli::command(), "mtled", &mut script);
-            print_data(&String::from_utf8_lossy(&script))?;
-            Ok(0)
-        }
+        Command::Completions { shell } => manual::completions(*shell, Cli::command()),
+        Command::Man(arguments) => manual::man(arguments, Cli::command()),
     }
 }
