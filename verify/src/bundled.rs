@@ -1,4 +1,4 @@
-//! Cases and references that the program has with it.
+//! Cases, references and templates that the program has with it.
 
 use anyhow::Context;
 use mtled_checks::report::write_atomically;
@@ -6,6 +6,46 @@ use mtled_reference::LABEL_MAPS;
 use std::path::{Path, PathBuf};
 
 pub use mtled_reference::{CASES, REFERENCES};
+
+/// A commented case to start from.
+#[derive(Debug)]
+pub struct Template {
+    /// Name.
+    pub name: &'static str,
+    /// What it is a start for.
+    pub purpose: &'static str,
+    /// Text of the case file.
+    pub text: &'static str,
+}
+
+/// The templates, the simplest first.
+pub static TEMPLATES: [Template; 5] = [
+    Template {
+        name: "block",
+        purpose: "a block between two plates, at rest",
+        text: include_str!("templates/block.toml"),
+    },
+    Template {
+        name: "beam",
+        purpose: "a beam that swings under its weight, in time",
+        text: include_str!("templates/beam.toml"),
+    },
+    Template {
+        name: "ball",
+        purpose: "a ball that is pressed onto a floor, with contact",
+        text: include_str!("templates/ball.toml"),
+    },
+    Template {
+        name: "surface",
+        purpose: "a body inside a closed surface (STL)",
+        text: include_str!("templates/surface.toml"),
+    },
+    Template {
+        name: "image",
+        purpose: "a body from a label map (NRRD, NIfTI) with regions and a cavity",
+        text: include_str!("templates/image.toml"),
+    },
+];
 
 /// Cases that take seconds rather than parts of one: studies that solve every case many times
 /// leave them out.

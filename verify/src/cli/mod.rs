@@ -58,6 +58,7 @@ const EXAMPLES: &str = "Examples:
   mtled budget my_case.toml                     how large is the error, why, and at what cost?
   mtled tune my_case.toml --target-error 1%     the cheapest recipe with this accuracy
   mtled study convergence my_case.toml          errors over spacings, with orders
+  mtled case new block -o my_case.toml          a commented case to start from
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the bundled cases
   mtled runs export -o runs.parquet             the results of stored runs as a table
