@@ -5,35 +5,62 @@ use std::hash::{DefaultHasher, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// Of a packed crate, written by cargo: the commit it was packed from.
+const PACKED_FROM: &str = ".cargo_vcs_info.json";
+/// Digits of a commit that are recorded.
+const DIGITS: usize = 12;
+
 fn main() {
-    let first_line = |program: &str, arguments: &[&str]| {
-        let output = Command::new(program).args(arguments).output().ok()?;
-        let text = String::from_utf8(output.stdout).ok()?;
-        output.status.success().then(|| text.lines().next().unwrap_or("").to_string())
-    };
     let unknown = || "unknown".to_string();
-    let commit = first_line("git", &["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(unknown);
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_string());
     let compiler = first_line(&rustc, &["--version"]).unwrap_or_else(unknown);
+    let commit = packed_commit().or_else(checked_out_commit).unwrap_or_else(unknown);
     println!("cargo::rustc-env=MTLED_COMMIT={commit}");
     println!("cargo::rustc-env=MTLED_COMPILER={compiler}");
     println!("cargo::rustc-env=MTLED_SOURCES={:016x}", fingerprint());
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=../.git/HEAD");
-    println!("cargo::rerun-if-changed=../.git/logs/HEAD");
+}
+
+/// First line of what a program prints, if it succeeds.
+fn first_line(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.lines().next().unwrap_or("").to_string())
+}
+
+fn packed_commit() -> Option<String> {
+    let text = std::fs::read_to_string(PACKED_FROM).ok()?;
+    println!("cargo::rerun-if-changed={PACKED_FROM}");
+    let value = text.split_once("\"sha1\"")?.1.split('"').nth(1)?;
+    value.get(..DIGITS).map(String::from)
+}
+
+/// The commit of the checkout that this file belongs to: a crate that was unpacked inside
+/// another repository is none of its files.
+fn checked_out_commit() -> Option<String> {
+    first_line("git", &["ls-files", "--error-unmatch", "build.rs"])?;
+    for file in ["HEAD", "logs/HEAD"] {
+        let path = first_line("git", &["rev-parse", "--git-path", file])?;
+        println!("cargo::rerun-if-changed={path}");
+    }
+    first_line("git", &["rev-parse", &format!("--short={DIGITS}"), "HEAD"])
 }
 
 /// Of the solver and of what reads cases and makes records. DefaultHasher may change
 /// with the compiler, which may change results too.
 fn fingerprint() -> u64 {
-    let here = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").unwrap_or_default());
+    let variable = |name: &str| std::env::var(name).unwrap_or_else(|_| panic!("{name} is not set"));
+    // From the build script of the solver that this build is linked with, wherever it lies.
+    let solver = PathBuf::from(variable("DEP_MTLED_SOURCES"));
+    let here = PathBuf::from(variable("CARGO_MANIFEST_DIR"));
+    let own = ["accuracy", "files", "run", "scene", "explore/store"];
     let mut hasher = DefaultHasher::new();
-    for folder in
-        ["../solver/src", "src/accuracy", "src/files", "src/run", "src/scene", "src/explore/store"]
-    {
-        println!("cargo::rerun-if-changed={folder}");
-        for file in sources(&here.join(folder)) {
-            hasher.write(&std::fs::read(&file).unwrap_or_default());
+    for folder in std::iter::once(solver).chain(own.map(|name| here.join("src").join(name))) {
+        println!("cargo::rerun-if-changed={}", folder.display());
+        for file in sources(&folder) {
+            let bytes = std::fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+            // The same on checkouts with other line ends.
+            hasher.write(&bytes.into_iter().filter(|byte| *byte != b'\r').collect::<Vec<u8>>());
         }
     }
     hasher.finish()
@@ -41,7 +68,8 @@ fn fingerprint() -> u64 {
 
 /// All files below a folder, in the order of their names.
 fn sources(folder: &Path) -> Vec<PathBuf> {
-    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let entries = std::fs::read_dir(folder);
+    let entries = entries.unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.sort();
     let below = |path: PathBuf| if path.is_dir() { sources(&path) } else { vec![path] };

@@ -1,52 +1,55 @@
-//! Case files and references inside the binary, which needs no checkout.
+//! Cases, references and templates that the program has with it.
 
 use anyhow::Context;
 use mtled_checks::report::write_atomically;
+use mtled_reference::LABEL_MAPS;
 use std::path::{Path, PathBuf};
 
-/// Includes the files of cases by name.
-macro_rules! bundled {
-    ($($name:literal)*) => {
-        /// (name, text) of every case in `reference/cases`.
-        pub const CASES: &[(&str, &str)] =
-            &[$(($name, include_str!(concat!("../../reference/cases/", $name, ".toml")))),*];
+pub use mtled_reference::{CASES, REFERENCES};
 
-        /// (case, text) of every reference in `reference/data`.
-        pub const REFERENCES: &[(&str, &str)] =
-            &[$(($name, include_str!(concat!("../../reference/data/", $name, ".json")))),*];
-    };
+/// A commented case to start from.
+#[derive(Debug)]
+pub struct Template {
+    /// Name.
+    pub name: &'static str,
+    /// What it is a start for.
+    pub purpose: &'static str,
+    /// Text of the case file.
+    pub text: &'static str,
 }
 
-bundled! {
-    "bonded_block"
-    "brain_cube_compression"
-    "brain_cube_shear"
-    "brain_gravity"
-    "brain_shift"
-    "brain_slice"
-    "cook_membrane"
-    "cube_compression"
-    "cube_shear"
-    "falling_beam"
-    "indented_block"
-    "soft_inclusion"
-    "sphere_gravity"
-    "turek_hron_csm1"
-    "turek_hron_csm2"
-    "turek_hron_csm3"
-    "twisted_cylinder"
-    "uniaxial_bar"
-}
+/// The templates, the simplest first.
+pub static TEMPLATES: [Template; 5] = [
+    Template {
+        name: "block",
+        purpose: "a block between two plates, at rest",
+        text: include_str!("templates/block.toml"),
+    },
+    Template {
+        name: "beam",
+        purpose: "a beam that swings under its weight, in time",
+        text: include_str!("templates/beam.toml"),
+    },
+    Template {
+        name: "ball",
+        purpose: "a ball that is pressed onto a floor, with contact",
+        text: include_str!("templates/ball.toml"),
+    },
+    Template {
+        name: "surface",
+        purpose: "a body inside a closed surface (STL)",
+        text: include_str!("templates/surface.toml"),
+    },
+    Template {
+        name: "image",
+        purpose: "a body from a label map (NRRD, NIfTI) with regions and a cavity",
+        text: include_str!("templates/image.toml"),
+    },
+];
 
 /// Cases that take seconds rather than parts of one: studies that solve every case many times
 /// leave them out.
 pub const LARGE: [&str; 2] = ["brain_gravity", "brain_shift"];
-
-/// (file, bytes) of the label maps in `reference/brain`.
-const LABEL_MAPS: [(&str, &[u8]); 2] = [
-    ("brain.nrrd", include_bytes!("../../reference/brain/brain.nrrd")),
-    ("slice.nrrd", include_bytes!("../../reference/brain/slice.nrrd")),
-];
 
 /// Writes the bundled cases to `dir/cases` and the label maps to `dir/brain`,
 /// where the cases look for them; returns the folder of the cases.

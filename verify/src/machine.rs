@@ -9,7 +9,7 @@ pub fn provenance() -> Provenance {
         version: env!("CARGO_PKG_VERSION").to_string(),
         commit: env!("MTLED_COMMIT").to_string(),
         compiler: env!("MTLED_COMPILER").to_string(),
-        processor: processor_field("model name").unwrap_or_else(|| std::env::consts::ARCH.into()),
+        processor: processor(),
         processor_features: features(),
         threads: rayon::current_num_threads(),
         date: date(),
@@ -76,11 +76,32 @@ fn processor_field(key: &str) -> Option<String> {
     Some(line.split(':').nth(1)?.trim().to_string())
 }
 
+/// The processor's own name, or that of its kind.
+fn processor() -> String {
+    processor_field("model name").or_else(brand).unwrap_or_else(|| std::env::consts::ARCH.into())
+}
+
+/// What systems other than Linux call the processor.
+fn brand() -> Option<String> {
+    let mut system = sysinfo::System::new();
+    system.refresh_cpu_list(sysinfo::CpuRefreshKind::nothing());
+    Some(system.cpus().first()?.brand().trim().to_string()).filter(|brand| !brand.is_empty())
+}
+
 /// Vector extensions that matter to the solver.
 fn features() -> String {
-    let flags = processor_field("flags").unwrap_or_default();
-    let has = |name: &&str| flags.split(' ').any(|flag| flag == *name);
-    ["sse2", "avx2", "fma", "avx512f"].into_iter().filter(has).collect::<Vec<_>>().join(" ")
+    #[cfg(target_arch = "x86_64")]
+    let has = [
+        ("sse2", is_x86_feature_detected!("sse2")),
+        ("avx2", is_x86_feature_detected!("avx2")),
+        ("fma", is_x86_feature_detected!("fma")),
+        ("avx512f", is_x86_feature_detected!("avx512f")),
+    ];
+    #[cfg(target_arch = "aarch64")]
+    let has = [("neon", std::arch::is_aarch64_feature_detected!("neon"))];
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    let has: [(&str, bool); 0] = [];
+    has.into_iter().filter(|(_, has)| *has).map(|(name, _)| name).collect::<Vec<_>>().join(" ")
 }
 
 /// Today as YYYY-MM-DD, UTC.

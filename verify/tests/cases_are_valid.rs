@@ -5,9 +5,9 @@ use mtled::discretisation::nodes::node_cloud;
 use mtled::geometry::Extent;
 use mtled::problem::{Cloud, Dimension, Motion, Prescribed};
 use mtled_verify::bundled::LARGE;
-use mtled_verify::scene::{Case, ProbeKind, parse_case, read_case, schema};
+use mtled_verify::scene::{Case, parse_case, read_case, schema};
 use sha2::{Digest, Sha256};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 fn cases() -> PathBuf {
@@ -130,10 +130,31 @@ fn keys_of_a_case_are_found_by_index_and_by_name() {
 }
 
 #[test]
+fn positions_of_a_lattice_outside_the_body_are_left_out_and_counted_on_any_cloud() {
+    let ball = |spacing: f64| {
+        let text = format!(
+            "geometry.shape = {{ sphere = {{ centre = [0.0, 0.0, 0.0], radius = 0.1 }} }}\n\
+             material.tissue = {{ law = \"neo_hookean_log_j\", density = 1000.0, \
+             young_modulus = 3000.0, poisson_ratio = 0.45 }}\n\
+             discretisation = {{ cloud = \"regular\", spacing = {spacing} }}\n\
+             time.method = \"static\"\n\
+             prescribe = [{{ name = \"all\", of = \"surface\", where = \"all\", \
+             displacement = {{ x = 0.0 }} }}]\n\
+             probe = [{{ name = \"grid\", lattice = {{ min = [-0.1, -0.1, -0.1], \
+             max = [0.1, 0.1, 0.1], counts = [3, 3, 3] }} }}]\n"
+        );
+        parse_case(&text, "ball.toml", Path::new(".")).unwrap().probes[0].kind.clone()
+    };
+    // The centre and the six poles remain.
+    assert_eq!((ball(0.02).count(), ball(0.02).left_out()), (7, 20));
+    assert_eq!(ball(0.02), ball(0.05));
+}
+
+#[test]
 fn a_lattice_lists_its_positions_with_x_fastest() {
     let case = case("cube_compression");
     let lattice = &case.probes.iter().find(|probe| probe.name == "lattice").unwrap().kind;
-    assert!(matches!(lattice, ProbeKind::Lattice { counts: [11, 11, 11], .. }));
+    assert!(lattice.count() == 11 * 11 * 11 && lattice.left_out() == 0);
     let positions = lattice.positions();
     assert_eq!(positions.len(), 1331);
     assert!((positions[1].x - 0.01).abs() < 1e-15 && positions[1].y == 0.0);

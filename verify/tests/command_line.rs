@@ -317,6 +317,16 @@ fn a_reader_that_ends_early_is_no_error() {
     assert!(!err.contains("panicked"), "{err}");
 }
 
+#[test]
+fn the_summary_counts_positions_of_a_lattice_that_lie_outside_the_body() {
+    let lattice = "lattice = { min = [0.0, 0.0, 0.0], max = [0.1, 0.1, 0.3], counts = [2, 2, 4] }";
+    let (dir, case) = case_with("point = [0.05, 0.05, 0.1]", lattice);
+    let (code, summary, message) = solve(&case, &dir.path().join("out"), &["--no-error-bar"]);
+    assert_eq!(code, 0, "{message}");
+    assert!(summary.contains("lattice \"top\": 8 of 16 positions are recorded"), "{summary}");
+    assert_eq!(result(&dir.path().join("out"))["probes"][0]["left_out"], 8);
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_leaves_complete_files() {

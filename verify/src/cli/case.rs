@@ -5,17 +5,26 @@ use super::load::{SetArgs, located};
 use super::messages::place;
 use super::migrate::{MigrateArgs, migrate};
 use super::streams::{print_data, print_json, print_text};
-use crate::bundled::CASES;
+use crate::bundled::{CASES, TEMPLATES, Template};
 use crate::run::{load, prepare_to_run};
 use crate::scene::{Diagnostic, Mistakes, Override, schema};
 use anyhow::{Result, bail};
 use clap::Subcommand;
 use mtled_checks::escape::printable;
+use mtled_checks::report::write_atomically;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Subcommand)]
 pub enum CaseCommand {
+    /// Print a commented case to start from, or write it to a file.
+    New {
+        /// Kind of case; without one the kinds are listed.
+        template: Option<String>,
+        /// A file that is not there yet.
+        #[arg(short, long, requires = "template")]
+        out: Option<PathBuf>,
+    },
     /// Report the mistakes in case files with file, line and key.
     Check {
         /// Case files, or names of bundled cases.
@@ -39,6 +48,8 @@ pub enum CaseCommand {
 
 pub fn case(command: &CaseCommand, common: &Common) -> Result<u8> {
     match command {
+        CaseCommand::New { template: None, .. } => list_templates(common)?,
+        CaseCommand::New { template: Some(name), out } => new(name, out.as_deref(), common)?,
         CaseCommand::Check { files, set } => return check(files, &set.overrides, common),
         CaseCommand::Migrate(arguments) => return migrate(arguments, common),
         CaseCommand::List => {
@@ -59,6 +70,35 @@ pub fn case(command: &CaseCommand, common: &Common) -> Result<u8> {
         CaseCommand::Schema => print_data(&format!("{}\n", schema()))?,
     }
     Ok(0)
+}
+
+fn list_templates(common: &Common) -> Result<()> {
+    let json = || {
+        let row =
+            |template: &Template| json!({ "name": template.name, "purpose": template.purpose });
+        Ok(format!("{:#}\n", TEMPLATES.iter().map(row).collect::<Value>()))
+    };
+    let line = |template: &Template| format!("{:<10}{}\n", template.name, template.purpose);
+    common.print_result(&json, &|| TEMPLATES.iter().map(line).collect())
+}
+
+fn new(name: &str, out: Option<&Path>, common: &Common) -> Result<()> {
+    let Some(template) = TEMPLATES.iter().find(|template| template.name == name) else {
+        let names: Vec<&str> = TEMPLATES.iter().map(|template| template.name).collect();
+        bail!("there is no template \"{name}\"; there are {}", names.join(", "))
+    };
+    let Some(file) = out else {
+        let json = || Ok(format!("{}\n", json!({ "name": name, "text": template.text })));
+        return common.print_result(&json, &|| template.text.to_string());
+    };
+    if file.exists() {
+        bail!("{} is there already; give another name", file.display());
+    }
+    write_atomically(file, template.text.as_bytes())?;
+    let shown = file.display().to_string();
+    common.print_summary(&|| Ok(format!("{}\n", json!({ "written": shown }))), &|| {
+        format!("written: {0}\nnext: mtled case check {0}\n", printable(&shown))
+    })
 }
 
 /// What is known about a case file.

@@ -7,6 +7,7 @@ mod explore;
 mod init;
 mod inspect;
 mod load;
+mod manual;
 mod messages;
 mod migrate;
 mod progress;
@@ -27,7 +28,7 @@ use common::{ARGUMENTS, COULD_NOT_RUN, Common, Format, STOPPED, arguments};
 use explore::{budget, runs, tune};
 use std::ffi::OsString;
 use std::process::ExitCode;
-use streams::{or_reader_has_ended, print_data};
+use streams::or_reader_has_ended;
 
 /// Meshless soft-tissue solver with its verification.
 ///
@@ -57,6 +58,7 @@ const EXAMPLES: &str = "Examples:
   mtled budget my_case.toml                     how large is the error, why, and at what cost?
   mtled tune my_case.toml --target-error 1%     the cheapest recipe with this accuracy
   mtled study convergence my_case.toml          errors over spacings, with orders
+  mtled case new block -o my_case.toml          a commented case to start from
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the bundled cases
   mtled runs export -o runs.parquet             the results of stored runs as a table
@@ -108,6 +110,8 @@ enum Command {
     Bench(bench::BenchArgs),
     /// Print a completion script for a shell.
     Completions { shell: clap_complete::Shell },
+    /// Print the manual page of the program, or write a page for every command.
+    Man(manual::ManArgs),
 }
 
 /// Runs the command line of this process and returns the exit code.
@@ -196,11 +200,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Reference(command) => reference::reference(command, &cli.common),
         Command::Protocol(command) => protocol::protocol(command, &cli.common),
         Command::Bench(arguments) => bench::bench(arguments, &cli.common),
-        Command::Completions { shell } => {
-            let mut script = Vec::new();
-            clap_complete::generate(*shell, &mut Cli::command(), "mtled", &mut script);
-            print_data(&String::from_utf8_lossy(&script))?;
-            Ok(0)
-        }
+        Command::Completions { shell } => manual::completions(*shell, Cli::command()),
+        Command::Man(arguments) => manual::man(arguments, Cli::command()),
     }
 }

@@ -257,7 +257,7 @@ mod tests {
 
     #[test]
     fn sympy_derives_the_same_body_forces_from_the_strain_energies() {
-        let text = include_str!("../../../reference/manufactured/body_force.json");
+        let text = mtled_reference::MANUFACTURED_BODY_FORCES;
         let file: File = serde_json::from_str(text).unwrap();
         assert!(file.rows.len() >= 30);
         for row in file.rows {

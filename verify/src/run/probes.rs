@@ -1,8 +1,10 @@
-//! Centres of mass as weighted sums of nodal displacements.
+//! Centres of mass as weighted sums of nodal displacements, and what is said of lattices.
 
+use crate::scene::{Case, Probe};
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Discretisation;
 use mtled::problem::Problem;
+use mtled_checks::escape::printable;
 
 /// x_c = X_c + Σ_a s_a u_a: the centre of mass of a region.
 #[derive(Debug, Clone)]
@@ -50,4 +52,18 @@ pub fn centres_of_mass(problem: &Problem, discretisation: &Discretisation) -> Ve
         centre.weights.iter_mut().for_each(|weight| *weight /= centre.mass);
     }
     centres
+}
+
+/// A line for every lattice that reaches beyond the body.
+pub fn left_out_text(case: &Case) -> Vec<String> {
+    let reaching = case.probes.iter().filter(|probe| probe.kind.left_out() > 0);
+    let line = |probe: &Probe| {
+        format!(
+            "  lattice \"{}\": {} of {} positions are recorded, the others lie outside the body",
+            printable(&probe.name),
+            probe.kind.count(),
+            probe.kind.count() + probe.kind.left_out()
+        )
+    };
+    reaching.map(line).collect()
 }

@@ -4,6 +4,7 @@ use super::contact::{contacts_json, contacts_text};
 use super::error_bar::{Estimated, error_bars_json, error_bars_text, plus_minus};
 use super::memory::estimated_memory;
 use super::prepare::Prepared;
+use super::probes::left_out_text;
 use super::record::Recording;
 use super::solve::Solved;
 use super::work::Work;
@@ -228,6 +229,7 @@ fn probes_json(case: &Case, record: &Recording) -> Vec<Value> {
                 ProbeKind::Lattice { .. } => "lattice",
                 ProbeKind::CentreOfMass { .. } => "centre_of_mass",
             },
+            "left_out": probe.kind.left_out(),
             "reference_m": references.iter().map(array).collect::<Vec<_>>(),
             "displacement_m": displacements.iter().map(array).collect::<Vec<_>>(),
         })
@@ -354,7 +356,7 @@ pub fn summary_text(
             ));
         }
     }
-    lines.extend(contacts_text(case, contacts));
+    lines.extend(contacts_text(case, contacts).into_iter().chain(left_out_text(case)));
     lines.extend(bars.into_iter().flat_map(|bars| error_bars_text(case, bars)));
     let work = Work::of(solved);
     lines.push(format!(

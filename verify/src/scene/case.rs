@@ -46,14 +46,12 @@ pub struct Probe {
 pub enum ProbeKind {
     /// A reference position \[m\].
     Point(Vector3),
-    /// Equally spaced reference positions from `min` to `max` \[m\].
+    /// Those of equally spaced reference positions that lie in the body.
     Lattice {
-        /// Lower corner \[m\].
-        min: Vector3,
-        /// Upper corner \[m\].
-        max: Vector3,
-        /// Positions along x, y and z.
-        counts: [usize; 3],
+        /// \[m\], x fastest.
+        positions: Vec<Vector3>,
+        /// Number of positions outside the body.
+        left_out: usize,
     },
     /// The centre of mass of the region of this name.
     CentreOfMass {
@@ -67,7 +65,15 @@ impl ProbeKind {
     pub fn count(&self) -> usize {
         match self {
             ProbeKind::Point(_) | ProbeKind::CentreOfMass { .. } => 1,
-            ProbeKind::Lattice { counts, .. } => counts.iter().product(),
+            ProbeKind::Lattice { positions, .. } => positions.len(),
+        }
+    }
+
+    /// Number of positions that lie outside the body and are not recorded.
+    pub fn left_out(&self) -> usize {
+        match self {
+            ProbeKind::Lattice { left_out, .. } => *left_out,
+            _ => 0,
         }
     }
 
@@ -76,13 +82,14 @@ impl ProbeKind {
     pub fn positions(&self) -> Vec<Vector3> {
         match self {
             ProbeKind::Point(point) => vec![*point],
-            ProbeKind::Lattice { min, max, counts } => lattice(min, max, counts),
+            ProbeKind::Lattice { positions, .. } => positions.clone(),
             ProbeKind::CentreOfMass { .. } => Vec::new(),
         }
     }
 }
 
-fn lattice(min: &Vector3, max: &Vector3, counts: &[usize; 3]) -> Vec<Vector3> {
+/// Equally spaced positions from `min` to `max` \[m\], x fastest, `counts` along the axes.
+pub(super) fn lattice(min: &Vector3, max: &Vector3, counts: &[usize; 3]) -> Vec<Vector3> {
     let at = |axis: usize, index: usize| {
         let fraction = index as f64 / (counts[axis].max(2) - 1) as f64;
         min[axis] + (max[axis] - min[axis]) * fraction

@@ -19,7 +19,7 @@ pub use case::{Case, Outputs, Probe, ProbeKind};
 pub(crate) use deserialise::deserialise;
 pub use diagnostic::{Diagnostic, Location, Mistakes, one_error};
 pub(crate) use document::Document;
-pub use edit::{EditError, NotAnOverride, Override, edited, with_absolute_paths};
+pub use edit::{EditError, NotAnOverride, Override, edited, with_absolute_paths, with_paths_from};
 pub use knob::{Knob, Level, Levels, Setting};
 pub use migrate::migrated;
 pub use nearest::nearest;

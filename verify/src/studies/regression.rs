@@ -6,9 +6,6 @@ use mtled_checks::study::{Bound, Kind};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-const BASELINE: &str = include_str!("../../../reports/baseline.json");
-const FULL_BOUNDS: &str = include_str!("../../../reports/full_bounds.json");
-
 /// A bound that only the full suite has, or has instead of that of the quick suite.
 #[derive(Debug, Deserialize)]
 struct FullBound {
@@ -35,9 +32,10 @@ pub struct StoredBounds {
 impl StoredBounds {
     /// Those of the quick suite, or of the full one.
     pub fn read(full_suite: bool) -> Result<StoredBounds> {
-        let baseline: Baseline = serde_json::from_str(BASELINE).context("reports/baseline.json")?;
+        let baseline: Baseline =
+            serde_json::from_str(mtled_reports::BASELINE).context("reports/baseline.json")?;
         let full: Vec<FullBound> =
-            serde_json::from_str(FULL_BOUNDS).context("reports/full_bounds.json")?;
+            serde_json::from_str(mtled_reports::FULL_BOUNDS).context("reports/full_bounds.json")?;
         let date = baseline.history.last().map_or("unknown date", |entry| &entry.date);
         let source = format!("our own figure of {date}, reports/baseline.json");
         let regressions = baseline.checks.iter().filter(|check| check.kind == Kind::Regression);

@@ -153,7 +153,7 @@ fn draft_case(
     let clouds: Vec<Task> = (0..limits.clouds).map(|cloud| task(Job::Solve, cloud)).collect();
     let records = runner.records(&clouds)?;
     drafted.format.error = bounds(source, &reference, &records);
-    drafted.format.reference = Some(Path::new(REFERENCES).join(format!("{}.json", source.name)));
+    drafted.format.reference = Some(format!("{REFERENCES}/{}.json", source.name).into());
     for group in Group::ALL.into_iter().filter(|group| reference.has(&source.case, *group)) {
         if !drafted.format.error.contains_key(&group) {
             drafted.notes.push(format!(

@@ -4,8 +4,9 @@ use super::{html, json, junit, markdown, svg};
 use crate::escape::file_name;
 use crate::study::{Report, Table};
 use anyhow::{Context, Result};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
+use std::time::Duration;
 use tempfile::{Builder, NamedTempFile};
 
 /// Writes results.json, junit.xml, index.html, summary.md and every figure into
@@ -74,6 +75,23 @@ fn write_then_rename(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let mut file = temporary(folder)?;
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
+    rename(file, path)
+}
+
+/// Pauses before a rename is tried again \[ms\]. Windows refuses one for as long as another
+/// program reads the file or replaces it too; elsewhere none is.
+const PAUSES: &[u64] = if cfg!(windows) { &[1, 10, 100, 1000] } else { &[] };
+
+fn rename(mut file: NamedTempFile, path: &Path) -> std::io::Result<()> {
+    for pause in PAUSES {
+        match file.persist(path) {
+            Err(refused) if refused.error.kind() == ErrorKind::PermissionDenied => {
+                file = refused.file;
+                std::thread::sleep(Duration::from_millis(*pause));
+            }
+            other => return other.map(drop).map_err(|refused| refused.error),
+        }
+    }
     file.persist(path)?;
     Ok(())
 }

@@ -11,7 +11,7 @@ use crate::explore::store::{Source, Store, TaskRunner};
 use crate::explore::tune::{
     Goal, TuneRequest, Tuned, recommend, recommendation_study, tune, tune_study, tune_text,
 };
-use crate::scene::{Knob, Setting, with_absolute_paths};
+use crate::scene::{Knob, Setting, with_paths_from};
 use anyhow::{Result, bail};
 use clap::Args;
 use mtled_checks::escape::file_name;
@@ -139,7 +139,7 @@ fn write_case(request: &TuneRequest, tuned: &Tuned, out: &Path) -> Result<Option
     let mut settings = vec![Setting::word(Knob::Spacing, &format!("x{:.4}", winner.factor))];
     settings.extend(tuned.candidates[winner.candidate].settings.iter().cloned());
     let base = request.source.file.parent().unwrap_or(Path::new("."));
-    let text = with_absolute_paths(&request.source.text_with(&settings)?, base)?;
+    let text = with_paths_from(&request.source.text_with(&settings)?, base, out)?;
     let file = out.join(file_name(&format!("{}.tuned.toml", request.source.name)));
     write_atomically(&file, text.as_bytes())?;
     Ok(Some(file))

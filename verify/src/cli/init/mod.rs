@@ -136,7 +136,12 @@ fn cases(arguments: &InitArgs, folder: &Path, suite_file: &Path) -> Result<Vec<P
             folder.join("my_case.toml").display()
         );
     }
-    let relative = |path: &PathBuf| Ok(path.strip_prefix(&arguments.folder)?.to_path_buf());
+    // With slashes, since the suite may be read on another system.
+    let relative = |path: &PathBuf| {
+        let parts = path.strip_prefix(&arguments.folder)?.components();
+        let parts: Vec<_> = parts.map(|part| part.as_os_str().to_string_lossy()).collect();
+        Ok(PathBuf::from(parts.join("/")))
+    };
     found.iter().map(relative).collect()
 }
 

@@ -3,7 +3,7 @@
 use crate::files::LengthUnit;
 use crate::files::points::{Landmark, read_named_points};
 use crate::scene::build::builder::Builder;
-use crate::scene::case::{Outputs, Probe, ProbeKind, place};
+use crate::scene::case::{Outputs, Probe, ProbeKind, lattice, place};
 use crate::scene::format::{
     CaseFormat, LatticeFormat, MethodFormat, OutputFormat, PointsFormat, ProbeFormat, SolverFormat,
     TimeFormat,
@@ -16,6 +16,8 @@ use std::collections::HashSet;
 const MOST_POSITIONS: f64 = 1e6;
 const MOST_SAMPLES: f64 = 1e6;
 const MOST_FRAMES: f64 = 1e5;
+/// Of the size of a body, in distances from it \[–\].
+const ROUND_OFF: f64 = 1e-9;
 
 impl Builder<'_> {
     pub fn motion(&mut self, format: &TimeFormat) -> Motion {
@@ -140,10 +142,11 @@ impl Builder<'_> {
         let mut probes = Vec::new();
         for (n, row) in format.probe.iter().enumerate() {
             let key = format!("probe[{n}]");
-            let read = match (&row.points, &row.point, &row.lattice, &row.centre_of_mass) {
+            let mut read = match (&row.points, &row.point, &row.lattice, &row.centre_of_mass) {
                 (Some(points), None, None, None) => self.points(&key, &row.name, points),
                 _ => self.probe(&key, row, &regions).into_iter().collect(),
             };
+            self.leave_out(&mut read);
             if let Some(spacing) = spacing {
                 self.in_the_body(&key, &read, 0.5 * spacing);
             }
@@ -199,6 +202,25 @@ impl Builder<'_> {
         Some(Probe { name: row.name.clone(), kind })
     }
 
+    /// Leaves out the positions of lattices that lie outside the body, and round-off of its size
+    /// does not count. The spacing of the nodes has no say, so that clouds of a study record the
+    /// same positions. A lattice without any in the body is refused like a point.
+    fn leave_out(&self, probes: &mut [Probe]) {
+        let Some(body) = &self.section else { return };
+        let size = body.bounding_box().map_or(0.0, |(lower, upper)| {
+            (upper - lower).iter().filter(|edge| edge.is_finite()).fold(0.0, |a, b| b.max(a))
+        });
+        for probe in probes {
+            let ProbeKind::Lattice { positions, left_out } = &mut probe.kind else { continue };
+            let inside = |position: &&Vector3| body.signed_distance(position) <= ROUND_OFF * size;
+            let kept: Vec<Vector3> = positions.iter().filter(inside).copied().collect();
+            if !kept.is_empty() {
+                *left_out = positions.len() - kept.len();
+                *positions = kept;
+            }
+        }
+    }
+
     /// Refuses positions further outside the body than `margin` \[m\], where
     /// there is no displacement to record.
     fn in_the_body(&mut self, key: &str, probes: &[Probe], margin: f64) {
@@ -236,7 +258,10 @@ impl Builder<'_> {
             self.mistake(&format!("{key}.counts[2]"), "must be 1 in plane strain");
         }
         let (min, max) = (self.in_the_plane(&format.min), self.in_the_plane(&format.max));
-        (count <= MOST_POSITIONS).then_some(ProbeKind::Lattice { min, max, counts: format.counts })
+        (count <= MOST_POSITIONS).then(|| ProbeKind::Lattice {
+            positions: lattice(&min, &max, &format.counts),
+            left_out: 0,
+        })
     }
 
     /// A point, in plane strain moved along z into the cross-section.

@@ -8,6 +8,6 @@ mod settings;
 mod values;
 
 pub use overrides::{NotAnOverride, Overridden, Override};
-pub use paths::with_absolute_paths;
+pub use paths::{with_absolute_paths, with_paths_from};
 pub use settings::edited;
 pub use values::EditError;

@@ -93,7 +93,7 @@ pub struct PointsFormat {
     pub unit: Option<UnitFormat>,
 }
 
-/// Equally spaced reference positions, ends included.
+/// Equally spaced reference positions, ends included; those outside the body are left out.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeFormat {

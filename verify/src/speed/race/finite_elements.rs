@@ -112,8 +112,8 @@ const ONE_THREAD: [&str; 4] =
 impl FiniteElementCodes<'_> {
     /// The installed codes, with the bundled timings of the others.
     pub fn new(installed: &[Interpreter]) -> Result<FiniteElementCodes<'_>> {
-        let text = include_str!("../../../../reference/race/timings.json");
-        let stored = serde_json::from_str(text).context("reference/race/timings.json")?;
+        let stored = serde_json::from_str(mtled_reference::RACE_TIMINGS)
+            .context("reference/race/timings.json")?;
         Ok(FiniteElementCodes { installed, stored, described: Vec::new().into() })
     }
 

@@ -35,8 +35,6 @@ pub const FAULTS: &[(&str, &str)] = bundled![
     "20_neighbour_dropped",
 ];
 
-/// Written by `.ci/faults`.
-const RECORD: &str = include_str!("../../../../reports/faults.json");
 /// Number of checks that the table names.
 const NAMED: usize = 3;
 
@@ -76,7 +74,8 @@ struct TestedFault {
 }
 
 pub fn faults(_: &Workbench, study: &mut Study) -> Result<()> {
-    let record: FaultRecord = serde_json::from_str(RECORD).context("reports/faults.json")?;
+    let record: FaultRecord =
+        serde_json::from_str(mtled_reports::FAULTS).context("reports/faults.json")?;
     let stated: Vec<(&str, Fault)> = FAULTS
         .iter()
         .map(|(name, text)| {

@@ -1,0 +1,9 @@
+//! Tells the build scripts of the crates above where the sources of this solver lie: what they
+//! store of its results is keyed by a fingerprint of these. Cargo passes this on for packages
+//! with `links`, as `DEP_MTLED_SOURCES`.
+
+fn main() {
+    let folder = std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR");
+    println!("cargo::metadata=sources={folder}/src");
+    println!("cargo::rerun-if-changed=build.rs");
+}
