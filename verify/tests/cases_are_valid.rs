@@ -133,7 +133,7 @@ fn keys_of_a_case_are_found_by_index_and_by_name() {
 fn positions_of_a_lattice_outside_the_body_are_left_out_and_counted_on_any_cloud() {
     let ball = |spacing: f64| {
         let text = format!(
-            "geometry.shape = {{ sphere = {{ centre = [0.0, 0.0, 0.0], radius = 0.1 }} }}\n\
+            "title = \"Ball\"\ngeometry.shape = {{ sphere = {{ centre = [0.0, 0.0, 0.0], radius = 0.1 }} }}\n\
              material.tissue = {{ law = \"neo_hookean_log_j\", density = 1000.0, \
              young_modulus = 3000.0, poisson_ratio = 0.45 }}\n\
              discretisation = {{ cloud = \"regular\", spacing = {spacing} }}\n\
