@@ -5,5 +5,7 @@
 fn main() {
     let folder = std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR");
     println!("cargo::metadata=sources={folder}/src");
-    println!("cargo::rerun-if-changed=build.rs");
+    // With its folder: of a checkout that was moved, or of another that shares this target
+    // folder, the file is gone, and Cargo runs this anew.
+    println!("cargo::rerun-if-changed={folder}/build.rs");
 }

@@ -25,24 +25,26 @@ pub struct Footprint {
     pub neighbours: f64,
     /// Number of pieces of the boundary.
     pub panels: f64,
+    /// Number of those where displacements are prescribed.
+    pub held: f64,
     /// Memory at the peak of set-up and run, without what is recorded.
     pub bytes: f64,
 }
 
 /// Bytes of the program itself, 2e6 of them in development builds only; this and the
 /// following bytes at the peak are fitted to the measured bodies.
-const PROGRAM: f64 = 22.6e6;
-const PER_NODE: f64 = 1700.0;
-const PER_ENTRY: f64 = 82.0;
-const PER_PANEL: f64 = 380.0;
-const PER_PANEL_ENTRY: f64 = 14.0;
+const PROGRAM: f64 = 22.3e6;
+const PER_NODE: f64 = 1950.0;
+const PER_ENTRY: f64 = 63.0;
+const PER_PANEL: f64 = 650.0;
+/// What couples the nodes of parts where displacements are prescribed.
+const PER_HELD_NODE: f64 = 1500.0;
 /// Rows of φ and Grad φ: what stays, and the second copy of so many points for a while.
 const PER_ROW_ENTRY: f64 = 36.0;
 const BATCH: f64 = 16_384.0;
 /// The preconditioner of Newton's method: φ at the nodes and its approximate inverse, the
 /// splines and their factor.
-const PER_NEWTON_ENTRY: f64 = 84.0;
-const PER_NEWTON_NODE: f64 = 1500.0;
+const PER_NEWTON_ENTRY: f64 = 55.0;
 const PER_BATCH_ENTRY: f64 = 54.0;
 /// Panels over the boundary's area divided by their size², and those of an image or a
 /// function, which come from tetrahedra.
@@ -103,17 +105,21 @@ impl Footprint {
             _ => even,
         };
         let panels = samples.panels(problem, smallest);
-        let footprint = Footprint { nodes, points, neighbours, panels, bytes: 0.0 };
+        let held = panels * samples.held_share(problem);
+        let footprint = Footprint { nodes, points, neighbours, panels, held, bytes: 0.0 };
         Ok(footprint.with_bytes(problem))
     }
 
     /// From the counts of a discretisation.
     pub fn counted(problem: &Problem, discretisation: &Discretisation) -> Footprint {
+        let panels = &discretisation.surface.panels;
+        let held = panels.iter().filter(|panel| held_at(problem, &panel.centre)).count();
         let footprint = Footprint {
             nodes: discretisation.cloud.positions.len() as f64,
             points: discretisation.supports.len() as f64,
             neighbours: discretisation.mean_support(),
-            panels: discretisation.surface.panels.len() as f64,
+            panels: panels.len() as f64,
+            held: held as f64,
             bytes: 0.0,
         };
         footprint.with_bytes(problem)
@@ -127,10 +133,11 @@ impl Footprint {
         let set_up = PER_NODE * self.nodes
             + PER_ENTRY * entries
             + PER_BATCH_ENTRY * self.points.min(BATCH) * self.neighbours
-            + self.panels * (PER_PANEL + PER_PANEL_ENTRY * self.neighbours)
+            + PER_PANEL * self.panels
+            + PER_HELD_NODE * self.held.min(self.nodes)
             + problem.loads.pressures.len() as f64 * self.panels * PER_ROW_ENTRY * self.neighbours
             + match problem.by_newton() {
-                true => self.nodes * (PER_NEWTON_NODE + PER_NEWTON_ENTRY * self.neighbours),
+                true => PER_NEWTON_ENTRY * self.nodes * self.neighbours,
                 false => 0.0,
             }
             + shapes.kept;
@@ -144,6 +151,11 @@ impl Footprint {
         let entries = points * self.neighbours;
         PER_ROW_ENTRY * entries + PER_BATCH_ENTRY * points.min(BATCH) * self.neighbours
     }
+}
+
+/// Whether displacements are prescribed at a point of the boundary.
+fn held_at(problem: &Problem, X: &Vector3) -> bool {
+    problem.conditions.iter().any(|condition| condition.part.contains(X))
 }
 
 /// Every shape of a problem that is not in a selector.
@@ -205,12 +217,29 @@ impl SamplePoints {
         Ok(SamplePoints { positions, distances, volume: (0..d).map(|k| step[k]).product() })
     }
 
+    /// The distance \[m\] of samples next to the boundary.
+    fn near(&self, d: i32) -> f64 {
+        1.5 * self.volume.powf(1.0 / d as f64)
+    }
+
+    /// The samples next to the boundary.
+    fn near_boundary(&self, d: i32) -> impl Iterator<Item = &Vector3> {
+        let near = self.near(d);
+        let located = self.positions.iter().zip(&self.distances);
+        located.filter(move |(_, distance)| distance.abs() < near).map(|(X, _)| X)
+    }
+
+    /// The share of the boundary where displacements are prescribed.
+    fn held_share(&self, problem: &Problem) -> f64 {
+        let d = problem.dimension.components() as i32;
+        let held = self.near_boundary(d).filter(|X| held_at(problem, X)).count();
+        held as f64 / self.near_boundary(d).count().max(1) as f64
+    }
+
     /// Pieces of the boundary, from the volume next to it.
     fn panels(&self, problem: &Problem, smallest: f64) -> f64 {
         let d = problem.dimension.components() as i32;
-        let near = 1.5 * self.volume.powf(1.0 / d as f64);
-        let count = self.distances.iter().filter(|distance| distance.abs() < near).count();
-        let area = count as f64 * self.volume / (2.0 * near);
+        let area = self.near_boundary(d).count() as f64 * self.volume / (2.0 * self.near(d));
         let size = PANEL * smallest;
         let (size, crowding, triangles) = match &problem.body {
             Shape::Labels(field) => {

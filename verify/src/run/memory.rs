@@ -129,8 +129,9 @@ mod tests {
 
     #[test]
     fn a_body_that_does_not_fit_is_refused_with_its_numbers() {
-        let footprint =
-            Footprint { nodes: 1e6, points: 2e6, neighbours: 30.0, panels: 1e5, bytes: 12e9 };
+        let (nodes, points, neighbours) = (1e6, 2e6, 30.0);
+        let (panels, held, bytes) = (1e5, 1e3, 12e9);
+        let footprint = Footprint { nodes, points, neighbours, panels, held, bytes };
         assert!(refuse_beyond(footprint, 13e9).is_ok());
         let message = refuse_beyond(footprint, 8e9).unwrap_err().to_string();
         assert!(message.contains("about 12 GB") && message.contains("and 8 GB"), "{message}");
