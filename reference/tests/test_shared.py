@@ -106,6 +106,7 @@ def test_selections():
     tube = {"cylinder": {"base": [0, 0, -1], "axis": [0, 0, 1], "radius": 0.6, "height": 2.0}}
     assert selected({"shape": tube}, X, 0.0).tolist() == [True, True, False, False]
     assert inside({"difference": [ball, tube]}, X).tolist() == [False, False, True, False]
+    assert inside({"intersection": [ball, tube]}, X).tolist() == [True, True, False, False]
 
 
 def test_polygon_with_tolerance():

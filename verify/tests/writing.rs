@@ -146,6 +146,30 @@ fn files_that_cannot_be_completed_have_no_index() {
 }
 
 #[test]
+fn frames_and_samples_are_taken_exactly_at_the_times_of_a_case() {
+    let outputs = "[output]\ntimes = [0.0123, 0.1, 0.1001]\nhistory = 4\n";
+    let (_dir, folder) = folder_with(&[BLOCK, DYNAMIC, outputs, PROBE]);
+    assert_eq!(run(&folder, &["solve", "case.toml", "--out", "out"]).0, 0);
+    let collection = std::fs::read_to_string(folder.join("out/case.pvd")).unwrap();
+    let framed: Vec<f64> = (collection.split("timestep=\"").skip(1))
+        .map(|rest| rest.split('"').next().unwrap().parse().unwrap())
+        .collect();
+    let history = std::fs::read_to_string(folder.join("out/history.csv")).unwrap();
+    let rows = history.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
+    let sampled: Vec<f64> =
+        rows.map(|row| row.split(',').nth(1).unwrap().parse().unwrap()).collect();
+    let all_near = |found: &[f64], expected: &[f64]| {
+        found.len() == expected.len()
+            && found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= 1e-12)
+    };
+    assert!(all_near(&framed, &[0.0, 0.0123, 0.1, 0.1001, 0.2]), "{framed:?}");
+    // Besides these the histories have their equal parts, some of them a step late.
+    let at = |time: f64| sampled.iter().any(|sample| (sample - time).abs() <= 1e-12);
+    assert!([0.0, 0.0123, 0.1, 0.1001, 0.2].into_iter().all(at), "{sampled:?}");
+    assert!(sampled.len() >= 7, "{sampled:?}");
+}
+
+#[test]
 fn the_frames_of_a_static_run_are_numbered_and_at_most_as_many_as_requested() {
     let (_dir, folder) = folder_with(&[BLOCK, STATIC]);
     assert_eq!(run(&folder, &["solve", "case.toml", "--out", "out"]).0, 0);

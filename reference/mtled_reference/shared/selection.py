@@ -32,8 +32,9 @@ def selected(selector, positions: np.ndarray, tolerance: float) -> np.ndarray:
 def inside(shape: dict, positions: np.ndarray, tolerance: float = 0.0) -> np.ndarray:
     """Which of the positions (n, 3) [m] lie in the shape or within `tolerance` [m]."""
     ((kind, content),) = shape.items()
-    if kind == "union":
-        return np.logical_or.reduce([inside(s, positions, tolerance) for s in content])
+    if kind in ("union", "intersection"):
+        parts = [inside(part, positions, tolerance) for part in content]
+        return np.logical_or.reduce(parts) if kind == "union" else np.logical_and.reduce(parts)
     if kind == "difference":
         whole, hole = content
         return inside(whole, positions, tolerance) & ~inside(hole, positions, -tolerance)

@@ -60,7 +60,9 @@ impl Parts {
                 let triangles = surface.triangle_count() as f64;
                 self.add(surface, PER_TRIANGLE * triangles, PER_TRIANGLE_READING * triangles);
             }
-            Shape::Union(members) => members.iter().for_each(|member| self.add_shape(member)),
+            Shape::Union(members) | Shape::Intersection(members) => {
+                members.iter().for_each(|member| self.add_shape(member));
+            }
             Shape::Difference(body, hole) => {
                 self.add_shape(body);
                 self.add_shape(hole);

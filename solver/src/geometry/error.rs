@@ -18,8 +18,10 @@ pub enum GeometryError {
     TooFewPoints { count: usize },
     #[error("edges {first} and {second} of the polygon cross or touch")]
     PolygonCrosses { first: usize, second: usize },
-    #[error("the union has no members")]
-    EmptyUnion,
+    #[error("the {shape} has no members")]
+    NoMembers { shape: &'static str },
+    #[error("the members of the intersection have nothing in common")]
+    NothingInCommon,
     #[error("the {shape} is unbounded, so nodes or panels cannot cover its boundary")]
     Unbounded { shape: &'static str },
     #[error("the {shape} cannot be cut at z = {z} m into a plane cross-section")]

@@ -53,6 +53,10 @@ impl Shape {
             }
             Shape::HalfSpace { point, normal } => half_plane(point, normal, z).ok_or(unsupported),
             Shape::Union(members) => union_section(members, z, empty),
+            Shape::Intersection(members) => {
+                let sections: Result<_, _> = members.iter().map(|m| m.section_at(z)).collect();
+                Ok(Shape::Intersection(sections?))
+            }
             Shape::Difference(body, hole) => {
                 let body = body.section_at(z)?;
                 match hole.section_at(z) {

@@ -61,6 +61,8 @@ pub enum Shape {
     },
     /// All of these together.
     Union(Vec<Shape>),
+    /// What all of these have in common.
+    Intersection(Vec<Shape>),
     /// The first without the second.
     Difference(Box<Shape>, Box<Shape>),
     /// The voxels of some labels of a label map, with a smooth surface.
@@ -73,7 +75,7 @@ pub enum Shape {
 
 impl Shape {
     /// Signed distance \[m\]: negative inside. Exact for single shapes; for a
-    /// union exact outside, for a difference a bound of the right sign.
+    /// union exact outside, for an intersection or a difference a bound of the right sign.
     pub fn signed_distance(&self, X: &Vector3) -> f64 {
         match self {
             Shape::Box { min, max } => primitives::box_distance(X, min, max),
@@ -91,6 +93,9 @@ impl Shape {
             Shape::HalfSpace { point, normal } => (X - point).dot(normal),
             Shape::Union(members) => {
                 members.iter().map(|m| m.signed_distance(X)).fold(f64::INFINITY, f64::min)
+            }
+            Shape::Intersection(members) => {
+                members.iter().map(|m| m.signed_distance(X)).fold(f64::NEG_INFINITY, f64::max)
             }
             Shape::Difference(body, hole) => body.signed_distance(X).max(-hole.signed_distance(X)),
             Shape::Labels(field) => field.signed_distance(X),
@@ -116,6 +121,12 @@ impl Shape {
                     .iter()
                     .min_by(|a, b| a.signed_distance(X).total_cmp(&b.signed_distance(X)));
                 nearest.map_or_else(Vector3::x, |member| member.gradient(X))
+            }
+            Shape::Intersection(members) => {
+                let farthest = members
+                    .iter()
+                    .max_by(|a, b| a.signed_distance(X).total_cmp(&b.signed_distance(X)));
+                farthest.map_or_else(Vector3::x, |member| member.gradient(X))
             }
             Shape::Difference(body, hole) => {
                 if body.signed_distance(X) >= -hole.signed_distance(X) {
@@ -180,6 +191,10 @@ impl Shape {
                 let first = boxes.next()??;
                 boxes.try_fold(first, |(l, u), next| next.map(|(nl, nu)| (l.inf(&nl), u.sup(&nu))))
             }
+            Shape::Intersection(members) => {
+                let bounded = members.iter().filter_map(Shape::bounding_box);
+                bounded.reduce(|(l, u), (nl, nu)| (l.sup(&nl), u.inf(&nu)))
+            }
             Shape::Difference(body, _) => body.bounding_box(),
             Shape::Labels(field) => Some(field.bounding_box()),
             Shape::Surface(surface) => Some(surface.bounding_box()),
@@ -197,6 +212,7 @@ impl Shape {
             Shape::Polygon { .. } => "polygon",
             Shape::HalfSpace { .. } => "half-space",
             Shape::Union(_) => "union",
+            Shape::Intersection(_) => "intersection",
             Shape::Difference(..) => "difference",
             Shape::Labels(_) => "label map",
             Shape::Surface(_) => "surface",

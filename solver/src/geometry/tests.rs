@@ -217,10 +217,18 @@ fn panels_of_composites_have_the_area_of_what_is_left() {
     let cut = Shape::Difference(Box::new(cube(0.0)), Box::new(plane));
     assert!((area(&cut) - 4.0).abs() < 0.004, "{}", area(&cut));
     let ball = Shape::Sphere { centre: Vector3::zeros(), radius: 0.5 };
-    let bitten = Shape::Difference(Box::new(cube(0.0)), Box::new(ball));
+    let bitten = Shape::Difference(Box::new(cube(0.0)), Box::new(ball.clone()));
     // Three faces lose a quarter disc, an eighth of the sphere is new.
     let expected = 6.0 - 0.75 * PI * 0.25 + 0.5 * PI * 0.25;
     assert!((area(&bitten) / expected - 1.0).abs() < 2e-3, "{}", area(&bitten));
+    // What they have in common: overlapping, in one place, on one side of a plane, an eighth.
+    let common = |a: Shape, b: Shape| area(&Shape::Intersection(vec![a, b]));
+    assert!((common(cube(0.0), cube(0.5)) - 4.0).abs() < 1e-9);
+    assert!((common(cube(0.0), cube(0.0)) - 6.0).abs() < 1e-9);
+    let behind = Shape::HalfSpace { point: Vector3::new(0.5, 0.5, 0.5), normal: Vector3::x() };
+    assert!((common(cube(0.0), behind) - 4.0).abs() < 0.004);
+    let expected = 0.75 * PI * 0.25 + 0.5 * PI * 0.25;
+    assert!((common(cube(0.0), ball) / expected - 1.0).abs() < 1e-2);
 }
 
 /// Least and greatest distance to the nearest neighbour.
@@ -337,7 +345,12 @@ fn invalid_shapes_are_refused() {
     let half_space = Shape::HalfSpace { point: origin, normal: Vector3::x() };
     assert!(half_space.validate().is_ok());
     assert!(matches!(refused(half_space), GeometryError::Unbounded { .. }));
-    assert_eq!(refused(Shape::Union(vec![])), GeometryError::EmptyUnion);
+    let nothing = |shape| GeometryError::NoMembers { shape };
+    assert_eq!(refused(Shape::Union(vec![])), nothing("union"));
+    assert_eq!(refused(Shape::Intersection(vec![])), nothing("intersection"));
+    let ball = |x| Shape::Sphere { centre: Vector3::new(x, 0.0, 0.0), radius: 1.0 };
+    let apart = Shape::Intersection(vec![ball(0.0), ball(2.1)]);
+    assert_eq!(refused(apart), GeometryError::NothingInCommon);
 }
 
 #[test]

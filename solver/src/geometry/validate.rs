@@ -42,8 +42,19 @@ impl Shape {
                 finite("the half-space point", point)?;
                 unit("the half-space normal", normal)
             }
-            Shape::Union(members) if members.is_empty() => Err(GeometryError::EmptyUnion),
+            Shape::Union(members) | Shape::Intersection(members) if members.is_empty() => {
+                Err(GeometryError::NoMembers { shape: self.name() })
+            }
             Shape::Union(members) => members.iter().try_for_each(Shape::validate),
+            Shape::Intersection(members) => {
+                members.iter().try_for_each(Shape::validate)?;
+                match self.bounding_box() {
+                    Some((lower, upper)) if (0..3).any(|k| lower[k] >= upper[k]) => {
+                        Err(GeometryError::NothingInCommon)
+                    }
+                    _ => Ok(()),
+                }
+            }
             Shape::Difference(body, hole) => {
                 body.validate()?;
                 hole.validate()

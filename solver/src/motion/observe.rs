@@ -52,6 +52,12 @@ pub trait Observer {
         Continue::Yes
     }
 
+    /// The next time \[s\] at which a motion is to have a state: steps end there. None where
+    /// any step will do; a time that has passed counts as none.
+    fn awaited_time(&self) -> Option<f64> {
+        None
+    }
+
     /// Called where a run begins again from its first state by another method.
     fn restart(&mut self) {}
 

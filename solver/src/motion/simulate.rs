@@ -107,9 +107,10 @@ fn integrate(
     let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
     while !stopped && state.time < end * (1.0 - 1e-12) {
         control.reevaluate(model, state, &mut buffers);
-        let remaining = end - state.time;
-        // Whole steps to the end: the last one must not be a sliver, and
-        // round-off must not halve it.
+        let awaited = observer.awaited_time().filter(|time| *time > state.time);
+        let remaining = awaited.map_or(end, |time| time.min(end)) - state.time;
+        // Whole steps to the end or to a time of the observer: the last one must not be a
+        // sliver, and round-off must not halve it.
         let time_step = remaining / (remaining / control.time_step - 1e-9).ceil().max(1.0);
         let scheme = Scheme::central_difference(time_step, state.time_step, damping);
         let (now, then) = (state.time, state.time + time_step);

@@ -2,6 +2,7 @@
 
 import _thread
 import pickle
+import signal
 import threading
 import time
 
@@ -71,6 +72,8 @@ def test_every_error_is_an_mtled_error_and_can_be_sent_to_another_process():
 
 @pytest.mark.parametrize("spacing_m", [0.006, 0.0025], ids=["in the run", "in the set-up"])
 def test_ctrl_c_ends_a_run_at_once(spacing_m):
+    # A shell that starts programs in the background lets them ignore it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     case = mtled.load(CUBE, overrides={"discretisation.spacing": spacing_m, "time.solver": "relaxation"})
     pressed = []
     timer = threading.Timer(0.5, lambda: (pressed.append(time.monotonic()), _thread.interrupt_main()))

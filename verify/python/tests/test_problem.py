@@ -78,7 +78,7 @@ def test_dataclasses_have_all_keys_of_the_case_file_and_no_others():
     assert own(p.Problem) - {"shape"} | {"geometry", "dimension"} == keys(schema)
 
     shapes = {kind.kind: kind for kind in (p.Box, p.Cylinder, p.Sphere, p.Ellipsoid, p.Polygon, p.HalfSpace, p.Stl,
-                                           p.LabelMap, p.Union, p.Difference)}  # fmt: skip
+                                           p.LabelMap, p.Union, p.Intersection, p.Difference)}  # fmt: skip
     selections = {kind.kind: kind for kind in (p.Plane, p.HalfSpace, p.Box, p.Sphere, p.InShape, p.Label, p.Union,
                                                p.Intersection, p.Not)}  # fmt: skip
     amplitudes = {kind.kind: kind for kind in (p.Linear, p.Smooth, p.Table)}

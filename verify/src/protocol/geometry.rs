@@ -24,6 +24,8 @@ pub enum Shape {
     HalfSpace { point_m: Triple, normal: Triple },
     /// In at least one of these.
     Union { of: Vec<Shape> },
+    /// In all of these.
+    Intersection { of: Vec<Shape> },
     /// In the first, not in the second.
     Difference { of: Box<[Shape; 2]> },
     /// A closed surface from an STL file. The file has the given unit.
@@ -81,6 +83,9 @@ impl From<&ShapeFormat> for Shape {
             }
             ShapeFormat::Union(parts) => {
                 Shape::Union { of: parts.iter().map(Into::into).collect() }
+            }
+            ShapeFormat::Intersection(parts) => {
+                Shape::Intersection { of: parts.iter().map(Into::into).collect() }
             }
             ShapeFormat::Difference(whole, hole) => {
                 Shape::Difference { of: Box::new([(&**whole).into(), (&**hole).into()]) }

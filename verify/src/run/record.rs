@@ -65,7 +65,8 @@ enum Evaluator {
     Centre(MassCentre),
 }
 
-/// Progress at which a run may end \[–\]: time steps sum up to the end but for round-off.
+/// Progress at which a run may end, and share of a time at which it is reached \[–\]: time
+/// steps sum up to the end but for round-off.
 const FULL: f64 = 1.0 - 1e-12;
 
 /// States of a run at equal parts of its progress, the first and the last among them: at
@@ -75,6 +76,8 @@ const FULL: f64 = 1.0 - 1e-12;
 struct Series<T> {
     parts: usize,
     kept: Vec<T>,
+    /// Those that were asked for by their time, besides the equal parts.
+    asked: usize,
     /// Whether the last that is kept was taken at full progress. A run that goes on all the
     /// same, such as a relaxation whose residual is still too large, replaces it.
     full: bool,
@@ -82,21 +85,23 @@ struct Series<T> {
 
 impl<T> Series<T> {
     fn new(parts: usize) -> Series<T> {
-        Series { parts, kept: Vec::new(), full: false }
+        Series { parts, kept: Vec::new(), asked: 0, full: false }
     }
 
     /// Whether a state at this progress \[–\] is to be kept; `last` after which the run stops.
     fn is_due(&self, progress: f64, last: bool) -> bool {
-        let (parts, kept) = (self.parts as f64, self.kept.len() as f64);
+        let (parts, kept) = (self.parts as f64, (self.kept.len() - self.asked) as f64);
         let next = kept < parts && progress * parts >= kept;
         self.parts > 0 && (last || progress >= FULL || next)
     }
 
-    fn keep(&mut self, item: T, progress: f64) {
+    /// Keeps a state, `due` by its progress or asked for by its time.
+    fn keep(&mut self, item: T, progress: f64, due: bool) {
         if self.full {
             self.kept.pop();
         }
         self.full = progress >= FULL;
+        self.asked += !due as usize;
         self.kept.push(item);
     }
 }
@@ -110,6 +115,9 @@ pub struct Recorder<'a> {
     references: Vec<Vec<Vector3>>,
     samples: Series<Sample>,
     frames: Series<Frame>,
+    /// At which a frame and a sample are taken, and how many of them have been \[s\].
+    times: Vec<f64>,
+    reached: usize,
     progress: Option<&'a dyn Fn(f64, usize) -> Continue>,
 }
 
@@ -145,7 +153,10 @@ impl<'a> Recorder<'a> {
             moment_about: case.outputs.moment_about,
             references,
             samples: Series::new(case.outputs.history.max(1)),
-            frames: Series::new(frames),
+            // Besides those at given times only the first state and the last.
+            frames: Series::new(if case.outputs.times.is_empty() { frames } else { frames.min(1) }),
+            times: case.outputs.times.clone(),
+            reached: 0,
             progress: None,
         })
     }
@@ -196,8 +207,12 @@ impl<'a> Recorder<'a> {
 impl Observer for Recorder<'_> {
     fn observe(&mut self, view: &mut View) -> Continue {
         let stop = self.is_stopped(view.progress, view.state.step);
-        let frame = self.frames.is_due(view.progress, stop);
-        let sample = self.samples.is_due(view.progress, stop);
+        let asked = self.awaited_time().is_some_and(|time| view.state.time >= FULL * time);
+        self.reached += asked as usize;
+        let frame_due = self.frames.is_due(view.progress, stop);
+        let sample_due = self.samples.is_due(view.progress, stop);
+        let frame = frame_due || (asked && self.frames.parts > 0);
+        let sample = sample_due || asked;
         // A state whose energy is no number fails in the next step and is not a result.
         let energies = (frame || sample).then(|| view.energies());
         if let Some(energies) = energies.filter(is_finite) {
@@ -208,11 +223,11 @@ impl Observer for Recorder<'_> {
                     displacement: view.state.displacement.clone(),
                     contact: view.state.contact_forces(),
                 };
-                self.frames.keep(frame, view.progress);
+                self.frames.keep(frame, view.progress, frame_due);
             }
             if sample {
                 let sample = self.sample(view, energies);
-                self.samples.keep(sample, view.progress);
+                self.samples.keep(sample, view.progress, sample_due);
             }
         }
         if stop { Continue::Stop } else { Continue::Yes }
@@ -220,6 +235,10 @@ impl Observer for Recorder<'_> {
 
     fn iterate(&mut self, progress: f64, corrections: usize) -> Continue {
         if self.is_stopped(progress, corrections) { Continue::Stop } else { Continue::Yes }
+    }
+
+    fn awaited_time(&self) -> Option<f64> {
+        self.times.get(self.reached).copied()
     }
 
     fn restart(&mut self) {
@@ -247,7 +266,7 @@ mod tests {
         let mut series = Series::new(parts);
         for (step, &progress) in progress.iter().enumerate() {
             if series.is_due(progress, false) {
-                series.keep(step, progress);
+                series.keep(step, progress, true);
             }
         }
         series.kept
@@ -263,6 +282,19 @@ mod tests {
         assert_eq!(kept(2, &[0.0, 0.3, 0.6, 1.0 - f64::EPSILON]), [0, 2, 3]);
         // All the load in one increment.
         assert_eq!(kept(20, &[0.0, 1.0]), [0, 1]);
+    }
+
+    #[test]
+    fn a_state_asked_for_by_its_time_takes_the_place_of_no_other() {
+        let mut series = Series::new(4);
+        for step in 0..=100 {
+            let progress = step as f64 / 100.0;
+            let due = series.is_due(progress, false);
+            if due || [10, 50, 60].contains(&step) {
+                series.keep(step, progress, due);
+            }
+        }
+        assert_eq!(series.kept, [0, 10, 25, 50, 60, 75, 100]);
     }
 
     #[test]

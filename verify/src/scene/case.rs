@@ -103,8 +103,11 @@ pub(super) fn lattice(min: &Vector3, max: &Vector3, counts: &[usize; 3]) -> Vec<
 /// What is written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outputs {
-    /// Number of VTU frames.
+    /// Number of VTU frames after the first.
     pub frames: usize,
+    /// Times at which a step ends and a frame and a sample are taken, increasing \[s\]; where
+    /// there are none, frames are taken at equal parts of the progress.
+    pub times: Vec<f64>,
     /// Number of samples of histories.
     pub history: usize,
     /// Moments of reactions are taken about this point \[m\].

@@ -1,4 +1,4 @@
-//! Panels of unions and differences from those of their members.
+//! Panels of unions, intersections and differences from those of their members.
 
 use crate::geometry::boundary::panel::Panel;
 use crate::geometry::error::GeometryError;
@@ -14,13 +14,16 @@ enum Keep {
     /// Outside the other; on a face of it, if the normals are opposite.
     OutsideOrAgainst,
     Outside,
+    /// Inside the other; on a face of it, if the normals agree.
+    InsideOrAlong,
     Inside,
 }
 
 /// The fraction of a panel of given `width` \[m\] that remains: all, nothing, or,
 /// where the other member cuts it, clamp(½ + d/(b g), 0, 1) (method book, eq. 4.5).
 fn fraction_kept(panel: &Panel, width: f64, other: &Shape, keep: Keep, tolerance: f64) -> f64 {
-    let sign = if keep == Keep::Inside { -1.0 } else { 1.0 };
+    let inside = matches!(keep, Keep::Inside | Keep::InsideOrAlong);
+    let sign = if inside { -1.0 } else { 1.0 };
     let distance = sign * other.signed_distance(&panel.centre);
     if distance.abs() > width {
         return if distance > 0.0 { 1.0 } else { 0.0 };
@@ -33,7 +36,7 @@ fn fraction_kept(panel: &Panel, width: f64, other: &Shape, keep: Keep, tolerance
     }
     let remains = match keep {
         _ if distance.abs() > tolerance => distance > 0.0,
-        Keep::OutsideOrAlong => along > 0.0,
+        Keep::OutsideOrAlong | Keep::InsideOrAlong => along > 0.0,
         Keep::OutsideOrAgainst => along < 0.0,
         Keep::Outside | Keep::Inside => false,
     };
@@ -59,11 +62,15 @@ pub(super) fn composite_panels(
         }
     };
     match shape {
-        Shape::Union(members) => {
+        Shape::Union(members) | Shape::Intersection(members) => {
+            let [first, later] = match shape {
+                Shape::Union(_) => [Keep::OutsideOrAlong, Keep::Outside],
+                _ => [Keep::InsideOrAlong, Keep::Inside],
+            };
             for (n, member) in members.iter().enumerate() {
                 for panel in of(member)? {
                     let others = members.iter().enumerate().filter(|(other, _)| *other != n);
-                    let rule = |other| if n < other { Keep::OutsideOrAlong } else { Keep::Outside };
+                    let rule = |other| if n < other { first } else { later };
                     cut(panel, &mut others.map(|(other, shape)| (shape, rule(other))), 1.0);
                 }
             }

@@ -22,8 +22,7 @@ impl Shape {
     /// Panels with edges of at most `size` \[m\] that cover the boundary, in
     /// a plane that of the cross-section without its ends. Areas and normals
     /// are exact for flat faces, cylinders and spheres. Where members of a
-    /// union or difference meet, areas are reduced in proportion and centres
-    /// stay.
+    /// composite meet, areas are reduced in proportion and centres stay.
     pub fn boundary_panels(
         &self,
         size: f64,
@@ -89,7 +88,7 @@ fn curve_panels(
             let curves = marching::contours(shape, z, 0.7 * size)?;
             Ok(curves.iter().flat_map(|curve| line_panels(curve, size, z)).collect())
         }
-        Shape::Union(_) | Shape::Difference(..) => {
+        Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(..) => {
             composite_panels(shape, |panel| panel.area, &|member| {
                 curve_panels(member, size, z, around)
             })
@@ -131,7 +130,7 @@ fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>
             Ok(triangle_panels(triangles.into_iter(), size))
         }
         Shape::Surface(surface) => Ok(triangle_panels(surface.corners(), size)),
-        Shape::Union(_) | Shape::Difference(..) => {
+        Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(..) => {
             composite_panels(shape, |panel| panel.area.sqrt(), &|member| {
                 surface_panels(member, size, around)
             })

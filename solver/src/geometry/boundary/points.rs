@@ -136,7 +136,7 @@ fn collect(
     features: &mut Features,
 ) -> Result<(), GeometryError> {
     match shape {
-        Shape::Union(members) => {
+        Shape::Union(members) | Shape::Intersection(members) => {
             return members.iter().try_for_each(|m| collect(m, whole, target, dimension, features));
         }
         Shape::Difference(body, hole) => {

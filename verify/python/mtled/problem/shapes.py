@@ -97,6 +97,14 @@ class Union:
 
 
 @dataclass
+class Intersection:
+    """In all of these shapes or selections."""
+
+    parts: Sequence[Any]
+    kind: str = kind_of("intersection")
+
+
+@dataclass
 class Difference:
     """The first shape without the second."""
 
@@ -144,14 +152,6 @@ class Label:
     file: Path | None = None
     unit: Unit | None = None
     kind: str = kind_of("label")
-
-
-@dataclass
-class Intersection:
-    """In all of these selections."""
-
-    parts: Sequence[Any]
-    kind: str = kind_of("intersection")
 
 
 @dataclass

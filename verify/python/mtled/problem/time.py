@@ -77,5 +77,6 @@ class Output:
     """What is recorded."""
 
     frames: int | None = None
+    times_s: Sequence[float] | None = None
     history: int | None = None
     moment_about_m: Triple | None = None

@@ -63,7 +63,12 @@ impl Builder<'_> {
                 let normal = self.direction(&format!("{key}.half_space.normal"), normal);
                 Some(Shape::HalfSpace { point: Vector3::from(*point), normal })
             }
-            ShapeFormat::Union(parts) => self.union(&format!("{key}.union"), parts),
+            ShapeFormat::Union(parts) => {
+                Some(Shape::Union(self.members(&format!("{key}.union"), parts)?))
+            }
+            ShapeFormat::Intersection(parts) => {
+                Some(Shape::Intersection(self.members(&format!("{key}.intersection"), parts)?))
+            }
             ShapeFormat::Difference(first, second) => {
                 let first = self.shape(&format!("{key}.difference[0]"), first);
                 let second = self.shape(&format!("{key}.difference[1]"), second);
@@ -100,12 +105,12 @@ impl Builder<'_> {
         Shape::Polygon { points: points.to_vec().into(), z: (z[0], z[1]) }
     }
 
-    fn union(&mut self, key: &str, parts: &[ShapeFormat]) -> Option<Shape> {
+    fn members(&mut self, key: &str, parts: &[ShapeFormat]) -> Option<Vec<Shape>> {
         self.refuse_if(parts.is_empty(), key, "is empty; it needs at least one shape");
         let shapes: Vec<Option<Shape>> = (parts.iter().enumerate())
             .map(|(n, part)| self.shape(&format!("{key}[{n}]"), part))
             .collect();
-        Some(Shape::Union(shapes.into_iter().collect::<Option<_>>()?))
+        shapes.into_iter().collect()
     }
 
     /// A label map file, read once.
@@ -293,7 +298,7 @@ impl Builder<'_> {
 fn first_map(shape: &Shape) -> Option<Arc<LabelMap>> {
     match shape {
         Shape::Labels(field) => Some(field.map().clone()),
-        Shape::Union(parts) => parts.iter().find_map(first_map),
+        Shape::Union(parts) | Shape::Intersection(parts) => parts.iter().find_map(first_map),
         Shape::Difference(first, second) => first_map(first).or_else(|| first_map(second)),
         _ => None,
     }
@@ -303,7 +308,7 @@ fn first_map(shape: &Shape) -> Option<Arc<LabelMap>> {
 pub fn comes_from_a_file(shape: &Shape) -> bool {
     match shape {
         Shape::Labels(_) | Shape::Surface(_) => true,
-        Shape::Union(parts) => parts.iter().any(comes_from_a_file),
+        Shape::Union(parts) | Shape::Intersection(parts) => parts.iter().any(comes_from_a_file),
         Shape::Difference(first, second) => comes_from_a_file(first) || comes_from_a_file(second),
         _ => false,
     }

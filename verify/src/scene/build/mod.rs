@@ -42,7 +42,7 @@ pub fn build(
     };
     let problem = builder.problem(format);
     let probes = builder.probes(format);
-    let outputs = builder.outputs(&format.output);
+    let outputs = builder.outputs(&format.output, &format.time);
     // The files that a case names are read again only where they can be used.
     let problem_hash = match builder.mistakes.is_empty() {
         true => problem_hash(document.text(), base_dir)

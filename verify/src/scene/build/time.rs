@@ -272,9 +272,13 @@ impl Builder<'_> {
         }
     }
 
-    pub fn outputs(&mut self, format: &OutputFormat) -> Outputs {
+    pub fn outputs(&mut self, format: &OutputFormat, time: &TimeFormat) -> Outputs {
+        let times = format.times.clone().unwrap_or_default();
+        self.check_times(&times, format, time);
         let outputs = Outputs {
-            frames: format.frames.unwrap_or(20),
+            // With one more for the end.
+            frames: format.times.as_ref().map_or(format.frames.unwrap_or(20), |t| t.len() + 1),
+            times,
             history: format.history.unwrap_or(200),
             moment_about: Vector3::from(format.moment_about.unwrap_or_default()),
         };
@@ -282,5 +286,27 @@ impl Builder<'_> {
         self.at_most("output.history", "samples", outputs.history as f64, MOST_SAMPLES);
         self.at_most("output.frames", "frames", outputs.frames as f64, MOST_FRAMES);
         outputs
+    }
+
+    fn check_times(&mut self, times: &[f64], format: &OutputFormat, time: &TimeFormat) {
+        if format.times.is_none() {
+            return;
+        }
+        let key = "output.times";
+        self.refuse_if(format.frames.is_some(), key, "takes the place of output.frames: give one");
+        self.refuse_if(times.is_empty(), key, "is empty; it needs at least one time");
+        let is_static = matches!(time.method, MethodFormat::Static);
+        self.refuse_if(
+            is_static,
+            key,
+            "belongs to method = \"dynamic\"; a static run has no times",
+        );
+        let end = time.end.unwrap_or(f64::INFINITY);
+        let mut before = 0.0;
+        for (n, &at) in times.iter().enumerate() {
+            let message = format!("is {at}; it must be larger than {before} and at most {end}");
+            self.refuse_if(!(at > before && at <= end), &format!("{key}[{n}]"), message);
+            before = at;
+        }
     }
 }

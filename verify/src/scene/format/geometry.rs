@@ -63,6 +63,8 @@ pub enum ShapeFormat {
     },
     /// In at least one of these.
     Union(Vec<ShapeFormat>),
+    /// What all of these have in common.
+    Intersection(Vec<ShapeFormat>),
     /// The first without the second.
     Difference(Box<ShapeFormat>, Box<ShapeFormat>),
     /// A closed surface from an STL file, path relative to the case file.

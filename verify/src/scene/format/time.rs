@@ -113,6 +113,10 @@ pub struct OutputFormat {
     /// them; 20 if left out. A static run that ends early has fewer, and solver "newton" at
     /// most one for each part of the load; their frames are numbered, since they have no time.
     pub frames: Option<usize>,
+    /// Times of the frames [s]; equal parts of the progress, `frames` of them, if left out. A
+    /// step ends at each, and a sample of histories is taken too; the first state and the last
+    /// are frames as well. For method "dynamic": increasing, above 0 and at most `time.end`.
+    pub times: Option<Vec<f64>>,
     /// Number of samples of histories; 200 if left out.
     pub history: Option<usize>,
     /// Moments of reactions are taken about this point [m]; the origin if left out.
