@@ -46,6 +46,7 @@ const BAD_CASES: &[Expected] = &[
     ("crossed_polygon", 5, "geometry.shape", "cross or touch"),
     ("unbounded_body", 5, "geometry.shape", "is unbounded"),
     ("zero_normal", 20, "prescribe[0].where.plane.normal", "is zero; it must be a direction"),
+    ("facing_in_degrees", 20, "prescribe[0].where.facing.angle", "is 20; it must lie in 0 < angle < π, in radians"),
     ("empty_union", 20, "prescribe[0].where.union", "is empty"),
     ("negative_spacing", 15, "discretisation.spacing", "is -0.02; it must be positive"),
     ("missing_spacing", 13, "discretisation.spacing", "is missing"),

@@ -113,7 +113,10 @@ impl Footprint {
     /// From the counts of a discretisation.
     pub fn counted(problem: &Problem, discretisation: &Discretisation) -> Footprint {
         let panels = &discretisation.surface.panels;
-        let held = panels.iter().filter(|panel| held_at(problem, &panel.centre)).count();
+        let held = panels
+            .iter()
+            .filter(|p| problem.conditions.iter().any(|c| c.part.contains_panel(p)))
+            .count();
         let footprint = Footprint {
             nodes: discretisation.cloud.positions.len() as f64,
             points: discretisation.supports.len() as f64,
@@ -151,11 +154,6 @@ impl Footprint {
         let entries = points * self.neighbours;
         PER_ROW_ENTRY * entries + PER_BATCH_ENTRY * points.min(BATCH) * self.neighbours
     }
-}
-
-/// Whether displacements are prescribed at a point of the boundary.
-fn held_at(problem: &Problem, X: &Vector3) -> bool {
-    problem.conditions.iter().any(|condition| condition.part.contains(X))
 }
 
 /// Every shape of a problem that is not in a selector.
@@ -232,7 +230,8 @@ impl SamplePoints {
     /// The share of the boundary where displacements are prescribed.
     fn held_share(&self, problem: &Problem) -> f64 {
         let d = problem.dimension.components() as i32;
-        let held = self.near_boundary(d).filter(|X| held_at(problem, X)).count();
+        let is_held = |X: &&Vector3| problem.conditions.iter().any(|c| c.part.contains(X));
+        let held = self.near_boundary(d).filter(is_held).count();
         held as f64 / self.near_boundary(d).count().max(1) as f64
     }
 

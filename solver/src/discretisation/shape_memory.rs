@@ -81,6 +81,8 @@ impl Parts {
             Selector::Union(parts) | Selector::Intersection(parts) => {
                 parts.iter().for_each(|part| self.add_selector(part));
             }
+            // Of the body itself.
+            Selector::Facing { body, .. } => self.add_shape(body),
             Selector::Not(part) => self.add_selector(part),
             Selector::All | Selector::Plane { .. } => {}
         }

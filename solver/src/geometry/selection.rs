@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
+use crate::geometry::boundary::Panel;
 use crate::geometry::shape::Shape;
 use crate::geometry::voxels::LabelMap;
 use std::sync::Arc;
@@ -14,6 +15,17 @@ pub enum Extent {
     Surface,
     /// Every node of the body, boundary nodes included.
     Volume,
+}
+
+/// An edge belongs to both of its faces: normals are taken this far from it too, over the size
+/// of the body \[–\].
+const NEXT_TO: f64 = 1e-4;
+/// Of cosines \[–\].
+const ROUND_OFF: f64 = 1e-9;
+
+/// Places next to X on both sides along every axis.
+fn around(X: &Vector3, distance: f64) -> impl Iterator<Item = Vector3> {
+    (0..3).flat_map(move |axis| [-distance, distance].map(|way| X + Vector3::ith(axis, way)))
 }
 
 /// A predicate on reference positions.
@@ -44,6 +56,16 @@ pub enum Selector {
         /// The label in it.
         label: u32,
     },
+    /// Where the boundary of a solid faces a direction; away from the boundary, where its
+    /// nearest place does.
+    Facing {
+        /// The solid.
+        body: Box<Shape>,
+        /// Unit vector.
+        direction: Vector3,
+        /// The largest angle between the outward normal and the direction \[rad\].
+        angle: f64,
+    },
     /// In at least one of these.
     Union(Vec<Selector>),
     /// In all of these.
@@ -55,6 +77,15 @@ pub enum Selector {
 impl Selector {
     /// Whether the reference position `X` \[m\] is selected.
     pub fn contains(&self, X: &Vector3) -> bool {
+        self.selects(X, None)
+    }
+
+    /// Whether a piece of the boundary is selected, by its centre and its normal.
+    pub fn contains_panel(&self, panel: &Panel) -> bool {
+        self.selects(&panel.centre, Some(&panel.normal))
+    }
+
+    fn selects(&self, X: &Vector3, normal: Option<&Vector3>) -> bool {
         match self {
             Selector::All => true,
             Selector::Plane { point, normal, tolerance } => {
@@ -62,9 +93,54 @@ impl Selector {
             }
             Selector::Inside { shape, tolerance } => shape.signed_distance(X) <= *tolerance,
             Selector::Label { map, label } => map.label_at(X) == *label,
-            Selector::Union(parts) => parts.iter().any(|part| part.contains(X)),
-            Selector::Intersection(parts) => parts.iter().all(|part| part.contains(X)),
-            Selector::Not(part) => !part.contains(X),
+            Selector::Facing { body, direction, angle } => {
+                let faces = |normal: &Vector3| normal.dot(direction) >= angle.cos() - ROUND_OFF;
+                let beside = || around(X, NEXT_TO * body.size());
+                normal.map_or_else(
+                    || faces(&body.gradient(X)) || beside().any(|X| faces(&body.gradient(&X))),
+                    faces,
+                )
+            }
+            Selector::Union(parts) => parts.iter().any(|part| part.selects(X, normal)),
+            Selector::Intersection(parts) => parts.iter().all(|part| part.selects(X, normal)),
+            Selector::Not(part) => !part.selects(X, normal),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Dimension;
+
+    fn facing(body: Shape, direction: Vector3, angle: f64) -> Selector {
+        Selector::Facing { body: Box::new(body), direction: direction.normalize(), angle }
+    }
+
+    #[test]
+    fn the_flat_faces_of_a_turned_block_are_selected_with_their_edges() {
+        let axis = Vector3::new(1.0, 2.0, -2.0) / 3.0;
+        let cylinder =
+            Shape::Cylinder { base: Vector3::new(0.1, 0.2, 0.3), axis, radius: 0.2, height: 0.5 };
+        let end = facing(cylinder.clone(), axis, 0.1);
+        let points = cylinder.boundary_points(0.03, &Dimension::Three).unwrap();
+        let on_end = |X: &Vector3| (X - Vector3::new(0.1, 0.2, 0.3)).dot(&axis) > 0.5 - 1e-9;
+        assert!(points.iter().filter(|X| on_end(X)).count() > 50);
+        for X in &points {
+            assert_eq!(end.contains(X), on_end(X), "{X}");
+        }
+    }
+
+    #[test]
+    fn the_side_of_a_ball_that_faces_a_direction_is_a_cap() {
+        let ball = Shape::Sphere { centre: Vector3::zeros(), radius: 0.5 };
+        let cap = facing(ball.clone(), Vector3::new(0.0, -2.0, 0.0), 0.8);
+        for panel in ball.boundary_panels(0.05, &Dimension::Three).unwrap() {
+            let angle = (-panel.centre.normalize().y).acos();
+            if (angle - 0.8).abs() > 1e-3 {
+                assert_eq!(cap.contains_panel(&panel), angle < 0.8, "{angle}");
+                assert_eq!(cap.contains(&panel.centre), angle < 0.8, "{angle}");
+            }
         }
     }
 }

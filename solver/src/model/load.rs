@@ -66,7 +66,7 @@ fn traction_force(
     let d = problem.dimension.components();
     let nodes = discretisation.cloud.positions.len();
     let surface = &discretisation.surface;
-    let chosen = |panel: &Panel| traction.part.contains(&panel.centre);
+    let chosen = |panel: &Panel| traction.part.contains_panel(panel);
     if !surface.panels.iter().any(chosen) {
         return Err(Error::EmptyTraction { name: traction.name.clone() });
     }

@@ -33,7 +33,7 @@ pub fn pressure_loads(
 impl PressureLoad {
     fn new(pressure: &Pressure, discretisation: &Discretisation) -> Result<PressureLoad, Error> {
         let surface = &discretisation.surface;
-        let chosen = |panel: &Panel| pressure.part.contains(&panel.centre);
+        let chosen = |panel: &Panel| pressure.part.contains_panel(panel);
         if !surface.panels.iter().any(chosen) {
             return Err(Error::EmptyPressure { name: pressure.name.clone() });
         }

@@ -79,7 +79,7 @@ def test_dataclasses_have_all_keys_of_the_case_file_and_no_others():
 
     shapes = {kind.kind: kind for kind in (p.Box, p.Cylinder, p.Sphere, p.Ellipsoid, p.Polygon, p.HalfSpace, p.Stl,
                                            p.LabelMap, p.Union, p.Intersection, p.Difference)}  # fmt: skip
-    selections = {kind.kind: kind for kind in (p.Plane, p.HalfSpace, p.Box, p.Sphere, p.InShape, p.Label, p.Union,
+    selections = {kind.kind: kind for kind in (p.Plane, p.HalfSpace, p.Box, p.Sphere, p.InShape, p.Label, p.Facing, p.Union,
                                                p.Intersection, p.Not)}  # fmt: skip
     amplitudes = {kind.kind: kind for kind in (p.Linear, p.Smooth, p.Table)}
     for name, known in [("ShapeFormat", shapes), ("SelectorFormat", selections), ("AmplitudeFormat", amplitudes)]:

@@ -37,7 +37,10 @@ fn selected(part: &Selector, body: &Shape) -> Option<Shape> {
             let parts = parts.iter().map(|part| solid(part, body));
             Some(Shape::Union(parts.collect::<Option<_>>()?))
         }
-        Selector::Plane { .. } | Selector::Intersection(_) | Selector::Not(_) => None,
+        Selector::Plane { .. }
+        | Selector::Facing { .. }
+        | Selector::Intersection(_)
+        | Selector::Not(_) => None,
     }
 }
 

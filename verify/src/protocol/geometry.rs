@@ -54,6 +54,9 @@ pub enum Selection {
     Shape { shape: Shape, tolerance_m: f64 },
     /// In a voxel of this label; the label map is that of the body where it is null.
     Label { value: u32, file: Option<PathBuf>, unit: Option<UnitFormat> },
+    /// Where the outward normal of the body and a direction (of any length) enclose at most an
+    /// angle.
+    Facing { direction: Triple, angle_rad: f64 },
     /// In at least one of these.
     Union { of: Vec<Selection> },
     /// In all of these.
@@ -134,6 +137,9 @@ impl Selection {
             }
             SelectorFormat::Label { value, file, unit } => {
                 Selection::Label { value: *value, file: file.clone(), unit: *unit }
+            }
+            SelectorFormat::Facing { direction, angle } => {
+                Selection::Facing { direction: *direction, angle_rad: *angle }
             }
             SelectorFormat::Union(parts) => Selection::Union { of: all(parts) },
             SelectorFormat::Intersection(parts) => Selection::Intersection { of: all(parts) },

@@ -6,6 +6,7 @@ use crate::discretisation::neighbours::Neighbours;
 use crate::discretisation::nodes::cloud::NodeCloud;
 use crate::geometry::{Extent, Panel, PointHash, Shape, project};
 use crate::problem::EssentialCondition;
+use rayon::prelude::*;
 use std::collections::VecDeque;
 
 /// Distance of the nodes from the edge, on the held side \[spacing\].
@@ -17,6 +18,8 @@ const APART: f64 = 0.5;
 /// Panels whose normals have a smaller product lie on different faces of the body, whose
 /// edges have nodes anyway.
 const SAME_FACE: f64 = 0.7;
+/// Halvings of a bracket: to round-off.
+const HALVINGS: usize = 40;
 
 /// The boundary of a body in panels, among which held parts end.
 pub(crate) struct HeldParts<'a> {
@@ -27,6 +30,20 @@ pub(crate) struct HeldParts<'a> {
     size: f64,
     /// The centres of the panels.
     centres: Neighbours,
+}
+
+/// Two places on the boundary between which a held part ends \[m\].
+struct Bracket {
+    held: Vector3,
+    free: Vector3,
+    /// How often it has been halved.
+    halvings: usize,
+}
+
+impl Bracket {
+    fn length(&self) -> f64 {
+        (self.free - self.held).norm()
+    }
 }
 
 /// A node on an edge, and its spacing \[m\].
@@ -97,59 +114,87 @@ impl<'a> HeldParts<'a> {
         normals.iter().any(|normal| normal.dot(&normals[0]) < SAME_FACE)
     }
 
-    /// Whether no condition holds a place as much as `condition` does.
-    fn is_free(&self, condition: &EssentialCondition, X: &Vector3) -> bool {
+    /// Whether no condition holds a panel as much as `condition` does.
+    fn is_free(&self, condition: &EssentialCondition, panel: &Panel) -> bool {
         let as_much = |other: &EssentialCondition| {
             (0..3).all(|k| other.prescribes(k) || !condition.prescribes(k))
         };
-        !self.conditions.iter().any(|other| as_much(other) && other.part.contains(X))
+        !self.conditions.iter().any(|other| as_much(other) && other.part.contains_panel(panel))
     }
 
     /// The curves along which the part that a condition holds ends within a face.
     fn curves(&self, condition: &EssentialCondition) -> Vec<Vec<Vector3>> {
         let held: Vec<bool> =
-            self.panels.iter().map(|panel| condition.part.contains(&panel.centre)).collect();
+            self.panels.iter().map(|panel| condition.part.contains_panel(panel)).collect();
+        let is_held = |(panel, held): (&'a Panel, &bool)| held.then_some(panel);
+        let across: Vec<Bracket> = (self.panels.par_iter().zip(&held).filter_map(is_held))
+            .flat_map_iter(|panel| self.brackets(condition, panel, &held))
+            .map(|bracket| self.narrowed(condition, bracket))
+            .collect();
         let mut hash = PointHash::new(0.1 * self.size, self.size);
         let mut points = Vec::new();
-        for (panel, _) in self.panels.iter().zip(&held).filter(|(_, held)| **held) {
-            self.centres.for_each_within(&panel.centre, 1.5 * self.size, |other, _| {
-                let far = &self.panels[other];
-                if held[other]
-                    || far.normal.dot(&panel.normal) < SAME_FACE
-                    || !self.is_free(condition, &far.centre)
-                {
-                    return;
-                }
-                let ends = (panel.centre, far.centre);
-                let X = self.end_between(condition, ends, |X, within| {
-                    hash.any_within(X, 0.2 * self.size - within)
-                });
-                if let Some(X) = X {
-                    hash.insert(X);
-                    points.push(X);
-                }
-            });
+        for bracket in across {
+            let known = |X: &Vector3, within: f64| hash.any_within(X, 0.2 * self.size - within);
+            if let Some(X) = self.end_within(condition, bracket, known) {
+                hash.insert(X);
+                points.push(X);
+            }
         }
         chains(points, 1.5 * self.size)
     }
 
-    /// Where the held part ends between two places, the first of them held; `None` as soon as
-    /// it is `known` that every place within some way \[m\] of a held one is.
-    fn end_between(
+    /// From a held panel to those about it on its face that are free.
+    fn brackets(
         &self,
         condition: &EssentialCondition,
-        (mut held, mut free): (Vector3, Vector3),
+        panel: &Panel,
+        held: &[bool],
+    ) -> Vec<Bracket> {
+        let mut brackets = Vec::new();
+        self.centres.for_each_within(&panel.centre, 1.5 * self.size, |other, _| {
+            let far = &self.panels[other];
+            let on_face = far.normal.dot(&panel.normal) >= SAME_FACE;
+            if !held[other] && on_face && self.is_free(condition, far) {
+                brackets.push(Bracket { held: panel.centre, free: far.centre, halvings: 0 });
+            }
+        });
+        brackets
+    }
+
+    /// A bracket so small that what is found in others may tell that it is not needed.
+    fn narrowed(&self, condition: &EssentialCondition, mut bracket: Bracket) -> Bracket {
+        while bracket.length() >= 0.15 * self.size && bracket.halvings < HALVINGS {
+            bracket = self.halved(condition, bracket);
+        }
+        bracket
+    }
+
+    fn halved(&self, condition: &EssentialCondition, bracket: Bracket) -> Bracket {
+        let Bracket { held, free, halvings } = bracket;
+        let middle = project(self.body, &(0.5 * (held + free)));
+        let halvings = halvings + 1;
+        match condition.part.contains(&middle) {
+            true => Bracket { held: middle, free, halvings },
+            false => Bracket { held, free: middle, halvings },
+        }
+    }
+
+    /// Where the held part ends in a bracket; `None` as soon as it is `known` that every place
+    /// within some way \[m\] of a held one is.
+    fn end_within(
+        &self,
+        condition: &EssentialCondition,
+        mut bracket: Bracket,
         known: impl Fn(&Vector3, f64) -> bool,
     ) -> Option<Vector3> {
-        for _ in 0..40 {
-            let within = (free - held).norm();
-            if within < 0.15 * self.size && known(&held, within) {
+        while bracket.halvings < HALVINGS {
+            let within = bracket.length();
+            if within < 0.15 * self.size && known(&bracket.held, within) {
                 return None;
             }
-            let middle = project(self.body, &(0.5 * (held + free)));
-            if condition.part.contains(&middle) { held = middle } else { free = middle }
+            bracket = self.halved(condition, bracket);
         }
-        (!known(&held, 0.0)).then_some(held)
+        (!known(&bracket.held, 0.0)).then_some(bracket.held)
     }
 
     /// The place of a node at the point `X` of an edge.
@@ -157,7 +202,7 @@ impl<'a> HeldParts<'a> {
         let X = project(self.body, X);
         let mut inwards = Vector3::zeros();
         self.centres.for_each_within(&X, spacing.max(self.size), |panel, offset| {
-            if condition.part.contains(&self.panels[panel].centre) {
+            if condition.part.contains_panel(&self.panels[panel]) {
                 inwards += self.panels[panel].area * offset;
             }
         });

@@ -10,6 +10,7 @@ use crate::geometry::error::{GeometryError, positive};
 use crate::geometry::point_hash::PointHash;
 use crate::geometry::shape::Shape;
 use crate::geometry::size_limit::BOUNDARY_NODES;
+use rayon::prelude::*;
 
 /// Points on the boundary \[m\]; the first `fixed` lie on corners and edges.
 pub(crate) struct BoundaryPoints {
@@ -17,6 +18,8 @@ pub(crate) struct BoundaryPoints {
     pub fixed: usize,
 }
 
+/// Candidates that are looked at side by side.
+const BATCH: usize = 512;
 /// Closest that points of different origin may be \[spacing\].
 const CLOSEST: f64 = 0.6;
 /// Farther than this from every point, the boundary gets another \[spacing\].
@@ -84,18 +87,39 @@ impl Chosen<'_> {
     /// Moves candidates onto the boundary and keeps those at least `apart` times
     /// the local spacing away from all kept before.
     fn add(&mut self, candidates: &[Vector3], apart: f64) {
-        for candidate in candidates {
-            // First without the projection and the local spacing, which cost more.
-            let near = |size: f64| self.hash.any_within(candidate, 0.7 * apart * size);
-            if near(self.target.smallest) || near((self.target.at)(candidate)) {
-                continue;
-            }
-            let X = project(self.shape, candidate);
-            if !self.hash.any_within(&X, apart * (self.target.at)(&X)) {
-                self.hash.insert(X);
-                self.points.push(X);
+        for batch in candidates.chunks(BATCH) {
+            // Side by side, then one after the other those that no point before the batch is
+            // close to.
+            let placed = |candidate| Some((candidate, self.placed(candidate, apart)?));
+            let placed: Vec<(&Vector3, Vector3)> = batch.par_iter().filter_map(placed).collect();
+            for (candidate, X) in placed {
+                if !self.is_crowded(candidate, apart) && !self.has_near(&X, apart) {
+                    self.hash.insert(X);
+                    self.points.push(X);
+                }
             }
         }
+    }
+
+    /// The candidate moved onto the boundary, unless a point is near.
+    fn placed(&self, candidate: &Vector3, apart: f64) -> Option<Vector3> {
+        // First without the projection, which costs more.
+        if self.is_crowded(candidate, apart) {
+            return None;
+        }
+        let X = project(self.shape, candidate);
+        (!self.has_near(&X, apart)).then_some(X)
+    }
+
+    /// Whether a point is so near that none is possible about here.
+    fn is_crowded(&self, candidate: &Vector3, apart: f64) -> bool {
+        // First without the local spacing, which costs more.
+        let near = |size: f64| self.hash.any_within(candidate, 0.7 * apart * size);
+        near(self.target.smallest) || near((self.target.at)(candidate))
+    }
+
+    fn has_near(&self, X: &Vector3, apart: f64) -> bool {
+        self.hash.any_within(X, apart * (self.target.at)(X))
     }
 }
 

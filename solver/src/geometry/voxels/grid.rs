@@ -74,6 +74,7 @@ impl ScalarGrid {
     pub fn distance_to_zero_level(&self) -> ScalarGrid {
         let sign = |at: usize| if self.values[at] < 0.0 { -1.0 } else { 1.0 };
         let known: Vec<KnownDistance> = (0..self.values.len())
+            .into_par_iter()
             .filter_map(|at| {
                 let distance = self.crossing_distance(at);
                 let normal = self.slope(at).try_normalize(0.0).unwrap_or_else(Vector3::zeros);

@@ -5,6 +5,7 @@ use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::error::GeometryError;
 use crate::geometry::voxels::grid::{ScalarGrid, indices};
 use crate::geometry::voxels::label_map::LabelMap;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Voxels of empty space around the image, which may be filled to its edge.
@@ -199,7 +200,7 @@ fn smooth_along(image: &mut ScalarGrid, axis: usize, deviation: f64) {
     let stride: usize = image.size[..axis].iter().product();
     let n = image.size[axis];
     let old = image.values.clone();
-    for (at, value) in image.values.iter_mut().enumerate() {
+    image.values.par_iter_mut().enumerate().for_each(|(at, value)| {
         let position = at / stride % n;
         let mut total = kernel[0] * old[at];
         for (reach, factor) in kernel.iter().enumerate().skip(1) {
@@ -211,7 +212,7 @@ fn smooth_along(image: &mut ScalarGrid, axis: usize, deviation: f64) {
             }
         }
         *value = total / sum;
-    }
+    });
 }
 
 /// Shifts the distance until as many voxels are enclosed as before smoothing,
@@ -238,20 +239,25 @@ fn enclosed(distance: &ScalarGrid) -> f64 {
     let diagonal = distance.step.norm();
     let fine = distance.step.max() / PARTS as f64;
     let weight = 1.0 / parts.iter().product::<usize>() as f64;
-    let cells = distance.size.map(|n| if n > 1 { n - 1 } else { 1 });
-    let mut total = 0.0;
-    for ijk in indices(cells) {
-        let value = distance.values[distance.index(ijk[0], ijk[1], ijk[2])];
-        if value.abs() > diagonal + fine {
-            total += if value < 0.0 { 1.0 } else { 0.0 };
-            continue;
+    let [nx, ny, layers] = distance.size.map(|n| if n > 1 { n - 1 } else { 1 });
+    let layer = |k: usize| {
+        let mut shares = Vec::new();
+        for ijk in indices([nx, ny, 1]).map(|[i, j, _]| [i, j, k]) {
+            let value = distance.values[distance.index(ijk[0], ijk[1], ijk[2])];
+            if value.abs() > diagonal + fine {
+                shares.extend((value < 0.0).then_some(1.0));
+                continue;
+            }
+            shares.extend(indices(parts).map(|abc| {
+                let local = Vector3::from_fn(|k, _| {
+                    (ijk[k] as f64 + (abc[k] as f64 + 0.5) / parts[k] as f64) * distance.step[k]
+                });
+                weight * (0.5 - distance.sample(&local) / fine).clamp(0.0, 1.0)
+            }));
         }
-        for abc in indices(parts) {
-            let local = Vector3::from_fn(|k, _| {
-                (ijk[k] as f64 + (abc[k] as f64 + 0.5) / parts[k] as f64) * distance.step[k]
-            });
-            total += weight * (0.5 - distance.sample(&local) / fine).clamp(0.0, 1.0);
-        }
-    }
-    total
+        shares
+    };
+    // Added in the order of the cells.
+    let shares: Vec<Vec<f64>> = (0..layers).into_par_iter().map(layer).collect();
+    shares.iter().flatten().sum()
 }

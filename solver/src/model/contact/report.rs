@@ -7,6 +7,7 @@ use crate::discretisation::{Discretisation, Rows};
 use crate::error::Error;
 use crate::geometry::{Panel, PointHash};
 use crate::problem::Problem;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Edge of the panels over the mean spacing \[–\].
@@ -56,7 +57,7 @@ impl ContactSurface {
             let (_, place) = *hash.nearest(&panel.centre, usize::MAX, 1).first()?;
             Some((panel, boundary[place]))
         };
-        let panels = panels.into_iter().filter_map(nearest).collect();
+        let panels = panels.into_par_iter().filter_map(nearest).collect();
         Ok(ContactSurface { panels, nodes: cloud.positions.len() })
     }
 

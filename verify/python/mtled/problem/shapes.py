@@ -155,6 +155,15 @@ class Label:
 
 
 @dataclass
+class Facing:
+    """Where the outward normal of the body and a direction enclose at most an angle."""
+
+    direction: Triple
+    angle_rad: float
+    kind: str = kind_of("facing")
+
+
+@dataclass
 class Not:
     """Not in this selection."""
 

@@ -31,7 +31,7 @@ pub fn boundary_misfit(problem: &Problem, solved: &Solved) -> Result<Option<f64>
     let (mut squares, mut area) = (0.0, 0.0);
     for condition in active {
         let inside: Vec<_> =
-            panels.iter().filter(|panel| condition.part.contains(&panel.centre)).collect();
+            panels.iter().filter(|panel| condition.part.contains_panel(panel)).collect();
         let centres: Vec<Vector3> = inside.iter().map(|panel| panel.centre).collect();
         let rows = discretisation.rows_at(&centres)?;
         for (index, panel) in inside.iter().enumerate() {

@@ -230,6 +230,15 @@ impl Builder<'_> {
             SelectorFormat::Label { value, file, unit } => {
                 self.label(&format!("{key}.label"), *value, file.as_deref(), *unit)
             }
+            SelectorFormat::Facing { direction, angle } => {
+                let key = format!("{key}.facing");
+                let direction = self.direction(&format!("{key}.direction"), direction);
+                let message = format!("is {angle}; it must lie in 0 < angle < π, in radians");
+                let is_sound = *angle > 0.0 && *angle < std::f64::consts::PI;
+                self.refuse_if(!is_sound, &format!("{key}.angle"), message);
+                let body = Box::new(self.section.clone()?);
+                Some(Selector::Facing { body, direction, angle: *angle })
+            }
             SelectorFormat::Union(parts) => {
                 self.selectors(&format!("{key}.union"), parts).map(Selector::Union)
             }

@@ -154,6 +154,14 @@ pub enum SelectorFormat {
         /// Overrides the unit that the file states; that of the file if left out.
         unit: Option<UnitFormat>,
     },
+    /// Where the outward normal of the body is near a direction: a flat face of a surface, or
+    /// one side of an organ. Away from the boundary, the normal at its nearest place.
+    Facing {
+        /// The direction, of any length [–].
+        direction: Triple,
+        /// Largest angle between the normal and the direction [rad]: 0 < angle < π.
+        angle: f64,
+    },
     /// In at least one of these.
     Union(Vec<SelectorFormat>),
     /// In all of these.
