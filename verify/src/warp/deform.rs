@@ -71,7 +71,8 @@ pub fn deform(field: &DisplacementField, image: &Image, how: Interpolation) -> D
     })
 }
 
-/// One line of voxels along the first index, each starting from the source of the one before.
+/// One line of voxels along the first index, each starting where the sources of the two before
+/// lead.
 fn deform_row(
     field: &DisplacementField,
     image: &Image,
@@ -80,11 +81,11 @@ fn deform_row(
 ) -> Deformed {
     let (grid, [nx, ny, _]) = (&image.grid, image.grid.size);
     let mut deformed = Deformed::empty();
-    let mut start = Vector3::zeros();
+    let [mut before, mut last] = [Vector3::zeros(); 2];
     for i in 0..nx {
         let voxel = [i, row % ny, row / ny];
-        let source = source_of(field, &grid.centre(voxel), &start);
-        start = source.vector;
+        let source = source_of(field, &grid.centre(voxel), &(2.0 * last - before));
+        (before, last) = (last, source.vector);
         // Exactly the voxel where nothing moves.
         let index = Vector3::from(voxel.map(|n| n as f64)) + grid.steps(&source.vector);
         let inside = image.sample(&index, how, &mut deformed.voxels);

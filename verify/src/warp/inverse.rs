@@ -2,13 +2,20 @@
 #![allow(non_snake_case)]
 
 use super::field::DisplacementField;
-use mtled::algebra::tensor::Vector3;
+use mtled::algebra::tensor::{Matrix3, Vector3};
 
 /// The largest |X + u(X) − x| of a source that was found \[m\].
 pub const TOLERANCE: f64 = 1e-7;
 
 /// Iterations after which a point counts as one without a source.
 pub const MOST_ITERATIONS: usize = 200;
+
+/// Evaluations of the field after which secants are given up.
+const MOST_SECANTS: usize = 30;
+
+/// Secants are given up where a step s changes g, seen through the inverse, by less than this
+/// part of s along s \[–\].
+const SMALLEST_SLOPE: f64 = 0.05;
 
 /// The smallest part of a correction that is made where corrections grow \[–\].
 const SMALLEST_STEP: f64 = 0.125;
@@ -24,16 +31,47 @@ pub struct Source {
     pub iterations: usize,
 }
 
-/// Solves X + u(X) = x by the fixed point of X = x − u(X), from X − x = `start`, with shorter
-/// steps where the residual grows. Where it does not converge, such as in folds, this is the
-/// iterate with the smallest residual.
+/// Solves g = X − x + u(X) = 0 by the secant method of Broyden 1965, eq. 4.5, from
+/// X − x = `start`; where it fails, such as near folds, from its best iterate by the fixed point
+/// of X = x − u(X), with shorter steps where the residual grows. Where that does not converge
+/// either, this is the iterate with the smallest residual.
 pub fn source_of(field: &DisplacementField, x: &Vector3, start: &Vector3) -> Source {
-    let mut vector = *start;
-    let mut best = Source { vector, residual: f64::INFINITY, iterations: 0 };
+    let gap = |vector: &Vector3| field.at(&(x + vector)) + vector;
+    let best = by_secants(&gap, start);
+    if best.residual <= TOLERANCE { best } else { by_fixed_point(&gap, best) }
+}
+
+fn by_secants(gap: &impl Fn(&Vector3) -> Vector3, start: &Vector3) -> Source {
+    let (mut vector, mut g) = (*start, gap(start));
+    let mut best = Source { vector, residual: g.norm(), iterations: 1 };
+    // Of ∂g/∂X, which is I where nothing moves.
+    let mut inverse = Matrix3::identity();
+    while best.residual > TOLERANCE && best.iterations < MOST_SECANTS {
+        let step = -inverse * g;
+        vector += step;
+        let before = std::mem::replace(&mut g, gap(&vector));
+        let residual = g.norm();
+        let iterations = best.iterations + 1;
+        if residual >= best.residual {
+            return Source { iterations, ..best };
+        }
+        best = Source { vector, residual, iterations };
+        let moved = inverse * (g - before);
+        let along = step.dot(&moved);
+        if along.abs() < SMALLEST_SLOPE * step.norm_squared() {
+            return best;
+        }
+        inverse += (step - moved) * (step.transpose() * inverse) / along;
+    }
+    best
+}
+
+fn by_fixed_point(gap: &impl Fn(&Vector3) -> Vector3, start: Source) -> Source {
+    let (mut vector, mut best) = (start.vector, start);
     let (mut step, mut last) = (1.0f64, f64::INFINITY);
-    for iterations in 1..=MOST_ITERATIONS {
-        let correction = -field.at(&(x + vector)) - vector;
-        let residual = correction.norm();
+    for iterations in start.iterations + 1..=MOST_ITERATIONS {
+        let g = gap(&vector);
+        let residual = g.norm();
         if residual < best.residual {
             best = Source { vector, residual, iterations };
         }
@@ -44,7 +82,7 @@ pub fn source_of(field: &DisplacementField, x: &Vector3, start: &Vector3) -> Sou
             step = (0.5 * step).max(SMALLEST_STEP);
         }
         last = residual;
-        vector += correction * step;
+        vector -= g * step;
     }
     Source { iterations: MOST_ITERATIONS, ..best }
 }

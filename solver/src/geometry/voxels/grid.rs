@@ -77,9 +77,11 @@ impl ScalarGrid {
             .into_par_iter()
             .filter_map(|at| {
                 let distance = self.crossing_distance(at);
-                let normal = self.slope(at).try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-                let foot = self.local(at) - sign(at) * distance * normal;
-                distance.is_finite().then_some(KnownDistance { at, distance, foot })
+                distance.is_finite().then(|| {
+                    let normal = self.slope(at).try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+                    let foot = self.local(at) - sign(at) * distance * normal;
+                    KnownDistance { at, distance, foot }
+                })
             })
             .collect();
         let (mut values, feet) = self.hand_on(&known, f64::INFINITY);

@@ -231,10 +231,27 @@ fn keep_volume(distance: &mut ScalarGrid, voxels: f64) {
     }
 }
 
+/// The least and the largest value at the corners of a cell.
+fn corners(grid: &ScalarGrid, [i, j, k]: [usize; 3]) -> (f64, f64) {
+    let end = |at: usize, axis: usize| (at + 1).min(grid.size[axis] - 1);
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for c in [k, end(k, 2)] {
+        for b in [j, end(j, 1)] {
+            for a in [i, end(i, 0)] {
+                let value = grid.values[grid.index(a, b, c)];
+                (least, most) = (least.min(value), most.max(value));
+            }
+        }
+    }
+    (least, most)
+}
+
 /// Volume below zero in units of voxels, from 4ᵈ points in each cell that
 /// the zero level may cut.
 fn enclosed(distance: &ScalarGrid) -> f64 {
     const PARTS: usize = 4;
+    // A little more than half, for round-off.
+    const SURELY: f64 = 0.51;
     let parts = distance.size.map(|n| if n > 1 { PARTS } else { 1 });
     let diagonal = distance.step.norm();
     let fine = distance.step.max() / PARTS as f64;
@@ -246,6 +263,13 @@ fn enclosed(distance: &ScalarGrid) -> f64 {
             let value = distance.values[distance.index(ijk[0], ijk[1], ijk[2])];
             if value.abs() > diagonal + fine {
                 shares.extend((value < 0.0).then_some(1.0));
+                continue;
+            }
+            // Nor do cells count in part whose corners all lie away from the level.
+            let (least, most) = corners(distance, ijk);
+            if least > SURELY * fine || most < -SURELY * fine {
+                let share = if most < 0.0 { weight } else { 0.0 };
+                shares.extend(indices(parts).map(|_| share));
                 continue;
             }
             shares.extend(indices(parts).map(|abc| {
