@@ -1,15 +1,18 @@
 //! Problems with a closed form.
 
 mod contact;
+mod inclusion;
 mod motion;
 mod results;
 
-use crate::exact::{bar, biaxial, shear, torsion, uniaxial};
+use crate::exact::homogeneous::{biaxial, shear, uniaxial};
+use crate::exact::{bar, torsion};
 use crate::run::{integrate, prepare, solve_case};
 use crate::scene::Case;
 use crate::specimens::simple::relaxation;
 use crate::specimens::spacing::spacing_of;
 use crate::studies::closed_forms::contact::contact;
+use crate::studies::closed_forms::inclusion::inclusions;
 use crate::studies::closed_forms::motion::{swing, wave};
 use crate::studies::closed_forms::results::Results;
 use crate::studies::workbench::Workbench;
@@ -58,7 +61,7 @@ pub fn closed_forms(bench: &Workbench, study: &mut Study) -> Result<()> {
         ],
         rows: results.rows,
     });
-    Ok(())
+    inclusions(bench, study)
 }
 
 /// Two cells per spacing: quadrature dominates the error of these problems.

@@ -1,7 +1,7 @@
 //! What a hard case is.
 #![allow(non_snake_case)]
 
-use crate::exact::uniaxial;
+use crate::exact::homogeneous::uniaxial;
 use crate::studies::hard::bodies::{on_rollers, relax_elongation};
 use anyhow::{Context, Result};
 use mtled::algebra::tensor::{Matrix3, Vector3};

@@ -3,7 +3,7 @@
 #![allow(non_snake_case)]
 
 use crate::bundled::CASES;
-use crate::exact::uniaxial;
+use crate::exact::homogeneous::uniaxial;
 use crate::run::solve_case;
 use crate::scene::{Case, Knob, Setting, edited, parse_case};
 use crate::studies::workbench::relative_error;

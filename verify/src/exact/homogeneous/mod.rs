@@ -1,0 +1,6 @@
+//! Bodies that deform homogeneously.
+
+pub mod biaxial;
+mod roots;
+pub mod shear;
+pub mod uniaxial;
