@@ -5,9 +5,9 @@ use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::consistency::{
     Correction, Layout, Targets, connected_bodies, make_consistent,
 };
-use crate::discretisation::mls::{Approximation, PoorSupport};
+use crate::discretisation::mls::{Approximation, PoorSupport, Stiffness};
 use crate::discretisation::neighbours::Neighbours;
-use crate::discretisation::nodes::{HeldParts, NodeCloud, node_cloud};
+use crate::discretisation::nodes::{HeldParts, NodeCloud, node_cloud, place_nodes_on_borders};
 use crate::discretisation::patches::sort_into_patches;
 use crate::discretisation::quadrature::{Moves, NodalSpacing, Quadrature, quadrature_following};
 use crate::discretisation::rows::{Evaluated, Requested, Rows};
@@ -59,8 +59,13 @@ impl Discretisation {
         let recipe = &problem.recipe;
         let mut cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
         let panels = panels_of(problem, &body, &mut cloud)?;
+        let stiffness = Stiffness::at_sharp_borders(problem);
+        if let (Some(stiffness), false) = (&stiffness, matches!(recipe.cloud, Cloud::Given { .. }))
+        {
+            place_nodes_on_borders(&mut cloud, &body, stiffness);
+        }
         let prescribed = prescribed_nodes(problem, &cloud);
-        let approximation = approximation_of(&cloud, recipe, &dimension);
+        let approximation = approximation_of(&cloud, recipe, stiffness, &dimension);
         let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
         let mut quadrature = if recipe.gradients.is_second_order() {
             let held = held_nodes(&prescribed, &cloud);
@@ -181,10 +186,20 @@ impl Discretisation {
 }
 
 /// Shape functions with influence radii of dilation × spacing (method book, eq. 5.3).
-fn approximation_of(cloud: &NodeCloud, recipe: &Recipe, dimension: &Dimension) -> Approximation {
+fn approximation_of(
+    cloud: &NodeCloud,
+    recipe: &Recipe,
+    stiffness: Option<Stiffness>,
+    dimension: &Dimension,
+) -> Approximation {
     let radius = cloud.spacing.iter().map(|h| recipe.dilation * h).collect();
     let (basis, weight_function) = (recipe.basis, recipe.weight_function);
-    Approximation::new(cloud.positions.clone(), radius, basis, weight_function, dimension)
+    let nodes = cloud.positions.clone();
+    let approximation = Approximation::new(nodes, radius, basis, weight_function, dimension);
+    match stiffness {
+        Some(stiffness) => approximation.with_sides(stiffness, recipe.dilation),
+        None => approximation,
+    }
 }
 
 /// The held nodes of the boundary. Quadrature points in their supports are not moved:

@@ -2,7 +2,7 @@
 
 use crate::problem::recipe::{
     BackgroundGrid, Basis, Cloud, Enforcement, GradientStorage, Gradients, InsideRule, MassRule,
-    Recipe, VolumetricProjection, WeightFunction,
+    MaterialBorders, Recipe, VolumetricProjection, WeightFunction,
 };
 
 /// The recommended basis.
@@ -21,6 +21,8 @@ pub const GRADIENTS: Gradients = Gradients::SecondOrder { tolerance: GRADIENT_TO
 pub const GRADIENT_STORAGE: GradientStorage = GradientStorage::Double;
 /// The recommended treatment of nearly incompressible materials.
 pub const VOLUMETRIC_PROJECTION: VolumetricProjection = VolumetricProjection::Patches;
+/// The recommended treatment of borders between materials.
+pub const MATERIAL_BORDERS: MaterialBorders = MaterialBorders::Straddled;
 /// The recommended treatment of cells that the boundary cuts.
 pub const INSIDE: InsideRule = InsideRule::VolumeFraction;
 /// Two cells per node in three dimensions: 1.26³ = 2.
@@ -65,6 +67,7 @@ impl Recipe {
             gradients: GRADIENTS,
             gradient_storage: GRADIENT_STORAGE,
             volumetric_projection: VOLUMETRIC_PROJECTION,
+            material_borders: MATERIAL_BORDERS,
         }
     }
 }

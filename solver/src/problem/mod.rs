@@ -16,7 +16,7 @@ pub use conditions::{
 pub use motion::{Motion, Newton, Relaxation, RelaxationMass, StepControl};
 pub use recipe::{
     BackgroundGrid, Basis, Cloud, Enforcement, GradientStorage, Gradients, InsideRule, MassRule,
-    Recipe, Refinement, VolumetricProjection, WeightFunction,
+    MaterialBorders, Recipe, Refinement, VolumetricProjection, WeightFunction,
 };
 
 use crate::geometry::{Selector, Shape};

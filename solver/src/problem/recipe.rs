@@ -26,6 +26,8 @@ pub struct Recipe {
     pub gradient_storage: GradientStorage,
     /// Treatment of volumetric locking.
     pub volumetric_projection: VolumetricProjection,
+    /// Treatment of borders between materials.
+    pub material_borders: MaterialBorders,
 }
 
 impl Recipe {
@@ -236,6 +238,16 @@ pub enum VolumetricProjection {
     /// J projected onto linear functions on patches of quadrature points where the
     /// material is nearly incompressible, J of each point elsewhere.
     Patches,
+}
+
+/// Borders between regions of different stiffness, where displacements have a kink (method
+/// book, section 6).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MaterialBorders {
+    /// Supports reach across them, which smooths the kink.
+    Straddled,
+    /// Nodes lie on them, and points do not see nodes that are softer than they are.
+    Sharp,
 }
 
 /// How prescribed displacements are enforced, as shape functions do not

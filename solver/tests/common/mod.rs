@@ -80,6 +80,7 @@ fn body(dimension: Dimension, cells: usize) -> Problem {
             gradients: Gradients::Plain,
             gradient_storage: GradientStorage::Double,
             volumetric_projection: VolumetricProjection::None,
+            material_borders: MaterialBorders::Straddled,
         },
         conditions: vec![],
         loads: Loads::default(),

@@ -1,8 +1,8 @@
 //! What may be changed about a case by name: in plans, on the command line, in a search.
 
 use crate::scene::format::{
-    BasisFormat, EnforcementFormat, GradientsFormat, MassFormat, SolverFormat,
-    VolumetricProjectionFormat, WeightFunctionFormat,
+    BasisFormat, EnforcementFormat, GradientsFormat, MassFormat, MaterialBordersFormat,
+    SolverFormat, VolumetricProjectionFormat, WeightFunctionFormat,
 };
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
@@ -86,6 +86,9 @@ knobs! {
     VolumetricProjection, "volumetric_projection", Some("volumetric-projection"),
         ["discretisation", "volumetric_projection"], Word(VolumetricProjectionFormat::WORDS),
         "Projection of the change of volume in the bulk energy";
+    MaterialBorders, "material_borders", Some("material-borders"),
+        ["discretisation", "material_borders"], Word(MaterialBordersFormat::WORDS),
+        "Borders between materials of different stiffness";
     Jitter, "jitter", Some("jitter"), ["discretisation", "jitter"], Number,
         "Largest random move of nodes over their spacing; a lattice becomes jittered";
     Cloud, "cloud", None, ["discretisation", "seed"], Number,

@@ -4,7 +4,7 @@
 use super::error::WarpError;
 use crate::run::StoredField;
 use mtled::algebra::tensor::Vector3;
-use mtled::discretisation::mls::Approximation;
+use mtled::discretisation::mls::{Approximation, Stiffness};
 use mtled::geometry::Shape;
 use mtled::problem::{Dimension, Problem};
 
@@ -44,13 +44,16 @@ impl DisplacementField {
         decay: Option<f64>,
     ) -> Result<DisplacementField, WarpError> {
         let (dimension, recipe) = (&problem.dimension, &problem.recipe);
-        let approximation = Approximation::new(
+        let mut approximation = Approximation::new(
             stored.nodes(),
             stored.influence_radius_m.clone(),
             recipe.basis,
             recipe.weight_function,
             dimension,
         );
+        if let Some(stiffness) = Stiffness::at_sharp_borders(problem) {
+            approximation = approximation.with_sides(stiffness, recipe.dilation);
+        }
         let body = problem.body.section(dimension)?;
         let plane = match dimension {
             Dimension::Three => None,

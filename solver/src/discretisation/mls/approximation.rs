@@ -4,6 +4,7 @@
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::mls::inverse::{inverse, norm_1};
 use crate::discretisation::mls::regularised::{linear_part, regularise, restore_linear};
+use crate::discretisation::mls::sides::{Sides, Stiffness};
 use crate::discretisation::mls::support::{
     PoorSupport, Scratch, Support, Weighed, dimension, monomials,
 };
@@ -23,6 +24,8 @@ pub struct Approximation {
     /// Weight function of all nodes.
     pub weight_function: WeightFunction,
     components: usize,
+    /// Where points do not see all nodes around them.
+    sides: Option<Sides>,
     smallest_radius: f64,
     largest_radius: f64,
     neighbours: Neighbours,
@@ -51,10 +54,19 @@ impl Approximation {
             basis,
             weight_function,
             components,
+            sides: None,
             smallest_radius,
             largest_radius,
             neighbours,
         }
+    }
+
+    /// The same where points do not see nodes that are softer than they are.
+    /// Radii are `dilation` spacings.
+    pub fn with_sides(self, stiffness: Stiffness, dilation: f64) -> Approximation {
+        let spacing: Vec<f64> = self.influence_radius.iter().map(|r| r / dilation).collect();
+        let sides = Some(Sides::new(stiffness, &self.nodes, &spacing));
+        Approximation { sides, ..self }
     }
 
     /// Number of monomials in the basis.
@@ -138,7 +150,8 @@ impl Approximation {
     /// φ_a(X) = w_a pᵀ(X_a) A⁻¹(X) p(X) and its full derivatives (Lancaster,
     /// Salkauskas 1981; Belytschko, Lu, Gu 1994, eqs. 9–18; method book,
     /// eqs. 6.2 and 6.3). Where the support is poor the radii are enlarged in
-    /// steps of 10 %.
+    /// steps of 10 %; where it stays poor with the nodes of one side of a border, all are
+    /// seen.
     pub fn evaluate(&self, X: &Vector3) -> Result<Support, PoorSupport> {
         let mut support = Support::default();
         self.evaluate_into(X, &mut Scratch::default(), &mut support)?;
@@ -153,14 +166,33 @@ impl Approximation {
         scratch: &mut Scratch,
         support: &mut Support,
     ) -> Result<(), PoorSupport> {
+        if let Some(sides) = &self.sides {
+            let softest = sides.softest_seen(X);
+            let seen = |node: u32| sides.is_seen(node, softest);
+            if self.evaluate_seeing(X, seen, scratch, support).is_ok() {
+                return Ok(());
+            }
+        }
+        self.evaluate_seeing(X, |_| true, scratch, support)
+    }
+
+    /// From the nodes around X that are `seen` only.
+    fn evaluate_seeing(
+        &self,
+        X: &Vector3,
+        seen: impl Fn(u32) -> bool,
+        scratch: &mut Scratch,
+        support: &mut Support,
+    ) -> Result<(), PoorSupport> {
         let mut enlargement = 1.0;
         loop {
             support.clear(enlargement);
+            let (s, total) = self.weigh(X, enlargement, &seen, scratch);
             let result = match self.basis_size() {
-                3 => self.evaluate_with::<3>(X, enlargement, scratch, support),
-                4 => self.evaluate_with::<4>(X, enlargement, scratch, support),
-                6 => self.evaluate_with::<6>(X, enlargement, scratch, support),
-                _ => self.evaluate_with::<10>(X, enlargement, scratch, support),
+                3 => self.evaluate_with::<3>(s, total, &scratch.near, support),
+                4 => self.evaluate_with::<4>(s, total, &scratch.near, support),
+                6 => self.evaluate_with::<6>(s, total, &scratch.near, support),
+                _ => self.evaluate_with::<10>(s, total, &scratch.near, support),
             };
             enlargement *= 1.1;
             if result.is_ok() || enlargement > LARGEST_ENLARGEMENT {
@@ -169,15 +201,14 @@ impl Approximation {
         }
     }
 
+    /// From the nodes that cover a point, the length s \[m\] and Σw.
     fn evaluate_with<const M: usize>(
         &self,
-        X: &Vector3,
-        enlargement: f64,
-        scratch: &mut Scratch,
+        s: f64,
+        total: f64,
+        near: &[Weighed],
         support: &mut Support,
     ) -> Result<(), PoorSupport> {
-        let (s, total) = self.weigh(X, enlargement, scratch);
-        let near = &scratch.near[..];
         let n = near.len();
         if n < self.smallest_support() {
             return Err(PoorSupport { support_size: n, condition: f64::INFINITY });
@@ -217,16 +248,22 @@ impl Approximation {
         Ok(())
     }
 
-    /// Writes the nodes that cover X and their weights to `scratch`, ascending.
+    /// Writes the nodes that cover X and are `seen`, and their weights, to `scratch`, ascending.
     /// Returns the root of their weighted mean squared distance s \[m\], by which
     /// offsets are scaled (method book, eq. 6.1), and Σw.
-    fn weigh(&self, X: &Vector3, enlargement: f64, scratch: &mut Scratch) -> (f64, f64) {
+    fn weigh(
+        &self,
+        X: &Vector3,
+        enlargement: f64,
+        seen: impl Fn(u32) -> bool,
+        scratch: &mut Scratch,
+    ) -> (f64, f64) {
         let Scratch { found, near } = scratch;
         found.clear();
         near.clear();
         self.neighbours.for_each_within(X, self.largest_radius * enlargement, |node, offset| {
             let radius = self.influence_radius[node] * enlargement;
-            if offset.norm_squared() < radius * radius {
+            if offset.norm_squared() < radius * radius && seen(node as u32) {
                 found.push(node as u32);
             }
         });

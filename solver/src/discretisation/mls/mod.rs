@@ -3,10 +3,13 @@
 mod approximation;
 mod inverse;
 mod regularised;
+mod sides;
 mod support;
 
 pub use approximation::{Approximation, LARGEST_ENLARGEMENT};
 pub(crate) use inverse::inverse;
+pub(crate) use sides::Crossing;
+pub use sides::Stiffness;
 pub(crate) use support::Scratch;
 pub use support::{PoorSupport, Support};
 

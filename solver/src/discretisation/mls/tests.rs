@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::algebra::tensor::Vector3;
-use crate::problem::{Basis, Dimension, WeightFunction};
+use crate::geometry::{Selector, Shape};
+use crate::material::{ElasticConstants, Law, LinearElastic, Material};
+use crate::problem::{Basis, Dimension, Region, WeightFunction};
 use proptest::prelude::*;
 
 const H: f64 = 0.1;
@@ -203,5 +205,41 @@ fn the_quadratic_error_of_the_regularised_basis_is_proportional_to_it() {
     for pair in errors.windows(2) {
         let ratio = pair[0] / pair[1];
         assert!((50.0..150.0).contains(&ratio), "{errors:?}");
+    }
+}
+
+#[test]
+fn points_of_the_stiffer_side_see_their_own_nodes_and_reproduce_linear_fields_as_all_do() {
+    let plain = approximation(
+        Dimension::Three,
+        Basis::Linear,
+        WeightFunction::QuarticSpline,
+        &[0.1, -0.2, 0.15, 0.05, -0.1],
+        Vector3::zeros(),
+    );
+    let border = 0.26;
+    let half = |side: f64| Selector::Inside {
+        shape: Shape::HalfSpace { point: Vector3::x() * border, normal: Vector3::x() * side },
+        tolerance: 0.0,
+    };
+    let region = |part: Selector, young_modulus: f64| {
+        let constants = ElasticConstants::from_young_poisson(young_modulus, 0.3).unwrap();
+        let law = Law::LinearElastic(LinearElastic::new(constants));
+        Region { name: "half".into(), part, material: Material { density: 1.0, law } }
+    };
+    let regions = [region(half(1.0), 10.0), region(half(-1.0), 1.0)];
+    let sided = plain.clone().with_sides(Stiffness::new(&regions).unwrap(), 1.9);
+    let field = |X: &Vector3| 0.3 + X.x - 2.0 * X.y + 0.5 * X.z;
+    for x in [0.12, 0.2, 0.25, 0.27, 0.33, 0.4] {
+        let X = Vector3::new(x, 0.24, 0.27);
+        let (support, all) = (sided.evaluate(&X).unwrap(), plain.evaluate(&X).unwrap());
+        let softer = |node: &&u32| plain.nodes[**node as usize].x > border;
+        match x < border {
+            true => assert_eq!(support.nodes.iter().filter(softer).count(), 0),
+            false => assert_eq!(support.phi, all.phi),
+        }
+        let values = support.nodes.iter().map(|&node| field(&plain.nodes[node as usize]));
+        let value: f64 = values.zip(&support.phi).map(|(value, phi)| value * phi).sum();
+        assert!((value - field(&X)).abs() < 1e-12, "{value} at {X}");
     }
 }

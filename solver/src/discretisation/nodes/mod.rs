@@ -1,11 +1,13 @@
 //! Node clouds: positions and spacings (method book, section 5).
 
+mod borders;
 mod cloud;
 mod given;
 mod graded;
 mod held_edges;
 mod regular;
 
+pub(crate) use borders::place_nodes_on_borders;
 pub use cloud::{NodeCloud, refuse_fine_spacing};
 pub use given::refuse_far_nodes;
 pub use graded::{RequestedSizes, SizeField};

@@ -92,4 +92,5 @@ class Recipe:
     gradient_tolerance: float | None = None
     gradient_storage: str | None = None
     volumetric_projection: str | None = None
+    material_borders: str | None = None
     grid: Grid | None = None

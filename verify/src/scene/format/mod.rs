@@ -18,7 +18,7 @@ pub use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
 pub use material::{LawFormat, MaterialFormat, VolumetricFormat};
 pub use recipe::{
     BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientsFormat, GridFormat,
-    MassFormat, VolumetricProjectionFormat, WeightFunctionFormat,
+    MassFormat, MaterialBordersFormat, VolumetricProjectionFormat, WeightFunctionFormat,
 };
 pub use time::{
     LatticeFormat, MethodFormat, OutputFormat, PointsFormat, ProbeFormat, SolverFormat, TimeFormat,

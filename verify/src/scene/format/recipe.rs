@@ -3,8 +3,8 @@
 use crate::scene::format::choice::choice;
 use crate::scene::format::geometry::SelectorFormat;
 use mtled::problem::{
-    Enforcement, GradientStorage, InsideRule, MassRule, Recipe, VolumetricProjection,
-    WeightFunction,
+    Enforcement, GradientStorage, InsideRule, MassRule, MaterialBorders, Recipe,
+    VolumetricProjection, WeightFunction,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -55,6 +55,8 @@ pub struct DiscretisationFormat {
     pub gradient_storage: Option<GradientStorageFormat>,
     /// Projection of the change of volume in the bulk energy; "patches" if left out.
     pub volumetric_projection: Option<VolumetricProjectionFormat>,
+    /// Borders between materials of different stiffness; "straddled" if left out.
+    pub material_borders: Option<MaterialBordersFormat>,
     /// The background grid that quadrature points come from; as below if left out.
     #[serde(default)]
     pub grid: GridFormat,
@@ -68,6 +70,7 @@ impl DiscretisationFormat {
         choose(&mut recipe.enforcement, self.enforcement);
         choose(&mut recipe.gradient_storage, self.gradient_storage);
         choose(&mut recipe.volumetric_projection, self.volumetric_projection);
+        choose(&mut recipe.material_borders, self.material_borders);
     }
 }
 
@@ -159,6 +162,17 @@ choice! {
         "none" None,
         /// On patches of points where ν is larger than 0.3.
         "patches" Patches,
+    }
+}
+
+choice! {
+    /// Borders between materials of different stiffness, where displacements have a kink.
+    MaterialBordersFormat for MaterialBorders {
+        /// Supports reach across them, which smooths the kink.
+        "straddled" Straddled,
+        /// Nodes are put on them (not into a cloud from a file), and the stiffer side does not
+        /// see the nodes of the softer one, unless one is thinner than a spacing.
+        "sharp" Sharp,
     }
 }
 

@@ -11,10 +11,10 @@ use mtled::geometry::{Selector, Shape};
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{
-    Amplitude, Cloud, Dimension, EssentialCondition, Field, Motion, Newton, Prescribed, Problem,
-    Recipe, Region,
+    Amplitude, Cloud, Dimension, EssentialCondition, Field, MaterialBorders, Motion, Newton,
+    Prescribed, Problem, Recipe, Region,
 };
-use mtled_checks::study::{Cell, Study, Table, number};
+use mtled_checks::study::{Cell, Study, Table, number, text};
 
 /// Edge of the cube \[m\]; the radius of the ball is a quarter of it.
 const EDGE: f64 = 0.1;
@@ -23,6 +23,9 @@ const ELASTICITY: (f64, f64) = (3000.0, 0.3);
 /// Names in keys, and Young's modulus of the ball over that around it.
 const BALLS: [(&str, f64); 4] =
     [("soft_300", 1.0 / 300.0), ("soft_10", 0.1), ("stiff_10", 10.0), ("stiff_300", 300.0)];
+/// Words of the case format.
+const BORDERS: [(&str, MaterialBorders); 2] =
+    [("straddled", MaterialBorders::Straddled), ("sharp", MaterialBorders::Sharp)];
 /// Of the nodes \[spacing\].
 const JITTER: f64 = 0.3;
 /// Places along an edge at which displacements are compared.
@@ -33,43 +36,53 @@ pub fn inclusions(bench: &Workbench, study: &mut Study) -> Result<()> {
     let (coarse, fine) = (8, bench.pick(12, 16));
     let mut rows = Vec::new();
     for (name, stiffness_ratio) in BALLS {
-        let ball = inclusion(stiffness_ratio);
-        let [at_coarse, at_fine] = [coarse, fine].map(|spacings| errors(bench, ball, spacings));
-        let (at_coarse, at_fine) = (at_coarse?, at_fine?);
-        for (part, error) in [("inside", at_coarse.inside), ("outside", at_coarse.outside)] {
-            study.checks.push(bench.regression(
-                &format!("closed_forms/inclusion/{name}/{part}"),
-                &format!("displacement {part} a ball of {stiffness_ratio:.3} times the stiffness, {coarse} spacings"),
-                error,
-                "1",
-                "Eshelby 1957 and Goodier 1933, two spacings per radius; supports straddle the border",
-            ));
+        for (word, borders) in BORDERS {
+            let ball = inclusion(stiffness_ratio);
+            let at_coarse = errors(bench, ball, borders, coarse)?;
+            let at_fine = errors(bench, ball, borders, fine)?;
+            for (part, error) in [("inside", at_coarse.inside), ("outside", at_coarse.outside)] {
+                study.checks.push(bench.regression(
+                    &format!("closed_forms/inclusion/{name}/{word}/{part}"),
+                    &format!(
+                        "ball of {stiffness_ratio:.3} times the stiffness, {word} border: {part}"
+                    ),
+                    error,
+                    "1",
+                    "closed form of Eshelby 1957 and Goodier 1933; two spacings per radius",
+                ));
+            }
+            rows.push(vec![
+                Cell::Number(stiffness_ratio),
+                Cell::Text(word.into()),
+                Cell::Number(at_coarse.inside),
+                Cell::Number(at_coarse.outside),
+                Cell::Number(at_fine.inside),
+                Cell::Number(at_fine.outside),
+            ]);
         }
-        rows.push(vec![
-            Cell::Number(stiffness_ratio),
-            Cell::Number(at_coarse.inside),
-            Cell::Number(at_coarse.outside),
-            Cell::Number(at_fine.inside),
-            Cell::Number(at_fine.outside),
-        ]);
     }
-    study.tables.push(Table {
-        title: "A ball of another material in a cube: rms error of the displacement".into(),
-        columns: vec![
-            number("stiffness of the ball over that around it", "1"),
-            number(&format!("inside, {coarse} spacings per edge"), "1"),
-            number("outside", "1"),
-            number(&format!("inside, {fine} spacings"), "1"),
-            number("outside", "1"),
-        ],
-        rows,
-    });
+    study.tables.push(table(rows, coarse, fine));
     study.notes.push(
         "The error inside a ball is over the displacement from its centre, its own or, if larger, \
          that of the same part of an even cube; the error outside over the displacement there."
             .into(),
     );
     Ok(())
+}
+
+fn table(rows: Vec<Vec<Cell>>, coarse: usize, fine: usize) -> Table {
+    Table {
+        title: "A ball of another material in a cube: rms error of the displacement".into(),
+        columns: vec![
+            number("stiffness of the ball over that around it", "1"),
+            text("border"),
+            number(&format!("inside, {coarse} spacings per edge"), "1"),
+            number("outside", "1"),
+            number(&format!("inside, {fine} spacings"), "1"),
+            number("outside", "1"),
+        ],
+        rows,
+    }
 }
 
 fn inclusion(stiffness_ratio: f64) -> Inclusion {
@@ -82,10 +95,15 @@ fn centre() -> Vector3 {
 }
 
 /// The cube with `spacings` of them along an edge.
-fn problem(bench: &Workbench, ball: Inclusion, spacings: usize) -> Result<Problem> {
+fn problem(
+    bench: &Workbench,
+    ball: Inclusion,
+    material_borders: MaterialBorders,
+    spacings: usize,
+) -> Result<Problem> {
     let spacing = EDGE / spacings as f64;
     let cloud = Cloud::Jittered { spacing, jitter: JITTER, seed: bench.seed(1) };
-    let recipe = Recipe { cloud, ..Recipe::with_spacing(spacing) };
+    let recipe = Recipe { cloud, material_borders, ..Recipe::with_spacing(spacing) };
     let body = Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(EDGE) };
     let mut problem = free_body(Dimension::Three, body, material(1.0)?, recipe);
     let shape = Shape::Sphere { centre: centre(), radius: ball.radius };
@@ -117,8 +135,13 @@ struct Errors {
     outside: f64,
 }
 
-fn errors(bench: &Workbench, ball: Inclusion, spacings: usize) -> Result<Errors> {
-    let problem = problem(bench, ball, spacings)?;
+fn errors(
+    bench: &Workbench,
+    ball: Inclusion,
+    borders: MaterialBorders,
+    spacings: usize,
+) -> Result<Errors> {
+    let problem = problem(bench, ball, borders, spacings)?;
     let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
     let at = |i: usize| (i as f64 + 0.5) * EDGE / PLACES as f64;
     let place =
