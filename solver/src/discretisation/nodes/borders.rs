@@ -91,7 +91,7 @@ mod tests {
                     "the border is of the stiffer side"
                 );
             }
-            let between = |X: &&Vector3| (1e-9..0.4 * spacing).contains(&distance(X));
+            let between = |X: &&Vector3| (1e-9..0.3 * spacing).contains(&distance(X));
             assert_eq!(cloud.positions.iter().filter(between).count(), 0);
             assert!((cloud.positions.len() as f64 / before - 1.0).abs() < 0.05);
         }
