@@ -38,13 +38,14 @@ pub(super) struct Solution<const M: usize> {
 }
 
 impl<'a, const M: usize> System<'a, M> {
-    /// Multipliers yield by `compliance` times the diagonal of K.
+    /// From the blocks of K on its diagonal; multipliers yield by `compliance` times the
+    /// diagonal.
     pub fn new(
         operator: &'a Operator<'a>,
+        mut blocks: Vec<SMatrix<f64, M, M>>,
         compliance: f64,
         smooth: Option<Smooth<'a>>,
     ) -> System<'a, M> {
-        let mut blocks = operator.diagonal::<M>();
         let mut yields = Vec::with_capacity(blocks.len());
         for block in &mut blocks {
             let own = block.diagonal() * compliance;

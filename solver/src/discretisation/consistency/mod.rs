@@ -24,6 +24,7 @@ mod conjugate_gradients;
 mod connected_bodies;
 mod multilevel;
 mod operator;
+mod products;
 
 pub use connected_bodies::connected_bodies;
 pub use operator::Layout;
@@ -94,10 +95,11 @@ pub fn make_consistent(
 ) -> Correction {
     let areas: Vec<Nodal<1>> = targets.areas.iter().map(|area| area.transpose()).collect();
     let (operator, gradients) = Operator::new(rows, layout);
-    let multilevel = Multilevel::new(&operator, layout);
+    let diagonal = operator.diagonal::<1>();
+    let multilevel = Multilevel::new(&operator, layout, &diagonal);
     let affine = Affine::new(layout.nodes, bodies);
     let smooth = Smooth { multilevel: &multilevel, affine: &affine };
-    let system = System::new(&operator, 0.0, Some(smooth));
+    let system = System::new(&operator, diagonal, 0.0, Some(smooth));
     let rest = |gradients: &[Vector3]| {
         let mut rest = difference(&areas, &operator.integrals(gradients));
         system.project(&mut rest);
@@ -132,7 +134,7 @@ fn integrate_linear_stress(
     moments: &[Matrix3],
     gradients: &mut [Vector3],
 ) -> usize {
-    let system = System::<3>::new(operator, COMPLIANCE, None);
+    let system = System::<3>::new(operator, operator.diagonal(), COMPLIANCE, None);
     let residual = difference(moments, &operator.integrals(gradients));
     let goal = LINEAR_STRESS_TOLERANCE * norm(&residual);
     let solution = system.solve(residual, goal);

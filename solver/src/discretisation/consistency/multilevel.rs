@@ -11,7 +11,7 @@ use crate::algebra::random::xorshift;
 use crate::algebra::spline_lattice::{Lattice, Reach};
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::consistency::operator::{Layout, Operator};
-use nalgebra::Vector4;
+use nalgebra::{SMatrix, Vector4};
 use rayon::prelude::*;
 
 /// Spacing of the finest lattice over that of the nodes \[–\].
@@ -39,9 +39,11 @@ struct Level {
 }
 
 impl Multilevel {
-    pub fn new(operator: &Operator, layout: &Layout) -> Multilevel {
-        let diagonal: Vec<f64> =
-            operator.diagonal::<1>().into_iter().map(|block| block.x).collect();
+    pub fn new(
+        operator: &Operator,
+        layout: &Layout,
+        diagonal: &[SMatrix<f64, 1, 1>],
+    ) -> Multilevel {
         let mean = layout.spacing.iter().sum::<f64>() / layout.spacing.len() as f64;
         let smallest = layout.spacing.iter().copied().fold(f64::INFINITY, f64::min);
         let mut edge = FINEST * smallest;
@@ -60,7 +62,7 @@ impl Multilevel {
             lattice = lattice.coarser();
             lattices.push(lattice);
         }
-        let level = |lattice| level(operator, layout, lattice, &diagonal, &bending, &sample);
+        let level = |lattice| level(operator, layout, lattice, diagonal, &bending, &sample);
         let levels = lattices.into_par_iter().map(level).collect();
         Multilevel { reaches, levels }
     }
@@ -134,13 +136,13 @@ fn level(
     operator: &Operator,
     layout: &Layout,
     lattice: Lattice,
-    diagonal: &[f64],
+    diagonal: &[SMatrix<f64, 1, 1>],
     bending: &[f64],
     sample: &[usize],
 ) -> Level {
     let mut lumped = vec![0.0; lattice.len()];
     for ((X, d), bend) in layout.nodes.iter().zip(diagonal).zip(bending) {
-        lattice.at(X).for_each(|i, b| lumped[i] += if b != 0.0 { d * bend } else { 0.0 });
+        lattice.at(X).for_each(|i, b| lumped[i] += if b != 0.0 { d.x * bend } else { 0.0 });
     }
     let measure = |q: &usize| energies(operator, layout, &lattice, bending, *q);
     let sum = |samples: &[usize]| samples.iter().map(measure).fold(NOTHING, add);

@@ -1,16 +1,17 @@
 //! Moving least squares on a cloud: φ and Grad φ at a point.
 #![allow(non_snake_case)]
 
+use crate::algebra::lanes::with_vectors;
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::mls::inverse::{inverse, norm_1};
 use crate::discretisation::mls::regularised::{linear_part, regularise, restore_linear};
 use crate::discretisation::mls::sides::{Sides, Stiffness};
-use crate::discretisation::mls::support::{
-    PoorSupport, Scratch, Support, Weighed, dimension, monomials,
-};
+use crate::discretisation::mls::sums::{fill, moment_matrix, slope_moments, weigh};
+use crate::discretisation::mls::support::{Near, PoorSupport, Scratch, Support, dimension};
 use crate::discretisation::neighbours::Neighbours;
 use crate::problem::{Basis, Dimension, WeightFunction};
-use nalgebra::{SMatrix, SVector};
+use fearless_simd::{Level, Simd, f64x4, prelude::*};
+use nalgebra::SVector;
 
 /// Nodes with their influence domains, ready to be evaluated anywhere.
 #[derive(Debug, Clone)]
@@ -185,15 +186,13 @@ impl Approximation {
         support: &mut Support,
     ) -> Result<(), PoorSupport> {
         let mut enlargement = 1.0;
+        let level = Level::new();
         loop {
             support.clear(enlargement);
-            let (s, total) = self.weigh(X, enlargement, &seen, scratch);
-            let result = match self.basis_size() {
-                3 => self.evaluate_with::<3>(s, total, &scratch.near, support),
-                4 => self.evaluate_with::<4>(s, total, &scratch.near, support),
-                6 => self.evaluate_with::<6>(s, total, &scratch.near, support),
-                _ => self.evaluate_with::<10>(s, total, &scratch.near, support),
-            };
+            self.find(X, enlargement, &seen, &mut scratch.near);
+            let result = with_vectors!(level, (simd, _numbers) => {
+                self.evaluate_near(simd, X, enlargement, &mut scratch.near, support)
+            });
             enlargement *= 1.1;
             if result.is_ok() || enlargement > LARGEST_ENLARGEMENT {
                 return result;
@@ -201,24 +200,53 @@ impl Approximation {
         }
     }
 
-    /// From the nodes that cover a point, the length s \[m\] and Σw.
-    fn evaluate_with<const M: usize>(
+    /// The nodes that cover X and are `seen`, ascending.
+    fn find(&self, X: &Vector3, enlargement: f64, seen: impl Fn(u32) -> bool, near: &mut Near) {
+        near.nodes.clear();
+        self.neighbours.for_each_within(X, self.largest_radius * enlargement, |node, offset| {
+            let radius = self.influence_radius[node] * enlargement;
+            if offset.norm_squared() < radius * radius && seen(node as u32) {
+                near.nodes.push(node as u32);
+            }
+        });
+        near.nodes.sort_unstable();
+    }
+
+    /// From the nodes that were found.
+    #[inline(always)]
+    fn evaluate_near<S: Simd>(
         &self,
-        s: f64,
-        total: f64,
-        near: &[Weighed],
+        simd: S,
+        X: &Vector3,
+        enlargement: f64,
+        near: &mut Near,
         support: &mut Support,
     ) -> Result<(), PoorSupport> {
-        let n = near.len();
-        if n < self.smallest_support() {
-            return Err(PoorSupport { support_size: n, condition: f64::INFINITY });
+        if near.nodes.len() < self.smallest_support() {
+            let support_size = near.nodes.len();
+            return Err(PoorSupport { support_size, condition: f64::INFINITY });
         }
-        let mut A = SMatrix::<f64, M, M>::zeros();
-        for a in near {
-            let p = monomials::<M>(&a.scaled);
-            A.ger(a.weight, &p, &p, 1.0);
+        let (s, total) = self.weigh(simd, X, enlargement, near);
+        match self.basis_size() {
+            3 => self.evaluate_with::<S, 3>(simd, s, total, near, support),
+            4 => self.evaluate_with::<S, 4>(simd, s, total, near, support),
+            6 => self.evaluate_with::<S, 6>(simd, s, total, near, support),
+            _ => self.evaluate_with::<S, 10>(simd, s, total, near, support),
         }
-        let poor = |condition| PoorSupport { support_size: n, condition };
+    }
+
+    /// From the nodes that cover a point, the length s \[m\] and Σw.
+    #[inline(always)]
+    fn evaluate_with<S: Simd, const M: usize>(
+        &self,
+        simd: S,
+        s: f64,
+        total: f64,
+        near: &Near,
+        support: &mut Support,
+    ) -> Result<(), PoorSupport> {
+        let mut A = moment_matrix::<S, M>(simd, near);
+        let poor = |condition| PoorSupport { support_size: near.nodes.len(), condition };
         let penalty = regularise(self.basis, self.components, &mut A, near, total, s);
         let inverse = inverse(&A).ok_or(poor(f64::INFINITY))?;
         let linear = penalty.and_then(|_| linear_part(&A, self.components + 1));
@@ -240,79 +268,65 @@ impl Approximation {
         let mut right = SVector::<f64, M>::zeros();
         right[0] = 1.0;
         let c = if penalty.is_some() { solve(right) } else { inverse.column(0).into_owned() };
-        let slopes = slope_right_sides(near, penalty, &c, s).map(solve);
-        support.fill(near, &c, &slopes);
+        let moments = slope_moments(simd, near, &c);
+        let slopes = slope_right_sides(moments, penalty, &c, s).map(solve);
+        fill(simd, near, &c, &slopes, support);
         if let Some((inverse, _)) = linear {
             restore_linear::<M>(self.components, support, near, &inverse, s);
         }
         Ok(())
     }
 
-    /// Writes the nodes that cover X and are `seen`, and their weights, to `scratch`, ascending.
-    /// Returns the root of their weighted mean squared distance s \[m\], by which
-    /// offsets are scaled (method book, eq. 6.1), and Σw.
-    fn weigh(
+    /// Weighs the nodes that were found. Returns the root of their weighted mean squared
+    /// distance s \[m\], by which offsets are scaled (method book, eq. 6.1), and Σw.
+    #[inline(always)]
+    fn weigh<S: Simd>(
         &self,
+        simd: S,
         X: &Vector3,
         enlargement: f64,
-        seen: impl Fn(u32) -> bool,
-        scratch: &mut Scratch,
+        near: &mut Near,
     ) -> (f64, f64) {
-        let Scratch { found, near } = scratch;
-        found.clear();
-        near.clear();
-        self.neighbours.for_each_within(X, self.largest_radius * enlargement, |node, offset| {
-            let radius = self.influence_radius[node] * enlargement;
-            if offset.norm_squared() < radius * radius && seen(node as u32) {
-                found.push(node as u32);
+        let Near { nodes, fours } = near;
+        fours.clear();
+        let zero = f64x4::splat(simd, 0.0);
+        let (mut total, mut moment) = (zero, zero);
+        for nodes in nodes.chunks(4) {
+            // Where there is no node, one beyond its radius.
+            let (mut offsets, mut radii) = ([[2.0; 4]; 3], [1.0; 4]);
+            for (lane, &node) in nodes.iter().enumerate() {
+                let position = &self.nodes[node as usize];
+                (0..3).for_each(|k| offsets[k][lane] = position[k] - X[k]);
+                radii[lane] = self.influence_radius[node as usize] * enlargement;
             }
-        });
-        found.sort_unstable();
-        let (mut total, mut moment) = (0.0, 0.0);
-        for &node in found.iter() {
-            let offset = self.nodes[node as usize] - X;
-            let radius = self.influence_radius[node as usize] * enlargement;
-            let distance_squared = offset.norm_squared();
-            let distance = distance_squared.sqrt();
-            let (weight, slope) = self.weight_function.value_and_derivative(distance / radius);
-            let gradient = match distance > 1e-12 * radius {
-                true => offset * (-slope / (radius * distance)),
-                false => Vector3::zeros(),
-            };
-            total += weight;
-            moment += weight * distance_squared;
-            near.push(Weighed { node, offset, scaled: offset, weight, gradient });
+            let (four, weight, square) = weigh(simd, self.weight_function, offsets, radii);
+            (total, moment) = (total + weight, moment + square);
+            fours.push(four);
         }
+        let (total, moment) = (total.reduce_sum(), moment.reduce_sum());
         let s = (moment / total).sqrt();
-        near.iter_mut().for_each(|a| a.scaled = a.offset / s);
+        let inverse = 1.0 / s;
+        for four in fours {
+            four.scaled.iter_mut().flatten().for_each(|x| *x *= inverse);
+        }
         (s, total)
     }
 }
 
-/// e_{k+1}/s − A,_k c: with A⁻¹ they give the derivatives of the
+/// e_{k+1}/s − A,_k c from the second term: with A⁻¹ they give the derivatives of the
 /// coefficients A⁻¹ p(X) along the directions k.
 fn slope_right_sides<const M: usize>(
-    near: &[Weighed],
+    moments: [SVector<f64, M>; 3],
     penalty: Option<Vector3>,
     c: &SVector<f64, M>,
     s: f64,
 ) -> [SVector<f64, M>; 3] {
-    let mut right = [SVector::<f64, M>::zeros(); 3];
+    let mut right = moments.map(|moment| -moment);
     for (k, column) in right.iter_mut().enumerate().take(dimension(M)) {
-        column[k + 1] = 1.0 / s;
-    }
-    for a in near {
-        let p = monomials::<M>(&a.scaled);
-        let value = c.dot(&p);
-        for (k, column) in right.iter_mut().enumerate().take(dimension(M)) {
-            column.axpy(-a.gradient[k] * value, &p, 1.0);
-        }
-    }
-    if let Some(slope) = penalty {
-        for (k, column) in right.iter_mut().enumerate().take(dimension(M)) {
-            for i in dimension(M) + 1..M {
-                column[i] -= slope[k] * c[i];
-            }
+        column[k + 1] += 1.0 / s;
+        let Some(slope) = penalty else { continue };
+        for i in dimension(M) + 1..M {
+            column[i] -= slope[k] * c[i];
         }
     }
     right

@@ -5,13 +5,13 @@ use nalgebra::SMatrix;
 
 /// The inverse of a symmetric matrix by Cholesky, from its lower triangle; `None` unless
 /// positive definite.
-#[inline]
+#[inline(always)]
 pub(crate) fn inverse<const M: usize>(A: &SMatrix<f64, M, M>) -> Option<SMatrix<f64, M, M>> {
-    let L = cholesky(A)?;
+    let (L, over) = cholesky(A)?;
     let mut inverse = SMatrix::<f64, M, M>::identity();
     for column in 0..M {
         for i in column..M {
-            let x = inverse[(i, column)] / L[(i, i)];
+            let x = inverse[(i, column)] * over[i];
             inverse[(i, column)] = x;
             for j in i + 1..M {
                 inverse[(j, column)] -= x * L[(j, i)];
@@ -22,16 +22,16 @@ pub(crate) fn inverse<const M: usize>(A: &SMatrix<f64, M, M>) -> Option<SMatrix<
             for j in i + 1..M {
                 sum += L[(j, i)] * inverse[(j, column)];
             }
-            inverse[(i, column)] = (inverse[(i, column)] - sum) / L[(i, i)];
+            inverse[(i, column)] = (inverse[(i, column)] - sum) * over[i];
         }
     }
     Some(inverse)
 }
 
-/// L with A = L Lᵀ, below and on the diagonal.
-#[inline]
-fn cholesky<const M: usize>(A: &SMatrix<f64, M, M>) -> Option<SMatrix<f64, M, M>> {
-    let mut L = *A;
+/// L with A = L Lᵀ below the diagonal, and one over its diagonal.
+#[inline(always)]
+fn cholesky<const M: usize>(A: &SMatrix<f64, M, M>) -> Option<(SMatrix<f64, M, M>, [f64; M])> {
+    let (mut L, mut over) = (*A, [0.0; M]);
     for j in 0..M {
         for k in 0..j {
             let factor = -L[(j, k)];
@@ -43,13 +43,12 @@ fn cholesky<const M: usize>(A: &SMatrix<f64, M, M>) -> Option<SMatrix<f64, M, M>
         if diagonal.is_nan() || diagonal <= 0.0 {
             return None;
         }
-        let root = diagonal.sqrt();
-        L[(j, j)] = root;
+        over[j] = 1.0 / diagonal.sqrt();
         for i in j + 1..M {
-            L[(i, j)] /= root;
+            L[(i, j)] *= over[j];
         }
     }
-    Some(L)
+    Some((L, over))
 }
 
 #[inline]

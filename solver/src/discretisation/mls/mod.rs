@@ -4,6 +4,7 @@ mod approximation;
 mod inverse;
 mod regularised;
 mod sides;
+mod sums;
 mod support;
 
 pub use approximation::{Approximation, LARGEST_ENLARGEMENT};

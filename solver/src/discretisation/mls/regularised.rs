@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
-use crate::discretisation::mls::support::{Support, Weighed, monomials};
+use crate::discretisation::mls::support::{Near, Support, monomials};
 use crate::problem::Basis;
 use nalgebra::{DMatrix, DVector, SMatrix};
 
@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector, SMatrix};
 pub(super) fn restore_linear<const M: usize>(
     components: usize,
     support: &mut Support,
-    near: &[Weighed],
+    near: &Near,
     inverse: &DMatrix<f64>,
     s: f64,
 ) {
@@ -48,7 +48,7 @@ pub(super) fn regularise<const M: usize>(
     basis: Basis,
     components: usize,
     A: &mut SMatrix<f64, M, M>,
-    near: &[Weighed],
+    near: &Near,
     total: f64,
     s: f64,
 ) -> Option<Vector3> {
@@ -57,8 +57,9 @@ pub(super) fn regularise<const M: usize>(
         A[(i, i)] += regularisation * total;
     }
     let mut slope = Vector3::zeros();
-    for a in near {
-        let moment = a.gradient * a.offset.norm_squared() - a.offset * (2.0 * a.weight);
+    for a in near.iter() {
+        let offset = a.scaled * s;
+        let moment = a.gradient * offset.norm_squared() - offset * (2.0 * a.weight);
         slope += moment * (2.0 / (s * s)) - a.gradient;
     }
     Some(slope * regularisation)

@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
+use fearless_simd::{Simd, f64x4, prelude::*};
 use nalgebra::SVector;
 
 /// φ and Grad φ of the nodes whose influence domains cover one point.
@@ -36,48 +37,51 @@ impl Support {
         self.grad_phi.clear();
         (self.condition, self.enlargement) = (0.0, enlargement);
     }
-
-    /// φ_a = w_a cᵀp and its gradient from those of w_a and c.
-    pub(super) fn fill<const M: usize>(
-        &mut self,
-        near: &[Weighed],
-        c: &SVector<f64, M>,
-        slopes: &[SVector<f64, M>; 3],
-    ) {
-        self.nodes.reserve(near.len());
-        self.phi.reserve(near.len());
-        self.grad_phi.reserve(near.len());
-        for a in near {
-            let p = monomials::<M>(&a.scaled);
-            let value = c.dot(&p);
-            self.nodes.push(a.node);
-            self.phi.push(a.weight * value);
-            let mut gradient = a.gradient * value;
-            for k in 0..dimension(M) {
-                gradient[k] += a.weight * slopes[k].dot(&p);
-            }
-            self.grad_phi.push(gradient);
-        }
-    }
 }
 
 /// Memory that evaluations reuse.
 #[derive(Default)]
 pub(crate) struct Scratch {
-    pub(super) found: Vec<u32>,
-    pub(super) near: Vec<Weighed>,
+    pub(super) near: Near,
+}
+
+/// The nodes that cover a point.
+#[derive(Default)]
+pub(super) struct Near {
+    /// Ascending.
+    pub nodes: Vec<u32>,
+    /// The same, four side by side; what fills the last four up has no weight.
+    pub fours: Vec<Four>,
+}
+
+/// Four nodes as seen from the evaluation point.
+pub(super) struct Four {
+    /// (X_a − X)/s by component \[–\]
+    pub scaled: [[f64; 4]; 3],
+    pub weight: [f64; 4],
+    /// ∂w_a/∂X by component \[1/m\]
+    pub gradient: [[f64; 4]; 3],
 }
 
 /// A node as seen from the evaluation point.
 pub(super) struct Weighed {
-    pub node: u32,
-    /// X_a − X \[m\]
-    pub offset: Vector3,
     /// (X_a − X)/s \[–\]
     pub scaled: Vector3,
     pub weight: f64,
     /// ∂w_a/∂X \[1/m\]
     pub gradient: Vector3,
+}
+
+impl Near {
+    /// One after the other.
+    pub fn iter(&self) -> impl Iterator<Item = Weighed> {
+        let lane = |four: &Four, l: usize| Weighed {
+            scaled: Vector3::from_fn(|k, _| four.scaled[k][l]),
+            weight: four.weight[l],
+            gradient: Vector3::from_fn(|k, _| four.gradient[k][l]),
+        };
+        (0..self.nodes.len()).map(move |a| lane(&self.fours[a / 4], a % 4))
+    }
 }
 
 /// Dimension of the space in which a complete basis has so many monomials.
@@ -96,6 +100,31 @@ pub(super) fn monomials<const M: usize>(xi: &Vector3) -> SVector<f64, M> {
     let mut next = 1;
     for k in 0..dimension(M) {
         p[next] = xi[k];
+        next += 1;
+    }
+    if M > dimension(M) + 1 {
+        for i in 0..dimension(M) {
+            for j in i..dimension(M) {
+                p[next] = xi[i] * xi[j];
+                next += 1;
+            }
+        }
+    }
+    p
+}
+
+/// As [`monomials`], of four nodes.
+#[inline(always)]
+pub(super) fn monomials_of<S: Simd, const M: usize>(simd: S, four: &Four) -> [f64x4<S>; M] {
+    let xi: [f64x4<S>; 3] = [
+        four.scaled[0].simd_into(simd),
+        four.scaled[1].simd_into(simd),
+        four.scaled[2].simd_into(simd),
+    ];
+    let mut p = [f64x4::splat(simd, 1.0); M];
+    let mut next = 1;
+    for &x in &xi[..dimension(M)] {
+        p[next] = x;
         next += 1;
     }
     if M > dimension(M) + 1 {
