@@ -18,7 +18,10 @@ pub const GRADIENT_TOLERANCE: f64 = 1e-3;
 /// The recommended gradients.
 pub const GRADIENTS: Gradients = Gradients::SecondOrder { tolerance: GRADIENT_TOLERANCE };
 /// The recommended precision of stored gradients.
-pub const GRADIENT_STORAGE: GradientStorage = GradientStorage::Double;
+pub const GRADIENT_STORAGE: GradientStorage = GradientStorage::Automatic;
+/// Support entries from which on gradients are held in single precision if nothing is said:
+/// 28 MB of them in double precision, about as much as the last cache holds \[–\].
+pub const SINGLE_FROM: usize = 1_000_000;
 /// The recommended treatment of nearly incompressible materials.
 pub const VOLUMETRIC_PROJECTION: VolumetricProjection = VolumetricProjection::Patches;
 /// The recommended treatment of borders between materials.
@@ -68,6 +71,17 @@ impl Recipe {
             gradient_storage: GRADIENT_STORAGE,
             volumetric_projection: VOLUMETRIC_PROJECTION,
             material_borders: MATERIAL_BORDERS,
+        }
+    }
+}
+
+impl GradientStorage {
+    /// Whether so many support entries are held in single precision.
+    pub fn is_single(self, entries: usize) -> bool {
+        match self {
+            GradientStorage::Automatic => entries >= SINGLE_FROM,
+            GradientStorage::Double => false,
+            GradientStorage::Single => true,
         }
     }
 }

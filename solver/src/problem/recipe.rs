@@ -221,6 +221,10 @@ impl Gradients {
 /// Precision of the stored Grad φ; all arithmetic is in double precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GradientStorage {
+    /// Single precision from a million support entries on
+    /// ([`SINGLE_FROM`](super::defaults::SINGLE_FROM)), where the forces wait for memory; double
+    /// precision below.
+    Automatic,
     /// 28 bytes per support entry.
     Double,
     /// Rounded once to single precision, 16 bytes per support entry.

@@ -4,7 +4,6 @@ use super::local_vectors::{Place, QUAD, stride};
 use super::numbering::Numbering;
 use super::stored_gradients::{GradientQuad, StoredGradients};
 use crate::discretisation::rows::Rows;
-use crate::problem::GradientStorage;
 use std::ops::Range;
 
 /// The supports of a [`super::Block`].
@@ -20,7 +19,7 @@ pub fn pack(
     lanes: &[Option<usize>],
     numbering: &Numbering,
     components: usize,
-    storage: GradientStorage,
+    single: bool,
 ) -> Packed {
     let (starts, entries) = slots(supports, lanes);
     let place = |node: u32| (numbering.of(node) as usize * stride(components)) as Place;
@@ -31,13 +30,9 @@ pub fn pack(
         let of = |lane: usize| slot[lane].node().map_or(unused[lane], |e| place(supports.nodes[e]));
         places.push([of(0), of(1), of(2), of(3)]);
     }
-    let grad_phi = match storage {
-        GradientStorage::Double => {
-            StoredGradients::Double(gradients(supports, &entries, components))
-        }
-        GradientStorage::Single => {
-            StoredGradients::Single(gradients(supports, &entries, components))
-        }
+    let grad_phi = match single {
+        false => StoredGradients::Double(gradients(supports, &entries, components)),
+        true => StoredGradients::Single(gradients(supports, &entries, components)),
     };
     Packed { starts, places, grad_phi }
 }
@@ -133,7 +128,7 @@ mod tests {
         let mut numbering = Numbering::new(12);
         assert!(numbering.add(&rows, 0..5, 12));
         for components in [2, 3] {
-            let packed = pack(&rows, &lanes, &numbering, components, GradientStorage::Double);
+            let packed = pack(&rows, &lanes, &numbering, components, false);
             assert_eq!(
                 packed.starts,
                 [0, 7, 9],

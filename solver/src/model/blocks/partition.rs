@@ -81,10 +81,11 @@ fn block(
     let taken = chunks.iter().flat_map(|chunk| chunk.lanes.clone());
     taken.zip(&order).for_each(|(lane, &point)| lanes[lane] = Some(point));
     let components = discretisation.dimension.components();
-    let storage = problem.recipe.gradient_storage;
+    let entries = discretisation.supports.nodes.len();
+    let single = problem.recipe.gradient_storage.is_single(entries);
     let weights = &discretisation.quadrature.weights;
     let Packed { starts: slots, places, grad_phi } =
-        pack(&discretisation.supports, &lanes, numbering, components, storage);
+        pack(&discretisation.supports, &lanes, numbering, components, single);
     Block {
         law,
         nodes: numbering.nodes().to_vec(),

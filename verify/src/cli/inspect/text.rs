@@ -83,6 +83,8 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
 fn step_text(inspection: &Inspection) -> [String; 2] {
     let model = &inspection.prepared.model;
     let bytes = model.bytes_per_step() as f64;
+    let entries = inspection.prepared.discretisation.supports.nodes.len();
+    let single = inspection.case.problem.recipe.gradient_storage.is_single(entries);
     [
         format!(
             "critical step       {} s at rest, {} times the per-point bound of {} s; limited near node \
@@ -94,9 +96,11 @@ fn step_text(inspection: &Inspection) -> [String; 2] {
             show(&inspection.weakest.position)
         ),
         format!(
-            "memory              {} MB are read in each step, {:.0} bytes per point",
+            "memory              {} MB are read in each step, {:.0} bytes per point; gradients in {} \
+         precision",
             four_digits(bytes / 1e6),
-            bytes / model.point_positions.len() as f64
+            bytes / model.point_positions.len() as f64,
+            if single { "single" } else { "double" }
         ),
     ]
 }

@@ -51,7 +51,7 @@ pub struct DiscretisationFormat {
     /// Of consistent gradients, over the defect of plain ones [–]; 1e-3 if
     /// left out.
     pub gradient_tolerance: Option<f64>,
-    /// How many digits of the gradients the forces read; "double" if left out.
+    /// How many digits of the gradients the forces read; "auto" if left out.
     pub gradient_storage: Option<GradientStorageFormat>,
     /// Projection of the change of volume in the bulk energy; "patches" if left out.
     pub volumetric_projection: Option<VolumetricProjectionFormat>,
@@ -137,6 +137,9 @@ choice! {
 choice! {
     /// How many digits of the gradients the forces read.
     GradientStorageFormat for GradientStorage {
+        /// Double precision below a million support entries, single precision from there on,
+        /// where the forces wait for memory.
+        "auto" Automatic,
         /// Every one.
         "double" Double,
         /// Single precision: half the bytes to read. Patch tests stop at 1e-7 and

@@ -7,7 +7,8 @@ use mtled::material::{Law, Material, MooneyRivlin};
 use mtled::model::Model;
 use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::{
-    BackgroundGrid, Dimension, Gradients, Motion, Problem, StepControl, VolumetricProjection,
+    BackgroundGrid, Dimension, GradientStorage, Gradients, Motion, Problem, StepControl,
+    VolumetricProjection, defaults,
 };
 
 /// Cells per nodal spacing, which gives two points per node \[–\].
@@ -56,15 +57,23 @@ impl MemoryLevel {
 }
 
 /// A jittered cube of brain tissue with `cells` cells per edge, one point each, and about
-/// this mean number of `neighbours` per support.
+/// this mean number of `neighbours` per support, with plain gradients in double precision.
 pub fn cube(cells: usize, neighbours: f64) -> Problem {
     let spacings = (cells as f64 / CELLS_PER_SPACING).round().max(2.0);
     let mut recipe = recipe(SIZE / spacings, JITTER, 5);
     recipe.dilation = dilation(cells, spacings, neighbours);
     recipe.grid = BackgroundGrid::with_cell(SIZE / cells as f64);
     recipe.gradients = Gradients::Plain;
+    recipe.gradient_storage = GradientStorage::Double;
     let mut problem = free_body(Dimension::Three, block_shape(), brain(), recipe);
     problem.motion = Motion::Dynamic { end: 1.0, step: StepControl::default(), damping: 10.0 };
+    problem
+}
+
+/// The same problem with the recommended gradients.
+pub fn recommended(mut problem: Problem) -> Problem {
+    problem.recipe.gradients = defaults::GRADIENTS;
+    problem.recipe.gradient_storage = defaults::GRADIENT_STORAGE;
     problem
 }
 

@@ -132,7 +132,10 @@ fn set_up(figures: &Figures) -> String {
     row("nodes", s.node_cloud);
     row("quadrature", s.quadrature);
     row("neighbours and moving least squares", s.shape_functions);
-    row(&format!("consistent gradients, {} iterations", s.correction_iterations), s.correction);
+    row(
+        &format!("gradients of second order, {} iterations", s.correction_iterations),
+        s.correction,
+    );
     row("masses, conditions, loads, blocks", s.model);
     row(&format!("critical step, {} evaluations", s.critical_step_evaluations), s.critical_step);
     row("total", s.total());

@@ -1,7 +1,7 @@
 //! The set-up part by part on one thread.
 
 use super::alternation::{Clock, seconds_of};
-use super::bodies::{DeformedModel, cube};
+use super::bodies::{DeformedModel, cube, recommended};
 use super::figures::{BenchSettings, SetUp};
 use mtled::discretisation::Discretisation;
 use mtled::discretisation::nodes::node_cloud;
@@ -10,11 +10,9 @@ use mtled::error::Error;
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
-use mtled::problem::{Gradients, Problem};
+use mtled::problem::Problem;
 use mtled_checks::measure::median;
 
-/// Tolerance of the gradients, the default of case files \[–\].
-const TOLERANCE: f64 = 1e-3;
 /// Mean number of nodes per support.
 const NEIGHBOURS: f64 = 32.0;
 
@@ -46,8 +44,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 }
 
 fn measure(plain: &Problem) -> Result<SetUp, Error> {
-    let mut problem = plain.clone();
-    problem.recipe.gradients = Gradients::Consistent { tolerance: TOLERANCE };
+    let problem = recommended(plain.clone());
     let (recipe, dimension) = (&problem.recipe, &problem.dimension);
     let body = problem.body.section(dimension)?;
     let (cloud, nodes_seconds) = timed(|| node_cloud(&problem.body, &recipe.cloud, dimension));

@@ -1,7 +1,7 @@
 //! Time steps, contact included.
 
 use super::alternation::{Clock, alternate};
-use super::bodies::cube;
+use super::bodies::{cube, recommended};
 use super::figures::{BenchSettings, MemoryRow, StepRow};
 use super::whole_cases::bundled_case;
 use crate::machine::peak_memory;
@@ -10,7 +10,7 @@ use mtled::discretisation::Discretisation;
 use mtled::model::Model;
 use mtled::motion::state::State;
 use mtled::motion::step::{Buffers, Scheme, step};
-use mtled::problem::{Gradients, Motion, Problem, StepControl};
+use mtled::problem::{Motion, Problem, StepControl};
 use rayon::ThreadPool;
 use std::path::Path;
 use std::time::Instant;
@@ -92,8 +92,7 @@ pub fn contact_rows(settings: &BenchSettings, cases: &Path) -> anyhow::Result<[S
 /// Sets up a body of about 100 000 nodes and 200 000 points. This must be measured first,
 /// since the peak of the memory is that of the process.
 pub fn memory_row(settings: &BenchSettings) -> anyhow::Result<MemoryRow> {
-    let mut problem = cube(if settings.quick { 30 } else { 58 }, 30.0);
-    problem.recipe.gradients = Gradients::Consistent { tolerance: 1e-3 };
+    let problem = recommended(cube(if settings.quick { 30 } else { 58 }, 30.0));
     let start = Instant::now();
     let (mut stepper, neighbours) = settings.all.install(|| -> anyhow::Result<_> {
         let discretisation = Discretisation::new(&problem)?;
@@ -118,5 +117,6 @@ pub fn memory_row(settings: &BenchSettings) -> anyhow::Result<MemoryRow> {
 
 /// Steps of a cube.
 pub fn cube_step(settings: &BenchSettings) -> anyhow::Result<StepRow> {
-    step_row(settings, "cube", &cube(if settings.quick { 20 } else { 31 }, 30.0))
+    let problem = recommended(cube(if settings.quick { 20 } else { 31 }, 30.0));
+    step_row(settings, "cube", &problem)
 }
