@@ -36,7 +36,7 @@ pub struct Footprint {
 const PROGRAM: f64 = 22.3e6;
 const PER_NODE: f64 = 1950.0;
 const PER_ENTRY: f64 = 63.0;
-const PER_PANEL: f64 = 650.0;
+const PER_PANEL: f64 = 710.0;
 /// What couples the nodes of parts where displacements are prescribed.
 const PER_HELD_NODE: f64 = 1500.0;
 /// Rows of φ and Grad φ: what stays, and the second copy of so many points for a while.
@@ -52,7 +52,7 @@ const PANELS_PER_AREA: [f64; 2] = [1.0, 8.0];
 
 /// Nodes of a graded cloud per spacing² in a plane and per spacing³ in space, measured:
 /// nodes are not on a lattice.
-const GRADED_DENSITY: [f64; 2] = [1.1, 1.35];
+const GRADED_DENSITY: [f64; 2] = [1.1, 1.2];
 
 /// Sample points of the body along each axis, in a plane and in space.
 const SAMPLES: [usize; 2] = [256, 40];
