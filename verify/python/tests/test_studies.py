@@ -76,7 +76,7 @@ def test_a_mistake_in_a_studied_case_is_a_case_error(here):
 def test_ctrl_c_ends_a_study(here):
     threading.Timer(1.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
-        mtled.study("convergence", "twisted_cylinder", clouds=5)
+        mtled.study("convergence", "twisted_cylinder", clouds=50)
 
 
 def test_a_solver_in_python_is_measured(here):
