@@ -157,7 +157,7 @@ fn forward_after_inverse_is_the_identity_to_the_tolerance_inside_and_outside_of_
     let mut outside = 0;
     for voxel in voxels() {
         let x = 1e-3 * centre(&place, voxel);
-        let source = source_of(&field, &x, &Vector3::zeros());
+        let source = source_of(&field, &x, &Vector3::zeros(), Matrix3::identity());
         let X = x + source.vector;
         let left = (X + field.at(&X) - x).norm();
         assert!(left <= TOLERANCE && source.residual <= TOLERANCE, "{voxel:?}: {left} m");

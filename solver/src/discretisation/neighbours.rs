@@ -1,6 +1,7 @@
 //! Search of the nodes near a point.
 
 use crate::algebra::tensor::{Vector3, bounding_box};
+use std::ops::Range;
 
 /// Nodes sorted into cubes whose edge is the largest influence radius or a
 /// fraction of it, so that a query visits few of them.
@@ -62,12 +63,42 @@ impl Neighbours {
         self.nodes = nodes;
     }
 
-    fn cell_of(&self, x: &Vector3) -> usize {
+    /// The cell that is nearest to `x`.
+    pub fn cell_of(&self, x: &Vector3) -> usize {
         let [i, j, k] = [0, 1, 2].map(|axis| {
             let index = (x[axis] - self.origin[axis]) / self.cell;
             (index.max(0.0) as usize).min(self.counts[axis] - 1)
         });
         (k * self.counts[1] + j) * self.counts[0] + i
+    }
+
+    /// The cells along an axis that the cube of half edge `radius` \[m\] around `x` meets.
+    fn range(&self, x: &Vector3, radius: f64, axis: usize) -> Range<usize> {
+        let low = (x[axis] - radius - self.origin[axis]) / self.cell;
+        let high = (x[axis] + radius - self.origin[axis]) / self.cell;
+        if high < 0.0 || low >= self.counts[axis] as f64 {
+            return 0..0;
+        }
+        low.max(0.0) as usize..(high as usize).min(self.counts[axis] - 1) + 1
+    }
+
+    /// For each cell the largest of the `radii` \[node\] \[m\] of the nodes that are nearer than
+    /// theirs to some point of it, or to one outside of all cells to which it is the nearest; 0
+    /// where there is none.
+    pub fn reaches(&self, radii: &[f64]) -> Vec<f64> {
+        let mut reaches = vec![0.0f64; self.starts.len() - 1];
+        for (&node, position) in self.nodes.iter().zip(&self.positions) {
+            let radius = radii[node as usize];
+            for k in self.range(position, radius, 2) {
+                for j in self.range(position, radius, 1) {
+                    let row = (k * self.counts[1] + j) * self.counts[0];
+                    let columns = self.range(position, radius, 0);
+                    let cells = &mut reaches[row + columns.start..row + columns.end];
+                    cells.iter_mut().for_each(|reach| *reach = reach.max(radius));
+                }
+            }
+        }
+        reaches
     }
 
     /// Calls `visit(node, position − x)` for every node closer to `x` than
@@ -80,18 +111,10 @@ impl Neighbours {
         mut visit: impl FnMut(usize, &Vector3),
     ) {
         let square = radius * radius;
-        let range = |axis: usize| {
-            let low = (x[axis] - radius - self.origin[axis]) / self.cell;
-            let high = (x[axis] + radius - self.origin[axis]) / self.cell;
-            if high < 0.0 || low >= self.counts[axis] as f64 {
-                return 0..0;
-            }
-            low.max(0.0) as usize..(high as usize).min(self.counts[axis] - 1) + 1
-        };
-        for k in range(2) {
-            for j in range(1) {
+        for k in self.range(x, radius, 2) {
+            for j in self.range(x, radius, 1) {
                 let row = (k * self.counts[1] + j) * self.counts[0];
-                let columns = range(0);
+                let columns = self.range(x, radius, 0);
                 if columns.is_empty() {
                     continue;
                 }
@@ -133,6 +156,23 @@ mod tests {
             let near = |a: &usize| (positions[*a] - x).norm_squared() < radius * radius;
             let expected: Vec<usize> = (0..positions.len()).filter(near).collect();
             prop_assert_eq!(found, expected);
+        }
+
+        #[test]
+        fn no_node_covers_a_point_from_farther_away_than_the_reach_of_its_cell(
+            points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 1..100),
+            radius in prop::array::uniform2(0.01..1.0f64),
+            x in prop::array::uniform3(-1.5..1.5f64),
+            cell in 0.05..0.7f64,
+        ) {
+            let positions: Vec<Vector3> = points.into_iter().map(Vector3::from).collect();
+            let x = Vector3::from(x);
+            let radii: Vec<f64> = (0..positions.len()).map(|node| radius[node % 2]).collect();
+            let neighbours = Neighbours::new(&positions, cell);
+            let reach = neighbours.reaches(&radii)[neighbours.cell_of(&x)];
+            for (position, radius) in positions.iter().zip(&radii) {
+                prop_assert!((position - x).norm() >= *radius || *radius <= reach);
+            }
         }
     }
 }

@@ -13,8 +13,11 @@ pub(super) fn area_vector(t: &Triangle) -> Vector3 {
 
 /// Halves the longest edge until no edge is longer than `size` \[m\].
 pub(super) fn subdivide(triangle: Triangle, size: f64, keep: &mut impl FnMut(Triangle)) {
-    let mut stack = vec![triangle];
-    while let Some(t) = stack.pop() {
+    // Empty, and without memory, where nothing is halved.
+    let mut stack = Vec::new();
+    let mut next = Some(triangle);
+    while let Some(t) = next.or_else(|| stack.pop()) {
+        next = None;
         let lengths = [0, 1, 2].map(|k| (t[(k + 1) % 3] - t[k]).norm());
         let longest = (0..3).fold(0, |l, k| if lengths[k] > lengths[l] { k } else { l });
         if lengths[longest] <= size {

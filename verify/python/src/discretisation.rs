@@ -46,7 +46,7 @@ pub struct Discretisation {
 impl Discretisation {
     /// Takes over the memory of the solver.
     pub fn new(py: Python, prepared: Prepared, warnings: Vec<String>) -> PyResult<Discretisation> {
-        let Prepared { discretisation, model, setup_seconds } = prepared;
+        let Prepared { discretisation, model, setup_seconds, .. } = prepared;
         let (cloud, approximation) = (discretisation.cloud, discretisation.approximation);
         let (quadrature, supports) = (discretisation.quadrature, discretisation.supports);
         let gradients = supports.grad_phi;

@@ -5,7 +5,7 @@ use super::prepare::Prepared;
 use crate::scene::Case;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::model::contact::{ContactPlan, ContactResult, ContactSurface, gap};
+use mtled::model::contact::{ContactPlan, ContactResult, gap};
 use mtled::motion::state::State;
 use mtled::problem::Problem;
 use mtled_checks::escape::printable;
@@ -19,10 +19,7 @@ pub fn contact_results(
     state: &State,
 ) -> Result<Vec<ContactResult>, Error> {
     let (discretisation, plan) = (&prepared.discretisation, &prepared.model.contact);
-    if plan.obstacles.is_empty() {
-        return Ok(Vec::new());
-    }
-    let surface = ContactSurface::new(problem, discretisation)?;
+    let Some(surface) = prepared.contact_surface(problem)? else { return Ok(Vec::new()) };
     surface.results(plan, discretisation, &state.contact_forces(), &state.displacement)
 }
 

@@ -3,10 +3,12 @@
 use mtled::discretisation::{Discretisation, Warning};
 use mtled::error::Error;
 use mtled::model::Model;
+use mtled::model::contact::ContactSurface;
 use mtled::model::rigid_motions::free_rigid_motions;
 use mtled::model::zero_energy::refuse_zero_energy_modes;
 use mtled::motion::mass_scaling::raise_masses;
 use mtled::problem::{Motion, Problem};
+use std::sync::OnceLock;
 use std::time::Instant;
 
 /// A problem that has been discretised.
@@ -18,9 +20,27 @@ pub struct Prepared {
     pub model: Model,
     /// Wall time of the set-up \[s\].
     pub setup_seconds: f64,
+    contact_surface: OnceLock<ContactSurface>,
 }
 
 impl Prepared {
+    /// What was discretised in `setup_seconds` \[s\].
+    pub fn new(discretisation: Discretisation, model: Model, setup_seconds: f64) -> Prepared {
+        Prepared { discretisation, model, setup_seconds, contact_surface: OnceLock::new() }
+    }
+
+    /// What contact pressures are found with, made when first wanted; nothing without obstacles.
+    pub fn contact_surface(&self, problem: &Problem) -> Result<Option<&ContactSurface>, Error> {
+        if problem.obstacles.is_empty() {
+            return Ok(None);
+        }
+        if let Some(surface) = self.contact_surface.get() {
+            return Ok(Some(surface));
+        }
+        let surface = ContactSurface::new(problem, &self.discretisation)?;
+        Ok(Some(self.contact_surface.get_or_init(|| surface)))
+    }
+
     /// Reasons to doubt a result before it is there.
     pub fn doubts(&self, problem: &Problem) -> Vec<String> {
         let mut doubts: Vec<String> =
@@ -60,7 +80,7 @@ pub fn prepare(problem: &Problem) -> Result<Prepared, Error> {
     let start = Instant::now();
     let discretisation = Discretisation::new(problem)?;
     let model = raise_masses(Model::new(problem, &discretisation)?, problem, &discretisation)?;
-    Ok(Prepared { discretisation, model, setup_seconds: start.elapsed().as_secs_f64() })
+    Ok(Prepared::new(discretisation, model, start.elapsed().as_secs_f64()))
 }
 
 /// As [`prepare`]; a recipe that leaves zero-energy modes is refused.

@@ -5,7 +5,7 @@ use super::error::WarpError;
 use super::field::DisplacementField;
 use super::inverse::{Source, TOLERANCE, source_of};
 use crate::files::image::{Grid, Image, Interpolation};
-use mtled::algebra::tensor::Vector3;
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -72,7 +72,7 @@ pub fn deform(field: &DisplacementField, image: &Image, how: Interpolation) -> D
 }
 
 /// One line of voxels along the first index, each starting where the sources of the two before
-/// lead.
+/// lead, with the gradient found at the last one.
 fn deform_row(
     field: &DisplacementField,
     image: &Image,
@@ -82,10 +82,11 @@ fn deform_row(
     let (grid, [nx, ny, _]) = (&image.grid, image.grid.size);
     let mut deformed = Deformed::empty();
     let [mut before, mut last] = [Vector3::zeros(); 2];
+    let mut inverse = Matrix3::identity();
     for i in 0..nx {
         let voxel = [i, row % ny, row / ny];
-        let source = source_of(field, &grid.centre(voxel), &(2.0 * last - before));
-        (before, last) = (last, source.vector);
+        let source = source_of(field, &grid.centre(voxel), &(2.0 * last - before), inverse);
+        (before, last, inverse) = (last, source.vector, source.inverse);
         // Exactly the voxel where nothing moves.
         let index = Vector3::from(voxel.map(|n| n as f64)) + grid.steps(&source.vector);
         let inside = image.sample(&index, how, &mut deformed.voxels);

@@ -29,23 +29,28 @@ pub struct Source {
     pub residual: f64,
     /// Evaluations of the field.
     pub iterations: usize,
+    /// An estimate of ∂X/∂x there.
+    pub inverse: Matrix3,
 }
 
 /// Solves g = X − x + u(X) = 0 by the secant method of Broyden 1965, eq. 4.5, from
-/// X − x = `start`; where it fails, such as near folds, from its best iterate by the fixed point
+/// X − x = `start` and an estimate `inverse` of ∂X/∂x; where it fails, such as near folds, from its best iterate by the fixed point
 /// of X = x − u(X), with shorter steps where the residual grows. Where that does not converge
 /// either, this is the iterate with the smallest residual.
-pub fn source_of(field: &DisplacementField, x: &Vector3, start: &Vector3) -> Source {
+pub fn source_of(
+    field: &DisplacementField,
+    x: &Vector3,
+    start: &Vector3,
+    inverse: Matrix3,
+) -> Source {
     let gap = |vector: &Vector3| field.at(&(x + vector)) + vector;
-    let best = by_secants(&gap, start);
+    let best = by_secants(&gap, start, inverse);
     if best.residual <= TOLERANCE { best } else { by_fixed_point(&gap, best) }
 }
 
-fn by_secants(gap: &impl Fn(&Vector3) -> Vector3, start: &Vector3) -> Source {
+fn by_secants(gap: &impl Fn(&Vector3) -> Vector3, start: &Vector3, mut inverse: Matrix3) -> Source {
     let (mut vector, mut g) = (*start, gap(start));
-    let mut best = Source { vector, residual: g.norm(), iterations: 1 };
-    // Of ∂g/∂X, which is I where nothing moves.
-    let mut inverse = Matrix3::identity();
+    let mut best = Source { vector, residual: g.norm(), iterations: 1, inverse };
     while best.residual > TOLERANCE && best.iterations < MOST_SECANTS {
         let step = -inverse * g;
         vector += step;
@@ -55,13 +60,14 @@ fn by_secants(gap: &impl Fn(&Vector3) -> Vector3, start: &Vector3) -> Source {
         if residual >= best.residual {
             return Source { iterations, ..best };
         }
-        best = Source { vector, residual, iterations };
+        best = Source { vector, residual, iterations, inverse };
         let moved = inverse * (g - before);
         let along = step.dot(&moved);
         if along.abs() < SMALLEST_SLOPE * step.norm_squared() {
             return best;
         }
         inverse += (step - moved) * (step.transpose() * inverse) / along;
+        best.inverse = inverse;
     }
     best
 }
@@ -73,7 +79,7 @@ fn by_fixed_point(gap: &impl Fn(&Vector3) -> Vector3, start: Source) -> Source {
         let g = gap(&vector);
         let residual = g.norm();
         if residual < best.residual {
-            best = Source { vector, residual, iterations };
+            best = Source { vector, residual, iterations, inverse: Matrix3::identity() };
         }
         if residual <= TOLERANCE {
             return best;

@@ -30,6 +30,9 @@ pub struct Approximation {
     smallest_radius: f64,
     largest_radius: f64,
     neighbours: Neighbours,
+    /// How far away nodes may be that cover a point of each cell of `neighbours` \[m\]; empty
+    /// where all radii are equal.
+    reaches: Vec<f64>,
 }
 
 /// Influence radii are enlarged at a point by at most this factor.
@@ -49,6 +52,10 @@ impl Approximation {
         let mean = influence_radius.iter().sum::<f64>() / influence_radius.len() as f64;
         let neighbours = Neighbours::new(&nodes, 0.6 * mean);
         let components = dimension.components();
+        let reaches = match smallest_radius == largest_radius {
+            true => Vec::new(),
+            false => neighbours.reaches(&influence_radius),
+        };
         Approximation {
             nodes,
             influence_radius,
@@ -59,6 +66,15 @@ impl Approximation {
             smallest_radius,
             largest_radius,
             neighbours,
+            reaches,
+        }
+    }
+
+    /// No node farther away covers X \[m\].
+    fn reach(&self, X: &Vector3) -> f64 {
+        match self.reaches.is_empty() {
+            true => self.largest_radius,
+            false => self.reaches[self.neighbours.cell_of(X)],
         }
     }
 
@@ -105,7 +121,7 @@ impl Approximation {
             return self.largest_radius;
         }
         let (mut sum, mut count) = (0.0, 0.0);
-        self.neighbours.for_each_within(X, self.largest_radius, |node, offset| {
+        self.neighbours.for_each_within(X, self.reach(X), |node, offset| {
             let radius = self.influence_radius[node];
             if offset.norm_squared() < radius * radius {
                 sum += radius;
@@ -203,7 +219,9 @@ impl Approximation {
     /// The nodes that cover X and are `seen`, ascending.
     fn find(&self, X: &Vector3, enlargement: f64, seen: impl Fn(u32) -> bool, near: &mut Near) {
         near.nodes.clear();
-        self.neighbours.for_each_within(X, self.largest_radius * enlargement, |node, offset| {
+        let enlarged = enlargement > 1.0;
+        let reach = if enlarged { self.largest_radius * enlargement } else { self.reach(X) };
+        self.neighbours.for_each_within(X, reach, |node, offset| {
             let radius = self.influence_radius[node] * enlargement;
             if offset.norm_squared() < radius * radius && seen(node as u32) {
                 near.nodes.push(node as u32);

@@ -14,6 +14,7 @@ use crate::geometry::polygon::anticlockwise;
 use crate::geometry::primitives::perpendicular;
 use crate::geometry::shape::Shape;
 use crate::geometry::size_limit::PANELS;
+use rayon::prelude::*;
 
 /// Few bodies have less surface than this fraction of that of their bounding box \[–\].
 const FILLED: f64 = 1.0 / 3.0;
@@ -122,13 +123,9 @@ fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>
             Ok(panels)
         }
         Shape::Labels(field) => {
-            let triangles = marching::isosurface(shape, (size / 3_f64.sqrt()).min(field.voxel()))?;
-            Ok(triangle_panels(triangles.into_iter(), size))
+            isosurface_panels(shape, (size / 3_f64.sqrt()).min(field.voxel()), size)
         }
-        Shape::Function(_) => {
-            let triangles = marching::isosurface(shape, size / 3_f64.sqrt())?;
-            Ok(triangle_panels(triangles.into_iter(), size))
-        }
+        Shape::Function(_) => isosurface_panels(shape, size / 3_f64.sqrt(), size),
         Shape::Surface(surface) => Ok(triangle_panels(surface.corners(), size)),
         Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(..) => {
             composite_panels(shape, |panel| panel.area.sqrt(), &|member| {
@@ -138,4 +135,11 @@ fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>
         _ => Err(GeometryError::Unbounded { shape: shape.name() }),
     }
     .and_then(|panels: Vec<Panel>| PANELS.check(panels.len() as f64).map(|()| panels))
+}
+
+/// Panels of edge `size` \[m\] on triangles from cubes of `step` \[m\].
+fn isosurface_panels(shape: &Shape, step: f64, size: f64) -> Result<Vec<Panel>, GeometryError> {
+    let layers = marching::isosurface(shape, step)?.into_par_iter();
+    let panels = layers.map(|layer| triangle_panels(layer.into_iter(), size));
+    Ok(panels.collect::<Vec<Vec<Panel>>>().into_iter().flatten().collect())
 }

@@ -2,8 +2,6 @@
 
 use crate::algebra::tensor::Vector3;
 use rayon::prelude::*;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 /// Distances up to this are measured to the level itself \[sample\].
 const NEAR: f64 = 4.0;
@@ -11,6 +9,10 @@ const NEAR: f64 = 4.0;
 const CLOSER: usize = 8;
 /// A point is on the level to this \[sample\].
 const ON_LEVEL: f64 = 0.01;
+/// A foot that moves less than this is the nearest one \[sample\].
+const AT_REST: f64 = 0.001;
+/// Distances are handed on in parts of a step.
+const PARTS_OF_STEP: f64 = 8.0;
 
 /// Samples on a regular grid, first index fastest. Along an axis with one
 /// sample the field is constant.
@@ -33,9 +35,16 @@ impl ScalarGrid {
 
     /// Position \[m\] of a sample from the first one.
     pub fn local(&self, index: usize) -> Vector3 {
-        let (nx, ny) = (self.size[0], self.size[1]);
-        let ijk = [index % nx, index / nx % ny, index / (nx * ny)];
+        self.position(self.indices_of(index))
+    }
+
+    fn position(&self, ijk: [usize; 3]) -> Vector3 {
         Vector3::from_fn(|axis, _| ijk[axis] as f64 * self.step[axis])
+    }
+
+    fn indices_of(&self, index: usize) -> [usize; 3] {
+        let (nx, ny) = (self.size[0], self.size[1]);
+        [index % nx, index / nx % ny, index / (nx * ny)]
     }
 
     /// Trilinear value at `local` \[m\] from the first sample; outside the
@@ -119,6 +128,9 @@ impl ScalarGrid {
                 nearest = nearest.min(way.norm());
             }
             let along = way - g * (way.dot(&g) / square);
+            if value.abs() / square.sqrt() + along.norm() < AT_REST * self.step.min() {
+                break;
+            }
             foot += along * (0.5 * self.step.min() / along.norm()).min(0.7);
         }
         nearest
@@ -175,30 +187,34 @@ impl ScalarGrid {
     fn hand_on(&self, known: &[KnownDistance], reach: f64) -> (Vec<f64>, Vec<u32>) {
         let mut distance = vec![f64::INFINITY; self.size.iter().product()];
         let mut feet = vec![0; distance.len()];
-        let mut front = BinaryHeap::new();
+        let mut is_known = vec![false; distance.len()];
+        let mut front = Front::new(self.step.min() / PARTS_OF_STEP);
         for (foot, KnownDistance { at, distance: own, .. }) in known.iter().enumerate() {
-            (distance[*at], feet[*at]) = (*own, foot as u32);
-            front.push(Front { distance: *own, at: *at as u32, foot: foot as u32 });
+            (distance[*at], feet[*at], is_known[*at]) = (*own, foot as u32, true);
+            front.push(*own, *at, foot as u32);
         }
         let strides = self.strides();
-        while let Some(Front { distance: own, at, foot }) = front.pop() {
+        while let Some((own, at, foot)) = front.pop() {
             let at = at as usize;
             if own > distance[at] {
                 continue;
             }
-            for (axis, stride) in strides.into_iter().enumerate() {
-                let position = at / stride % self.size[axis];
-                let behind = (position > 0).then(|| at - stride);
-                let ahead = (position + 1 < self.size[axis]).then(|| at + stride);
-                for next in behind.into_iter().chain(ahead) {
+            let ijk = self.indices_of(at);
+            for axis in 0..3 {
+                let behind = ijk[axis].checked_sub(1).map(|to| (to, at - strides[axis]));
+                let ahead =
+                    (ijk[axis] + 1 < self.size[axis]).then(|| (ijk[axis] + 1, at + strides[axis]));
+                for (to, next) in behind.into_iter().chain(ahead) {
                     // Never nearer than here: done already.
-                    if distance[next] <= own {
+                    if distance[next] <= own || is_known[next] {
                         continue;
                     }
-                    let there = (self.local(next) - known[foot as usize].foot).norm();
-                    if there < distance[next] && there <= reach && !is_known(known, next) {
+                    let mut there = ijk;
+                    there[axis] = to;
+                    let there = (self.position(there) - known[foot as usize].foot).norm();
+                    if there < distance[next] && there <= reach {
                         (distance[next], feet[next]) = (there, foot);
-                        front.push(Front { distance: there, at: next as u32, foot });
+                        front.push(there, next, foot);
                     }
                 }
             }
@@ -207,31 +223,39 @@ impl ScalarGrid {
     }
 }
 
-/// Whether a distance was given; they are in the order of the samples.
-fn is_known(known: &[KnownDistance], at: usize) -> bool {
-    known.binary_search_by_key(&at, |sample| sample.at).is_ok()
-}
-
-/// A sample that hands on its foot, the nearest first.
-#[derive(PartialEq)]
+/// Samples that hand on their feet, all but in the order of their distances: from lists of samples
+/// whose distances differ by less than a width.
 struct Front {
-    distance: f64,
-    at: u32,
-    foot: u32,
+    /// \[m\]
+    width: f64,
+    /// Distance \[m\], sample and foot.
+    lists: Vec<Vec<(f64, u32, u32)>>,
+    nearest: usize,
 }
 
-impl Eq for Front {}
-
-impl PartialOrd for Front {
-    fn partial_cmp(&self, other: &Front) -> Option<Ordering> {
-        Some(self.cmp(other))
+impl Front {
+    fn new(width: f64) -> Front {
+        Front { width, lists: Vec::new(), nearest: 0 }
     }
-}
 
-impl Ord for Front {
-    fn cmp(&self, other: &Front) -> Ordering {
-        let nearest = other.distance.total_cmp(&self.distance);
-        nearest.then(other.at.cmp(&self.at)).then(other.foot.cmp(&self.foot))
+    fn push(&mut self, distance: f64, at: usize, foot: u32) {
+        let list = (distance / self.width) as usize;
+        if list >= self.lists.len() {
+            self.lists.resize_with(list + 1, Vec::new);
+        }
+        self.lists[list].push((distance, at as u32, foot));
+        self.nearest = self.nearest.min(list);
+    }
+
+    fn pop(&mut self) -> Option<(f64, u32, u32)> {
+        while let Some(list) = self.lists.get_mut(self.nearest) {
+            if let Some(sample) = list.pop() {
+                return Some(sample);
+            }
+            self.lists[self.nearest] = Vec::new();
+            self.nearest += 1;
+        }
+        None
     }
 }
 

@@ -231,57 +231,53 @@ fn keep_volume(distance: &mut ScalarGrid, voxels: f64) {
     }
 }
 
-/// The least and the largest value at the corners of a cell.
-fn corners(grid: &ScalarGrid, [i, j, k]: [usize; 3]) -> (f64, f64) {
+/// The values at the corners of a cell, the first index fastest.
+fn corners(grid: &ScalarGrid, [i, j, k]: [usize; 3]) -> [f64; 8] {
     let end = |at: usize, axis: usize| (at + 1).min(grid.size[axis] - 1);
-    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-    for c in [k, end(k, 2)] {
-        for b in [j, end(j, 1)] {
-            for a in [i, end(i, 0)] {
-                let value = grid.values[grid.index(a, b, c)];
-                (least, most) = (least.min(value), most.max(value));
-            }
-        }
-    }
-    (least, most)
+    let (i, j, k) = ([i, end(i, 0)], [j, end(j, 1)], [k, end(k, 2)]);
+    std::array::from_fn(|n| grid.values[grid.index(i[n & 1], j[n >> 1 & 1], k[n >> 2])])
 }
 
-/// Volume below zero in units of voxels, from 4ᵈ points in each cell that
-/// the zero level may cut.
+/// Where the points of a cell lie along its edges.
+const ALONG_EDGE: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
+
+/// The part of a cell below zero, from 64 points, each of which stands for a thickness `fine` \[m\].
+fn share_below(corners: &[f64; 8], fine: f64) -> f64 {
+    let between = |low: f64, high: f64, part: f64| low + part * (high - low);
+    let mut sum = 0.0;
+    for z in ALONG_EDGE {
+        let plane: [f64; 4] = std::array::from_fn(|n| between(corners[n], corners[n + 4], z));
+        for y in ALONG_EDGE {
+            let [low, high] = [0, 1].map(|n| between(plane[n], plane[n + 2], y));
+            let share = |x: f64| (0.5 - between(low, high, x) / fine).clamp(0.0, 1.0);
+            sum += ALONG_EDGE.map(share).iter().sum::<f64>();
+        }
+    }
+    sum / 64.0
+}
+
+/// Volume below zero in units of voxels; points count in the cells that the zero level may cut.
 fn enclosed(distance: &ScalarGrid) -> f64 {
-    const PARTS: usize = 4;
     // A little more than half, for round-off.
     const SURELY: f64 = 0.51;
-    let parts = distance.size.map(|n| if n > 1 { PARTS } else { 1 });
     let diagonal = distance.step.norm();
-    let fine = distance.step.max() / PARTS as f64;
-    let weight = 1.0 / parts.iter().product::<usize>() as f64;
+    let fine = distance.step.max() * (ALONG_EDGE[1] - ALONG_EDGE[0]);
     let [nx, ny, layers] = distance.size.map(|n| if n > 1 { n - 1 } else { 1 });
-    let layer = |k: usize| {
-        let mut shares = Vec::new();
-        for ijk in indices([nx, ny, 1]).map(|[i, j, _]| [i, j, k]) {
-            let value = distance.values[distance.index(ijk[0], ijk[1], ijk[2])];
-            if value.abs() > diagonal + fine {
-                shares.extend((value < 0.0).then_some(1.0));
-                continue;
-            }
-            // Nor do cells count in part whose corners all lie away from the level.
-            let (least, most) = corners(distance, ijk);
-            if least > SURELY * fine || most < -SURELY * fine {
-                let share = if most < 0.0 { weight } else { 0.0 };
-                shares.extend(indices(parts).map(|_| share));
-                continue;
-            }
-            shares.extend(indices(parts).map(|abc| {
-                let local = Vector3::from_fn(|k, _| {
-                    (ijk[k] as f64 + (abc[k] as f64 + 0.5) / parts[k] as f64) * distance.step[k]
-                });
-                weight * (0.5 - distance.sample(&local) / fine).clamp(0.0, 1.0)
-            }));
+    let share = |ijk: [usize; 3]| {
+        let value = distance.values[distance.index(ijk[0], ijk[1], ijk[2])];
+        if value.abs() > diagonal + fine {
+            return if value < 0.0 { 1.0 } else { 0.0 };
         }
-        shares
+        // Nor do cells count in part whose corners all lie away from the level.
+        let corners = corners(distance, ijk);
+        match corners.iter().all(|d| d.abs() > SURELY * fine && d.signum() == value.signum()) {
+            true if value < 0.0 => 1.0,
+            true => 0.0,
+            false => share_below(&corners, fine),
+        }
     };
-    // Added in the order of the cells.
-    let shares: Vec<Vec<f64>> = (0..layers).into_par_iter().map(layer).collect();
-    shares.iter().flatten().sum()
+    let layer = |k: usize| indices([nx, ny, 1]).map(|[i, j, _]| share([i, j, k])).sum::<f64>();
+    // Added in the order of the layers.
+    let layers: Vec<f64> = (0..layers).into_par_iter().map(layer).collect();
+    layers.iter().sum()
 }

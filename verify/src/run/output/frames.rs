@@ -12,8 +12,7 @@ use crate::run::record::{Frame, Recording};
 use crate::run::vtu::{Order, PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::scene::Case;
 use anyhow::Result;
-use mtled::model::contact::ContactSurface;
-use mtled::problem::{Motion, Problem};
+use mtled::problem::Motion;
 use mtled_checks::escape::file_name;
 use std::path::{Path, PathBuf};
 
@@ -102,7 +101,6 @@ pub fn write_frames(
     let positions = &prepared.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
     let order = order(&problem.motion);
-    let surface = contact_surface(problem, prepared)?;
     let body = match record.frames.is_empty() {
         true => None,
         false => BodyFrames::new(problem, prepared)?,
@@ -112,7 +110,7 @@ pub fn write_frames(
         let is_last = number + 1 == record.frames.len();
         let indicator = indicator.filter(|_| is_last);
         let mode = record.unstable_mode.as_ref().filter(|_| is_last);
-        let fields = NodeFields::new(problem, prepared, surface.as_ref(), frame, indicator)?;
+        let fields = NodeFields::new(problem, prepared, frame, indicator)?;
         let numbers = numbers(&problem.motion, frame);
         let of_body =
             body.as_ref().map(|body| body.frame(prepared, frame, &fields, mode, numbers.clone()));
@@ -132,13 +130,6 @@ pub fn write_frames(
     Ok(Frames { order, at, last, of_body: body.is_some() })
 }
 
-/// What contact pressures are found with; nothing without obstacles.
-fn contact_surface(problem: &Problem, prepared: &Prepared) -> Result<Option<ContactSurface>> {
-    let touches = !problem.obstacles.is_empty();
-    let surface = touches.then(|| ContactSurface::new(problem, &prepared.discretisation));
-    Ok(surface.transpose()?)
-}
-
 /// The body of the last frame of a recording; none without frames, or where nothing of the body
 /// is as large as a cell.
 pub fn body_at_end(
@@ -150,8 +141,7 @@ pub fn body_at_end(
     let problem = &case.problem;
     let Some(frame) = record.frames.last() else { return Ok(None) };
     let Some(body) = BodyFrames::new(problem, prepared)? else { return Ok(None) };
-    let surface = contact_surface(problem, prepared)?;
-    let fields = NodeFields::new(problem, prepared, surface.as_ref(), frame, indicator)?;
+    let fields = NodeFields::new(problem, prepared, frame, indicator)?;
     let mode = record.unstable_mode.as_ref();
     let numbers = numbers(&problem.motion, frame);
     Ok(Some(body.drawn(body.frame(prepared, frame, &fields, mode, numbers))))

@@ -6,7 +6,6 @@ use crate::run::prepare::Prepared;
 use crate::run::record::Frame;
 use anyhow::Result;
 use mtled::algebra::tensor::Matrix3;
-use mtled::model::contact::ContactSurface;
 use mtled::motion::internal_force::projected_mean_stress;
 use mtled::problem::Problem;
 
@@ -33,7 +32,6 @@ impl NodeFields {
     pub fn new(
         problem: &Problem,
         prepared: &Prepared,
-        surface: Option<&ContactSurface>,
         frame: &Frame,
         indicator: Option<&Indicator>,
     ) -> Result<NodeFields> {
@@ -41,7 +39,8 @@ impl NodeFields {
         let displacement = field_at_nodes(prepared, u)?;
         let (jacobian, stress, strain) = averaged(problem, prepared, u);
         let (plan, discretisation) = (&prepared.model.contact, &prepared.discretisation);
-        let contact_pressure = surface
+        let contact_pressure = prepared
+            .contact_surface(problem)?
             .map(|surface| surface.pressures(plan, discretisation, &frame.contact, u))
             .transpose()?;
         let error_bar = indicator.map(|indicator| indicator.sizes(&displacement));

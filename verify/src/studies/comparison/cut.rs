@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::warp::{DisplacementField, source_of};
-use mtled::algebra::tensor::Vector3;
+use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::{DistanceFunction, Selector, Shape};
 use mtled::problem::Problem;
 use rayon::prelude::*;
@@ -112,7 +112,7 @@ impl Cut {
         let bounds = (lower.map(|c| c - margin), upper.map(|c| c + margin));
         let size = [0, 1].map(|k| ((bounds.1[k] - bounds.0[k]) / step).ceil() as usize + 1);
         let row = |j: usize| {
-            let mut start = Vector3::zeros();
+            let (mut start, mut inverse) = (Vector3::zeros(), Matrix3::identity());
             let source = |i: usize| {
                 let [a, b] = [(0, i), (1, j)].map(|(k, n)| bounds.0[k] + n as f64 * step);
                 let x = plane.point(a, b);
@@ -120,7 +120,8 @@ impl Cut {
                 if body.signed_distance(&x) > margin {
                     return Vector3::zeros();
                 }
-                start = source_of(field, &x, &start).vector;
+                let source = source_of(field, &x, &start, inverse);
+                (start, inverse) = (source.vector, source.inverse);
                 start
             };
             (0..size[0]).map(source).collect::<Vec<Vector3>>()

@@ -61,7 +61,7 @@ pub fn invariance(bench: &Workbench, study: &mut Study) -> Result<()> {
     let problem = rotated_conditions(&base, R);
     let discretisation = rotated(&Discretisation::new(&base)?, R);
     let model = Model::new(&problem, &discretisation)?;
-    let u = solve(&problem, Prepared { discretisation, model, setup_seconds: 0.0 })?;
+    let u = solve(&problem, Prepared::new(discretisation, model, 0.0))?;
     add("turned", "everything rotated", rotated_field(&u, &R.transpose()));
     study.tables.push(Table {
         title: "Paired runs of a sheared and compressed block".into(),

@@ -36,7 +36,7 @@ fn stretched(dimension: Dimension) -> (Problem, Prepared, Frame) {
 fn an_affine_displacement_and_its_strains_are_exact_at_the_vertices() {
     for dimension in [Dimension::Three, Dimension::PlaneStrain { thickness: 1.0, z: 0.05 }] {
         let (problem, prepared, frame) = stretched(dimension);
-        let fields = NodeFields::new(&problem, &prepared, None, &frame, None).unwrap();
+        let fields = NodeFields::new(&problem, &prepared, &frame, None).unwrap();
         let body = BodyFrames::new(&problem, &prepared).unwrap().unwrap();
         let written = body.frame(&prepared, &frame, &fields, None, Vec::new());
         let of = |name: &str| {
