@@ -71,13 +71,14 @@ impl SparseCholesky {
         factored.is_ok()
     }
 
-    /// Replaces b by A⁻¹ b.
+    /// Replaces each of the vectors b, one after the other in memory, by A⁻¹ b.
     pub fn solve(&self, b: &mut [f64], scratch: &mut Scratch) {
-        let required = self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        let n = b.len();
+        let n = self.symbolic.nrows();
+        let count = b.len() / n;
+        let required = self.symbolic.solve_in_place_scratch::<f64>(count, Par::Seq);
         LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
-            MatMut::from_column_major_slice_mut(b, n, 1),
+            MatMut::from_column_major_slice_mut(b, n, count),
             Par::Seq,
             scratch.of(required),
         );

@@ -1,7 +1,7 @@
 //! Loss of stability, seen in the motion itself or searched among smooth modes.
 #![allow(non_snake_case)]
 
-use crate::algebra::packed::{axpy, dot, largest};
+use crate::algebra::packed::{axpy, largest};
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::error::{Error, Instability};
 use crate::geometry::indices;
@@ -90,10 +90,11 @@ pub(crate) fn negative_mode(
     let fields = smooth_fields(model, t);
     let images: Vec<Vec<f64>> = fields.iter().map(|field| tangent.stiffness_times(field)).collect();
     let n = fields.len();
-    let gram = DMatrix::from_fn(n, n, |i, j| dot(&fields[i], &fields[j]));
-    let form = DMatrix::from_fn(n, n, |i, j| {
-        0.5 * (dot(&fields[i], &images[j]) + dot(&fields[j], &images[i]))
-    });
+    let columns = |fields: &[Vec<f64>]| DMatrix::from_iterator(u.len(), n, fields.concat());
+    let (all, images) = (columns(&fields), columns(&images));
+    let gram = all.tr_mul(&all);
+    let products = all.tr_mul(&images);
+    let form = 0.5 * (&products + products.transpose());
     // Orthonormal, without directions of round-off.
     let gram = gram.symmetric_eigen();
     let kept: Vec<usize> =
@@ -123,8 +124,13 @@ fn smooth_fields(model: &Model, t: f64) -> Vec<Vec<f64>> {
         .collect();
     let mut forces = ConstraintForces::default();
     let mut fields = Vec::new();
+    let mut known = (Vec::new(), Vec::new());
     for component in 0..d {
-        let held = distance_to_held(model, t, component);
+        let nodes = held_nodes(model, t, component);
+        if component == 0 || nodes != known.0 {
+            known = (nodes.clone(), distance_to(model, &nodes));
+        }
+        let held = &known.1;
         for [i, j, k] in &powers {
             let mut field = vec![0.0; model.size()];
             for (node, X) in model.positions.iter().enumerate() {
@@ -139,16 +145,23 @@ fn smooth_fields(model: &Model, t: f64) -> Vec<Vec<f64>> {
     fields
 }
 
-/// Distance of each node to the nearest one that is held in a component, over the size
-/// of the body; 1 where none is.
-fn distance_to_held(model: &Model, t: f64, component: usize) -> Vec<f64> {
-    let set = model.constraints.active(t).iter().find(|set| set.component == component);
-    let Some(set) = set else { return vec![1.0; model.positions.len()] };
-    let held: Vec<Vector3> =
-        set.rows.iter().map(|row| model.positions[row.node as usize]).collect();
+/// The nodes that are held in a component.
+fn held_nodes(model: &Model, t: f64, component: usize) -> Vec<u32> {
+    let sets = model.constraints.active(t).iter().filter(|set| set.component == component);
+    sets.flat_map(|set| set.rows.iter().map(|row| row.node)).collect()
+}
+
+/// Distance of each node to the nearest of some, over the size of the body; 1 where there are
+/// none.
+fn distance_to(model: &Model, nodes: &[u32]) -> Vec<f64> {
+    if nodes.is_empty() {
+        return vec![1.0; model.positions.len()];
+    }
+    let held: Vec<Vector3> = nodes.iter().map(|&node| model.positions[node as usize]).collect();
     let distance = |X: &Vector3| {
         let squares = held.iter().map(|Y| (X - Y).norm_squared());
-        squares.fold(f64::INFINITY, f64::min).sqrt() / model.extent
+        let least = squares.fold(f64::INFINITY, |least, d| if d < least { d } else { least });
+        least.sqrt() / model.extent
     };
     model.positions.par_iter().map(distance).collect()
 }

@@ -17,13 +17,13 @@ use rayon::prelude::*;
 /// Spacing of the finest lattice over that of the nodes \[–\].
 const FINEST: f64 = 1.5;
 /// Points from which the size of a level's diagonal is estimated.
-const SAMPLES: usize = 1000;
+const SAMPLES: usize = 250;
 /// More functions than this make the finest lattice coarser.
 const MOST_FUNCTIONS: usize = 4_000_000;
 /// Chunks of nodes whose moments are computed in parallel, and the fewest nodes of one.
 const CHUNKS: (usize, usize) = (16, 2048);
 /// Samples of one parallel task.
-const SAMPLES_PER_TASK: usize = 50;
+const SAMPLES_PER_TASK: usize = 16;
 
 /// The preconditioner B.
 pub(super) struct Multilevel {

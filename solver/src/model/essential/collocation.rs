@@ -31,13 +31,26 @@ impl Collocation {
         Some(Collocation { rows, cholesky })
     }
 
-    /// Replaces prescribed values ū by the multipliers (ΦM⁻¹Φᵀ)⁻¹(ū − Φu), where
-    /// `value_of(node)` is the nodal parameter.
-    pub fn solve(&self, values: &mut [f64], scratch: &mut Scratch, value_of: impl Fn(u32) -> f64) {
-        for (i, value) in values.iter_mut().enumerate() {
+    /// Number of collocation nodes.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Replaces prescribed values ū \[set\]\[row\] of K sets by the multipliers
+    /// (ΦM⁻¹Φᵀ)⁻¹(ū − Φu), where `values_of(node)` are the nodal parameters \[set\].
+    pub fn solve<const K: usize>(
+        &self,
+        values: &mut [f64],
+        scratch: &mut Scratch,
+        values_of: impl Fn(u32) -> [f64; K],
+    ) {
+        for i in 0..self.len() {
+            let mut sums = [0.0; K];
             for entry in self.rows.row(i) {
-                *value -= self.rows.phi[entry] * value_of(self.rows.nodes[entry]);
+                let (phi, u) = (self.rows.phi[entry], values_of(self.rows.nodes[entry]));
+                (0..K).for_each(|set| sums[set] += phi * u[set]);
             }
+            (0..K).for_each(|set| values[set * self.len() + i] -= sums[set]);
         }
         self.cholesky.solve(values, scratch);
     }
@@ -52,17 +65,20 @@ impl Collocation {
         self.rows.interpolate(i, u, components)
     }
 
-    /// Calls `correct(node, Δu)` for the changes Δu = M⁻¹Φᵀλ, term by term.
-    pub fn corrections(
+    /// Calls `correct(node, Δu)` for the changes Δu = M⁻¹Φᵀλ \[set\] of multipliers λ \[set\]\[row\],
+    /// term by term.
+    pub fn corrections<const K: usize>(
         &self,
         mass: &[f64],
         multipliers: &[f64],
-        mut correct: impl FnMut(u32, f64),
+        mut correct: impl FnMut(u32, [f64; K]),
     ) {
-        for (i, multiplier) in multipliers.iter().enumerate() {
+        for i in 0..self.len() {
+            let own: [f64; K] = std::array::from_fn(|set| multipliers[set * self.len() + i]);
             for entry in self.rows.row(i) {
                 let node = self.rows.nodes[entry];
-                correct(node, self.rows.phi[entry] * multiplier / mass[node as usize]);
+                let factor = self.rows.phi[entry] / mass[node as usize];
+                correct(node, own.map(|multiplier| factor * multiplier));
             }
         }
     }

@@ -10,6 +10,7 @@ use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::problem::{Enforcement, EssentialCondition, Prescribed, Problem};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The conditions of a problem, resolved to nodes and components.
 #[derive(Debug, Clone)]
@@ -35,31 +36,44 @@ pub struct ConstraintSet {
     pub component: usize,
     /// In ascending order of nodes.
     pub rows: Vec<ConstraintRow>,
-    /// `None`: the nodal parameter is set directly.
-    collocation: Option<Collocation>,
+    /// `None`: the nodal parameter is set directly. Sets with the same nodes have the same.
+    collocation: Option<Arc<Collocation>>,
 }
 
 impl ConstraintSet {
     fn new(
         component: usize,
         mut rows: Vec<ConstraintRow>,
+        others: &[ConstraintSet],
         problem: &Problem,
         discretisation: &Discretisation,
         mass: &[f64],
     ) -> Result<ConstraintSet, Error> {
+        let alike = others.iter().find(|other| {
+            let nodes = other.rows.iter().map(|row| row.node);
+            nodes.eq(rows.iter().map(|row| row.node))
+        });
+        let known = alike.and_then(|other| other.collocation.clone());
         let collocation = match problem.recipe.enforcement {
             Enforcement::Direct => None,
             Enforcement::Collocation => {
                 fit_mean_gradient(&mut rows, component, &problem.conditions, discretisation);
                 let nodes: Vec<u32> = rows.iter().map(|row| row.node).collect();
-                let dependent = Error::DependentConstraints {
+                let made = || Collocation::new(discretisation, mass, &nodes).map(Arc::new);
+                let dependent = || Error::DependentConstraints {
                     component: ['x', 'y', 'z'][component],
                     rows: rows.len(),
                 };
-                Some(Collocation::new(discretisation, mass, &nodes).ok_or(dependent)?)
+                Some(known.or_else(made).ok_or_else(dependent)?)
             }
         };
         Ok(ConstraintSet { component, rows, collocation })
+    }
+
+    /// Whether collocation at the same nodes holds both.
+    fn has_nodes_of(&self, other: &ConstraintSet) -> bool {
+        let both = self.collocation.as_ref().zip(other.collocation.as_ref());
+        both.is_some_and(|(own, other)| Arc::ptr_eq(own, other))
     }
 
     fn constrains(&self, node: u32) -> bool {
@@ -74,6 +88,8 @@ pub struct ConstraintForces {
     multipliers: Vec<Vec<f64>>,
     stage: usize,
     states: Vec<ConditionState>,
+    /// Of sets with the same nodes, one after the other.
+    values: Vec<f64>,
     scratch: Scratch,
 }
 
@@ -111,7 +127,9 @@ impl Constraints {
             for component in 0..problem.dimension.components() {
                 let rows = rows_of_component(&conditions, &selected, component, active, positions);
                 if !rows.is_empty() {
-                    sets.push(ConstraintSet::new(component, rows, problem, discretisation, mass)?);
+                    let set =
+                        ConstraintSet::new(component, rows, &sets, problem, discretisation, mass)?;
+                    sets.push(set);
                 }
             }
             Ok(Stage { until, sets })
@@ -238,25 +256,24 @@ impl Constraints {
         let components = u.len() / mass.len();
         let sets = &self.stages[forces.stage].sets;
         forces.multipliers.resize_with(sets.len(), Vec::new);
-        for (set, values) in sets.iter().zip(&mut forces.multipliers) {
-            let index = |node: u32| components * node as usize + set.component;
+        let mut multipliers = forces.multipliers.iter_mut();
+        for alike in sets.chunk_by(ConstraintSet::has_nodes_of) {
+            let values = &mut forces.values;
             values.clear();
-            values.extend(set.rows.iter().map(|row| target(row, set.component)));
-            match &set.collocation {
-                Some(collocation) => {
-                    collocation.solve(values, &mut forces.scratch, |node| u[index(node)]);
-                    collocation.corrections(mass, values, |node, delta| {
-                        u[index(node)] += delta;
-                        on_change(index(node), delta);
-                    });
-                }
-                None => {
-                    for (row, value) in set.rows.iter().zip(values) {
-                        let delta = *value - u[index(row.node)];
-                        u[index(row.node)] = *value;
-                        *value = mass[row.node as usize] * delta;
-                        on_change(index(row.node), delta);
-                    }
+            for set in alike {
+                values.extend(set.rows.iter().map(|row| target(row, set.component)));
+            }
+            let field = Field { u, components, mass };
+            match alike {
+                [a, b, c] => field.take([a, b, c], values, &mut forces.scratch, &mut on_change),
+                [a, b] => field.take([a, b], values, &mut forces.scratch, &mut on_change),
+                [a] => field.take([a], values, &mut forces.scratch, &mut on_change),
+                _ => unreachable!("a set for each component"),
+            }
+            for values in values.chunks(alike[0].rows.len()) {
+                if let Some(multipliers) = multipliers.next() {
+                    multipliers.clear();
+                    multipliers.extend_from_slice(values);
                 }
             }
         }
@@ -294,5 +311,44 @@ impl Constraints {
             }
         }
         reactions
+    }
+}
+
+/// A displacement field \[component of node\] \[m\] of nodes with masses \[kg\].
+struct Field<'a> {
+    u: &'a mut [f64],
+    components: usize,
+    mass: &'a [f64],
+}
+
+impl Field<'_> {
+    /// Takes the values \[set\]\[row\] of sets with the same nodes, which become their multipliers.
+    fn take<const K: usize>(
+        self,
+        sets: [&ConstraintSet; K],
+        values: &mut [f64],
+        scratch: &mut Scratch,
+        on_change: &mut impl FnMut(usize, f64),
+    ) {
+        let Field { u, components, mass } = self;
+        let offsets = sets.map(|set| set.component);
+        let places = |node: u32| offsets.map(|offset| components * node as usize + offset);
+        let Some(collocation) = &sets[0].collocation else {
+            for (row, value) in sets[0].rows.iter().zip(values) {
+                let [place, ..] = places(row.node)[..] else { return };
+                let delta = *value - u[place];
+                u[place] = *value;
+                *value = mass[row.node as usize] * delta;
+                on_change(place, delta);
+            }
+            return;
+        };
+        collocation.solve(values, scratch, |node| places(node).map(|place| u[place]));
+        collocation.corrections(mass, values, |node, deltas: [f64; K]| {
+            for (place, delta) in places(node).into_iter().zip(deltas) {
+                u[place] += delta;
+                on_change(place, delta);
+            }
+        });
     }
 }
