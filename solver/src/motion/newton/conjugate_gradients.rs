@@ -16,6 +16,12 @@ const CHANGED: f64 = 0.02;
 const SHIFTED: f64 = 3.0;
 /// Bodies of fewer nodes, and those in a plane, take no more products with the diagonal alone.
 const LEAST_NODES: usize = 200;
+/// For more nodes the preconditioner is made at once.
+const FEW_NODES: usize = 5000;
+/// Products with the diagonal alone in the first correction, and in all after it, with which the
+/// preconditioner is made: for small and compressible bodies it costs more than it saves.
+const OF_FIRST: usize = 24;
+const OF_ALL: usize = 200;
 /// Products after which the diagonal alone takes over for good: on a few irregular clouds the
 /// transform to nodal values is nearly singular.
 const PATIENCE: usize = 400;
@@ -49,6 +55,10 @@ pub(super) struct System<'a> {
 /// Solves corrections, and keeps the preconditioner from one to the next.
 pub(super) struct Solver {
     preconditioner: Option<Preconditioner>,
+    /// Products with the diagonal alone until the preconditioner is made, if it ever is.
+    until: Option<usize>,
+    /// Whether a correction has been solved.
+    corrected: bool,
     /// For what it was made: held nodes, roughly with the directions, and the shift.
     held: Vec<(u32, [u64; 3])>,
     shift: f64,
@@ -56,9 +66,21 @@ pub(super) struct Solver {
 
 impl Solver {
     pub fn new(model: &Model) -> Solver {
-        let large = model.components == 3 && model.positions.len() >= LEAST_NODES;
-        let preconditioner = large.then(|| Preconditioner::new(model)).flatten();
-        Solver { preconditioner, held: Vec::new(), shift: f64::NAN }
+        let nodes = if model.components == 3 { model.positions.len() } else { 0 };
+        let at_once = nodes > FEW_NODES;
+        let preconditioner = at_once.then(|| Preconditioner::new(model)).flatten();
+        let until = (LEAST_NODES..=FEW_NODES).contains(&nodes).then_some(OF_FIRST);
+        Solver { preconditioner, until, corrected: false, held: Vec::new(), shift: f64::NAN }
+    }
+
+    /// Counts a product; whether the preconditioner was due with it and has been made.
+    fn has_become_due(&mut self, model: &Model) -> bool {
+        let Some(left) = self.until else { return false };
+        self.until = left.checked_sub(1);
+        if self.until.is_none() {
+            self.preconditioner = Preconditioner::new(model);
+        }
+        self.preconditioner.is_some()
     }
 
     /// Makes the preconditioner anew where it would no longer serve.
@@ -136,7 +158,11 @@ impl Solver {
             }
             axpy(&mut change, square / curvature, &direction);
             axpy(&mut residual, -square / curvature, &product);
-            let restart = count + 1 == PATIENCE && self.preconditioner.take().is_some();
+            let due = self.has_become_due(model);
+            if due {
+                self.prepare(model, free, shift);
+            }
+            let restart = due || count + 1 == PATIENCE && self.preconditioner.take().is_some();
             descent = self.preconditioned(model, free, &mut residual);
             let before = std::mem::replace(&mut square, dot(&residual, &descent));
             if restart {
@@ -147,6 +173,9 @@ impl Solver {
                 *p = z + square / before * *p;
             }
         }
+        // Each takes more than the one before; what was not due with the first is due late.
+        self.until = self.until.map(|left| if self.corrected { left } else { OF_ALL });
+        self.corrected = true;
         Correction { change, indefinite, products, stopped }
     }
 

@@ -45,6 +45,8 @@ pub fn cases(bench: &Workbench) -> Result<Vec<HardCase>> {
 
 /// At such strains the outcome depends on the cloud.
 const EITHER: &[&str] = &["finite", "Inverted"];
+/// The same, and runs that saw it lose its stability.
+const FOLDED: &[&str] = &["finite", "Inverted", "Unstable"];
 
 fn bond(mut problem: Problem, fraction: f64) -> Problem {
     problem.conditions = bonded(SIZE, fraction * SIZE);
@@ -81,7 +83,7 @@ fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     list.push(HardCase {
         limit: None,
         unique: false,
-        ends: EITHER,
+        ends: FOLDED,
         remark: "folds within patches, see below; the uniform state is nearly unstable",
         ..folded
     });
@@ -93,7 +95,7 @@ fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     list.push(HardCase {
         limit: None,
         unique: false,
-        ends: EITHER,
+        ends: FOLDED,
         remark: "buckles on most clouds",
         ..folded
     });
@@ -106,7 +108,7 @@ fn folded_cubes(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
         unique: false,
         remark: "beyond the wrinkling of a half-space at a stretch of 0.444 (Biot 1963): no \
                  uniform state is stable",
-        ends: EITHER,
+        ends: FOLDED,
         ..case("rollers_compressed_70", label, problem, expected)
     });
     Ok(())
