@@ -196,7 +196,7 @@ fn a_traction_on_prescribed_nodes_only_is_reported() {
     let pull = |part: Selector, traction: Vector3| Traction {
         name: "pull".into(),
         part,
-        traction,
+        traction: traction.into(),
         amplitude: Amplitude::Constant,
     };
     problem.loads.tractions = vec![pull(face(1, EDGE), Vector3::y())];

@@ -45,7 +45,7 @@ fn a_traction_on_no_part_of_the_boundary_is_refused_by_name() {
     problem.loads.tractions.push(Traction {
         name: "pressure".into(),
         part: face(0, 5.0),
-        traction: Vector3::x(),
+        traction: Vector3::x().into(),
         amplitude: Amplitude::Constant,
     });
     let error = refusal(&problem);

@@ -70,7 +70,10 @@ fn traction_force(
     if !surface.panels.iter().any(chosen) {
         return Err(Error::EmptyTraction { name: traction.name.clone() });
     }
-    let density = |panel: &Panel| if chosen(panel) { traction.traction } else { Vector3::zeros() };
+    let density = |panel: &Panel| match chosen(panel) {
+        true => traction.traction.at(&panel.centre),
+        false => Vector3::zeros(),
+    };
     let mut force = vec![0.0; d * nodes];
     let forces = surface.scatter(nodes, &surface.strengths(nodes, density));
     for (node, nodal_force) in forces.iter().enumerate() {
@@ -115,20 +118,21 @@ pub fn check_loads(
     constraints: &Constraints,
 ) -> Vec<Warning> {
     let cloud = &discretisation.cloud;
-    let carried = |part: &Selector, acts: &dyn Fn(usize) -> bool| {
+    let carried = |part: &Selector, acts: &dyn Fn(&Vector3, usize) -> bool| {
         let selected =
             |&node: &usize| cloud.on_boundary[node] && part.contains(&cloud.positions[node]);
         let prescribed = |node: usize| {
             (0..problem.dimension.components())
-                .filter(|&k| acts(k))
+                .filter(|&k| acts(&cloud.positions[node], k))
                 .all(|k| constraints.always_prescribes(node as u32, k))
         };
         let mut nodes = (0..cloud.positions.len()).filter(selected).peekable();
         nodes.peek().is_some() && nodes.all(prescribed)
     };
     let Loads { tractions, pressures, .. } = &problem.loads;
-    let tractions = tractions.iter().filter(|t| carried(&t.part, &|k| t.traction[k] != 0.0));
-    let pressures = pressures.iter().filter(|p| carried(&p.part, &|_| true));
+    let tractions =
+        tractions.iter().filter(|t| carried(&t.part, &|X, k| t.traction.at(X)[k] != 0.0));
+    let pressures = pressures.iter().filter(|p| carried(&p.part, &|_, _| true));
     let names = tractions.map(|t| &t.name).chain(pressures.map(|p| &p.name));
     let mut warnings: Vec<Warning> =
         names.map(|name| Warning::CarriedTraction { name: name.clone() }).collect();

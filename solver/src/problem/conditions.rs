@@ -91,7 +91,7 @@ pub struct BodyForce {
     pub amplitude: Amplitude,
 }
 
-/// A dead traction: force per reference area \[Pa\] of fixed direction.
+/// A dead traction: force per reference area \[Pa\], whose direction stays as it is.
 #[derive(Debug, Clone)]
 pub struct Traction {
     /// Name in reports and messages.
@@ -99,7 +99,7 @@ pub struct Traction {
     /// Which part of the boundary.
     pub part: Selector,
     /// At amplitude 1 \[Pa\].
-    pub traction: Vector3,
+    pub traction: Field,
     /// The factor over time.
     pub amplitude: Amplitude,
 }

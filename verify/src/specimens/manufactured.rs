@@ -10,7 +10,7 @@ use mtled::geometry::{Selector, Shape, Surface};
 use mtled::material::Material;
 use mtled::problem::{
     Amplitude, BodyForce, Enforcement, Field, Gradients, InsideRule, MassRule, Prescribed, Problem,
-    VolumetricProjection, defaults,
+    Traction, VolumetricProjection, defaults,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -166,6 +166,24 @@ pub fn impose(problem: &mut Problem, oriented: Oriented) -> Result<()> {
         amplitude: Amplitude::Smooth { duration: 1.0 },
     }];
     Ok(())
+}
+
+/// Leaves three faces of the cube along the grid to the tractions P N of the solution.
+pub fn free_three_faces(problem: &mut Problem, oriented: Oriented) {
+    let law = problem.regions[0].material.law;
+    let face = |axis: usize, at: f64| {
+        let normal = Vector3::ith(axis, 1.0);
+        Selector::Plane { point: at * normal, normal, tolerance: 1e-9 }
+    };
+    problem.conditions[0].part = Selector::Union((0..3).map(|axis| face(axis, 0.0)).collect());
+    problem.loads.tractions.extend((0..3).map(|axis| Traction {
+        name: format!("face {axis}"),
+        part: face(axis, 1.0),
+        traction: Field::of(move |X| {
+            law.first_piola_kirchhoff(&oriented.deformation_gradient(X)).column(axis).into()
+        }),
+        amplitude: Amplitude::Smooth { duration: 1.0 },
+    }));
 }
 
 /// The unit cube after X → R X, as a closed surface of twelve triangles.

@@ -130,7 +130,7 @@ impl Builder<'_> {
             self.no_z(&format!("{key}.traction"), &row.traction);
             let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
             let part = self.selector(&format!("{key}.where"), &row.part);
-            let (name, traction) = (row.name.clone(), Vector3::from(row.traction));
+            let (name, traction) = (row.name.clone(), Vector3::from(row.traction).into());
             loads.tractions.extend(part.map(|part| Traction { name, part, traction, amplitude }));
         }
         for (n, row) in format.pressure.iter().enumerate() {

@@ -81,7 +81,7 @@ fn push_faces(problem: &mut Problem, body: &Body) {
             problem.loads.tractions.push(Traction {
                 name: format!("face {axis} at {at}"),
                 part: Selector::Plane { point: normal * at, normal, tolerance: 1e-9 },
-                traction: P * (normal * side),
+                traction: (P * (normal * side)).into(),
                 amplitude: Amplitude::Smooth { duration: 1.0 },
             });
         }

@@ -101,7 +101,8 @@ pub fn thickness(bench: &Workbench, study: &mut Study) -> Result<()> {
     let (point, normal) = (Vector3::y() * SIZE, Vector3::y());
     let part = Selector::Plane { point, normal, tolerance: 1e-9 };
     let name = "top".into();
-    problem.loads.tractions.push(Traction { name, part, traction, amplitude: amplitude.clone() });
+    let pull = Traction { name, part, traction: traction.into(), amplitude: amplitude.clone() };
+    problem.loads.tractions.push(pull);
     problem.loads.body_forces.push(BodyForce {
         part: Selector::All,
         acceleration: acceleration.into(),
