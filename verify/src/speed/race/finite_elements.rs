@@ -38,21 +38,21 @@ fn mesh_series(code: Code, challenge: Challenge) -> &'static [MeshSeries] {
         }
         (Code::Fenicsx, Challenge::SmoothCompressible) => &[
             ("P1", &[4, 8, 12, 16]),
-            ("P2", &[2, 3, 4, 6]),
+            ("P2", &[2, 3, 4, 6, 8]),
             ("Q1", &[4, 8, 12]),
-            ("Q2", &[2, 3, 4]),
+            ("Q2", &[2, 3, 4, 6]),
         ],
         (Code::ScikitFem, Challenge::SmoothCompressible) => {
-            &[("Q1", &[4, 8, 12]), ("Q2", &[2, 3, 4])]
+            &[("Q1", &[4, 8, 12]), ("Q2", &[2, 3, 4, 6])]
         }
         (Code::Fenicsx, Challenge::SmoothNearlyIncompressible) => &[
             ("P1", &[4, 8, 12, 16]),
-            ("P2", &[2, 3, 4, 6]),
+            ("P2", &[2, 3, 4, 6, 8]),
             ("Q1/P0", &[4, 8, 12]),
-            ("Q2/P1", &[2, 3, 4]),
+            ("Q2/P1", &[2, 3, 4, 6]),
         ],
         (Code::ScikitFem, Challenge::SmoothNearlyIncompressible) => {
-            &[("Q1/P0", &[4, 8, 12]), ("Q2/P1", &[2, 3, 4])]
+            &[("Q1/P0", &[4, 8, 12]), ("Q2/P1", &[2, 3, 4, 6])]
         }
     }
 }

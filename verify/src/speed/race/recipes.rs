@@ -38,7 +38,7 @@ const DEFAULT: Family = Family {
     dilation: None,
     cells_per_spacing: None,
     quadratic: false,
-    spacings: &[4, 5, 6, 8, 12],
+    spacings: &[4, 5, 6, 8, 12, 16, 20],
 };
 
 /// Relaxation to the accuracy of the discretisation.
@@ -52,7 +52,7 @@ const RELAXED: Family = Family {
 const NEWTON: Family = Family {
     name: "Newton to 1e-2",
     solver: Solver::Newton { tolerance: 1e-2 },
-    spacings: &[4, 5, 6, 7, 8, 9, 12, 16],
+    spacings: &[4, 5, 6, 7, 8, 9, 12, 16, 20],
     ..DEFAULT
 };
 
