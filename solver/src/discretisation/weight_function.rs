@@ -1,6 +1,7 @@
 //! Weight functions of the moving least squares.
 
 use crate::problem::WeightFunction;
+use std::ops::{Add, Mul, Sub};
 
 impl WeightFunction {
     /// Every weight function, for tests and studies that loop over them.
@@ -22,9 +23,7 @@ impl WeightFunction {
                 let p = 1.0 - q;
                 (4.0 / 3.0 * p * p * p, -4.0 * p * p)
             }
-            WeightFunction::QuarticSpline => {
-                (1.0 + q * q * (-6.0 + q * (8.0 - 3.0 * q)), q * (-12.0 + q * (24.0 - 12.0 * q)))
-            }
+            WeightFunction::QuarticSpline => quartic_spline(q, |x| x),
             WeightFunction::Exponential => {
                 // Width 0.4 of the radius; shifted so that W(1) = 0.
                 let sharpness: f64 = 1.0 / (0.4 * 0.4);
@@ -35,6 +34,17 @@ impl WeightFunction {
             }
         }
     }
+}
+
+/// W(q) and dW/dq of the quartic spline for q ≤ 1, of one number or of several side by side, with
+/// constants from `constant`.
+#[inline(always)]
+pub(super) fn quartic_spline<T>(q: T, constant: impl Fn(f64) -> T) -> (T, T)
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+{
+    let value = q * q * (q * (constant(8.0) - q * constant(3.0)) - constant(6.0)) + constant(1.0);
+    (value, q * (q * (constant(24.0) - q * constant(12.0)) - constant(12.0)))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::mls::support::{Four, Near, Support, dimension, monomials_of};
+use crate::discretisation::weight_function::quartic_spline;
 use crate::problem::WeightFunction;
 use fearless_simd::{Simd, f64x4, prelude::*};
 use nalgebra::{SMatrix, SVector};
@@ -39,9 +40,7 @@ fn values_and_derivatives<S: Simd>(
     let constant = |x: f64| f64x4::splat(simd, x);
     if weight_function == WeightFunction::QuarticSpline {
         // Both vanish at 1.
-        let q = q.min(constant(1.0));
-        let value = q * q * (q * (constant(8.0) - q * 3.0) - constant(6.0)) + constant(1.0);
-        return (value, q * (q * (constant(24.0) - q * 12.0) - constant(12.0)));
+        return quartic_spline(q.min(constant(1.0)), constant);
     }
     let q: [f64; 4] = q.into();
     let (mut values, mut slopes) = ([0.0; 4], [0.0; 4]);
