@@ -12,22 +12,23 @@ pub(super) fn area_vector(t: &Triangle) -> Vector3 {
 }
 
 /// Halves the longest edge until no edge is longer than `size` \[m\].
-pub(super) fn subdivide(triangle: Triangle, size: f64, keep: &mut impl FnMut(Triangle)) {
-    // Empty, and without memory, where nothing is halved.
-    let mut stack = Vec::new();
-    let mut next = Some(triangle);
-    while let Some(t) = next.or_else(|| stack.pop()) {
-        next = None;
+pub(super) fn subdivide(mut t: Triangle, size: f64, keep: &mut impl FnMut(Triangle)) {
+    let mut halves = Vec::new();
+    loop {
         let lengths = [0, 1, 2].map(|k| (t[(k + 1) % 3] - t[k]).norm());
         let longest = (0..3).fold(0, |l, k| if lengths[k] > lengths[l] { k } else { l });
         if lengths[longest] <= size {
             keep(t);
+            match halves.pop() {
+                Some(half) => t = half,
+                None => return,
+            }
             continue;
         }
         let [a, b, c] = [0, 1, 2].map(|k| t[(longest + k) % 3]);
         let middle = 0.5 * (a + b);
-        stack.push([a, middle, c]);
-        stack.push([middle, b, c]);
+        halves.push([a, middle, c]);
+        t = [middle, b, c];
     }
 }
 

@@ -124,19 +124,19 @@ fn smooth_fields(model: &Model, t: f64) -> Vec<Vec<f64>> {
         .collect();
     let mut forces = ConstraintForces::default();
     let mut fields = Vec::new();
-    let mut known = (Vec::new(), Vec::new());
+    let (mut known, mut distances) = (None, Vec::new());
     for component in 0..d {
         let nodes = held_nodes(model, t, component);
-        if component == 0 || nodes != known.0 {
-            known = (nodes.clone(), distance_to(model, &nodes));
+        if known.as_ref() != Some(&nodes) {
+            distances = distance_to(model, &nodes);
+            known = Some(nodes);
         }
-        let held = &known.1;
         for [i, j, k] in &powers {
             let mut field = vec![0.0; model.size()];
             for (node, X) in model.positions.iter().enumerate() {
                 let x = (X - model.positions[0]) / model.extent;
                 field[d * node + component] =
-                    held[node] * x.x.powi(*i) * x.y.powi(*j) * x.z.powi(*k);
+                    distances[node] * x.x.powi(*i) * x.y.powi(*j) * x.z.powi(*k);
             }
             model.constraints.project(t, &model.inertia, &mut field, &mut forces);
             fields.push(field);

@@ -34,9 +34,9 @@ pub struct Source {
 }
 
 /// Solves g = X − x + u(X) = 0 by the secant method of Broyden 1965, eq. 4.5, from
-/// X − x = `start` and an estimate `inverse` of ∂X/∂x; where it fails, such as near folds, from its best iterate by the fixed point
-/// of X = x − u(X), with shorter steps where the residual grows. Where that does not converge
-/// either, this is the iterate with the smallest residual.
+/// X − x = `start` and an estimate `inverse` of ∂X/∂x; where it fails, such as near folds, from
+/// its best iterate by the fixed point of X = x − u(X), with shorter steps where the residual
+/// grows. Where that does not converge either, this is the iterate with the smallest residual.
 pub fn source_of(
     field: &DisplacementField,
     x: &Vector3,

@@ -70,10 +70,10 @@ impl Approximation {
         }
     }
 
-    /// No node farther away covers X \[m\].
-    fn reach(&self, X: &Vector3) -> f64 {
-        match self.reaches.is_empty() {
-            true => self.largest_radius,
+    /// No node farther away covers X \[m\] with radii enlarged by a factor.
+    fn reach(&self, X: &Vector3, enlargement: f64) -> f64 {
+        match self.reaches.is_empty() || enlargement > 1.0 {
+            true => self.largest_radius * enlargement,
             false => self.reaches[self.neighbours.cell_of(X)],
         }
     }
@@ -121,7 +121,7 @@ impl Approximation {
             return self.largest_radius;
         }
         let (mut sum, mut count) = (0.0, 0.0);
-        self.neighbours.for_each_within(X, self.reach(X), |node, offset| {
+        self.neighbours.for_each_within(X, self.reach(X, 1.0), |node, offset| {
             let radius = self.influence_radius[node];
             if offset.norm_squared() < radius * radius {
                 sum += radius;
@@ -219,8 +219,7 @@ impl Approximation {
     /// The nodes that cover X and are `seen`, ascending.
     fn find(&self, X: &Vector3, enlargement: f64, seen: impl Fn(u32) -> bool, near: &mut Near) {
         near.nodes.clear();
-        let enlarged = enlargement > 1.0;
-        let reach = if enlarged { self.largest_radius * enlargement } else { self.reach(X) };
+        let reach = self.reach(X, enlargement);
         self.neighbours.for_each_within(X, reach, |node, offset| {
             let radius = self.influence_radius[node] * enlargement;
             if offset.norm_squared() < radius * radius && seen(node as u32) {

@@ -26,9 +26,8 @@ fn samples(
     let count = ((upper - lower) / step).map(|c| c.ceil() + 1.0);
     DISTANCE_SAMPLES.check(count.product())?;
     let size = [0, 1, 2].map(|k| count[k] as usize);
-    let values = vec![0.0; size.iter().product()];
-    let mut grid = ScalarGrid { size, step: Vector3::repeat(step), values };
-    let mut values = std::mem::take(&mut grid.values);
+    let mut grid = ScalarGrid { size, step: Vector3::repeat(step), values: Vec::new() };
+    let mut values = vec![0.0; size.iter().product()];
     values.par_chunks_mut(size[0]).enumerate().for_each(|(row, values)| {
         let at = |i: usize| lower + grid.local(i + row * size[0]);
         fill_row(values, steepness(shape), step, |i| shape.signed_distance(&at(i)));

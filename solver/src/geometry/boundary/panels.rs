@@ -140,6 +140,5 @@ fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>
 /// Panels of edge `size` \[m\] on triangles from cubes of `step` \[m\].
 fn isosurface_panels(shape: &Shape, step: f64, size: f64) -> Result<Vec<Panel>, GeometryError> {
     let layers = marching::isosurface(shape, step)?.into_par_iter();
-    let panels = layers.map(|layer| triangle_panels(layer.into_iter(), size));
-    Ok(panels.collect::<Vec<Vec<Panel>>>().into_iter().flatten().collect())
+    Ok(layers.flat_map_iter(|layer| triangle_panels(layer.into_iter(), size)).collect())
 }

@@ -209,9 +209,9 @@ impl ScalarGrid {
                     if distance[next] <= own || is_known[next] {
                         continue;
                     }
-                    let mut there = ijk;
-                    there[axis] = to;
-                    let there = (self.position(there) - known[foot as usize].foot).norm();
+                    let mut place = ijk;
+                    place[axis] = to;
+                    let there = (self.position(place) - known[foot as usize].foot).norm();
                     if there < distance[next] && there <= reach {
                         (distance[next], feet[next]) = (there, foot);
                         front.push(there, next, foot);

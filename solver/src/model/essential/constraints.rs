@@ -335,7 +335,7 @@ impl Field<'_> {
         let places = |node: u32| offsets.map(|offset| components * node as usize + offset);
         let Some(collocation) = &sets[0].collocation else {
             for (row, value) in sets[0].rows.iter().zip(values) {
-                let [place, ..] = places(row.node)[..] else { return };
+                let place = places(row.node)[0];
                 let delta = *value - u[place];
                 u[place] = *value;
                 *value = mass[row.node as usize] * delta;

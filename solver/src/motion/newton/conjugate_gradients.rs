@@ -18,7 +18,7 @@ const SHIFTED: f64 = 3.0;
 const LEAST_NODES: usize = 200;
 /// For more nodes the preconditioner is made at once.
 const FEW_NODES: usize = 5000;
-/// Products with the diagonal alone in the first correction, and in all after it, with which the
+/// Products with the diagonal alone in the first correction, and in all after it, beyond which the
 /// preconditioner is made: for small and compressible bodies it costs more than it saves.
 const OF_FIRST: usize = 24;
 const OF_ALL: usize = 200;
