@@ -66,6 +66,8 @@ pub enum Mistake {
     Geometry(GeometryError),
     #[error("line {line} is `{text}`; expected {expected}")]
     BadLine { line: usize, text: String, expected: &'static str },
+    #[error("the text ends in line {line}; expected {expected}: copy or export it again")]
+    TextEnds { line: usize, expected: &'static str },
     #[error("the array has shape {shape:?} and type {kind}; expected {expected} of floats")]
     BadArray { shape: Vec<u64>, kind: String, expected: &'static str },
     #[error("there is no point data of three components called `{name}`; the file has {known}")]

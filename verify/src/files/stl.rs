@@ -2,8 +2,10 @@
 
 use super::bytes::{bytes_of, start_of};
 use super::error::{FileError, Mistake};
+use super::stl_text;
 use super::unit::LengthUnit;
 use mtled::algebra::tensor::Vector3;
+use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -16,6 +18,40 @@ pub struct Triangles {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// Coordinates of a corner as a file has them.
+pub(super) type Corner = [f32; 3];
+
+/// Axes of the coordinates, which 3D Slicer writes into the header or the name of a solid as
+/// `SPACE=LPS` or `SPACE=RAS`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Space {
+    Ras,
+    Lps,
+}
+
+impl Space {
+    /// The space that a header or a name states. Where it states none, the coordinates are taken
+    /// as they are, as those of a drawing.
+    pub fn stated(header: &[u8]) -> Result<Space, Mistake> {
+        let header = String::from_utf8_lossy(header);
+        let words = header.split(|c: char| !c.is_alphanumeric() && c != '=');
+        let found = words.into_iter().find_map(|word| word.strip_prefix("SPACE="));
+        match found {
+            None | Some("RAS") => Ok(Space::Ras),
+            Some("LPS") => Ok(Space::Lps),
+            Some(other) => Err(Mistake::bad_field("SPACE", other, "`LPS` or `RAS`")),
+        }
+    }
+
+    /// A point of this space along R, A and S.
+    pub fn to_ras(self, [x, y, z]: Corner) -> Corner {
+        match self {
+            Space::Ras => [x, y, z],
+            Space::Lps => [-x, -y, z],
+        }
+    }
+}
+
 /// Reads a surface; STL states no unit.
 pub fn read(path: &Path, unit: LengthUnit) -> Result<Triangles, FileError> {
     let bytes = bytes_of(path)?;
@@ -23,25 +59,53 @@ pub fn read(path: &Path, unit: LengthUnit) -> Result<Triangles, FileError> {
 }
 
 fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
-    let text = bytes.starts_with(b"solid") && surplus(bytes) != Some(0);
-    let bytes = match text {
-        true => unnamed_text(bytes),
-        false => plainly_binary(bytes)?,
+    let surface = match is_text(bytes) {
+        true => shared(&stl_text::corners(bytes)?, unit),
+        false => binary(bytes, unit)?,
     };
-    let mesh = stl_io::read_stl(&mut Cursor::new(bytes))
-        .map_err(|error| Mistake::Undecodable { encoding: "STL", reason: error.to_string() })?;
-    if mesh.faces.is_empty() {
+    if surface.triangles.is_empty() {
         return Err(Mistake::NoTriangles);
     }
-    let metres = unit.in_metres();
-    let vertices: Vec<Vector3> = (mesh.vertices.iter())
-        .map(|vertex| Vector3::from_fn(|n, _| f64::from(vertex[n]) * metres))
-        .collect();
-    if let Some(point) = vertices.iter().position(|v| !v.iter().all(|c| c.is_finite())) {
-        return Err(Mistake::NotFinite { point: point + 1 });
+    let finite = |v: &Vector3| v.iter().all(|c| c.is_finite());
+    match surface.vertices.iter().position(|v| !finite(v)) {
+        Some(point) => Err(Mistake::NotFinite { point: point + 1 }),
+        None => Ok(surface),
     }
+}
+
+/// Whether a file begins as text does and is no binary one of the right length.
+fn is_text(bytes: &[u8]) -> bool {
+    let start = bytes.trim_ascii_start().get(..5);
+    let solid = start.is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    solid && !bytes.contains(&0) && !has_stated_length(bytes)
+}
+
+fn binary(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
+    let plain = plainly_binary(bytes)?;
+    let space = Space::stated(&bytes[..START - 4])?;
+    let mesh = stl_io::read_stl(&mut Cursor::new(plain))
+        .map_err(|error| Mistake::Undecodable { encoding: "STL", reason: error.to_string() })?;
+    let place = |v: &stl_io::Vertex| in_metres(space.to_ras([v[0], v[1], v[2]]), unit);
     let triangles = mesh.faces.iter().map(|face| face.vertices.map(|n| n as u32)).collect();
-    Ok(Triangles { vertices, triangles })
+    Ok(Triangles { vertices: mesh.vertices.iter().map(place).collect(), triangles })
+}
+
+fn in_metres(corner: Corner, unit: LengthUnit) -> Vector3 {
+    Vector3::from_fn(|n, _| f64::from(corner[n]) * unit.in_metres())
+}
+
+/// Triangles with one vertex for all corners of the same coordinates, in the order of the file.
+fn shared(corners: &[Corner], unit: LengthUnit) -> Triangles {
+    let (mut first, mut vertices) = (HashMap::new(), Vec::new());
+    let number = |corner: &Corner| {
+        *first.entry(corner.map(f32::to_bits)).or_insert_with(|| {
+            vertices.push(in_metres(*corner, unit));
+            vertices.len() as u32 - 1
+        })
+    };
+    let numbers: Vec<u32> = corners.iter().map(number).collect();
+    let triangles = numbers.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+    Triangles { vertices, triangles }
 }
 
 /// Space of the coordinates of a file, in the words of 3D Slicer; padded to the header.
@@ -79,29 +143,34 @@ fn stated(bytes: &[u8]) -> Option<usize> {
     Some(TRIANGLE * count)
 }
 
-/// Bytes beyond those that a binary file states; 0 shows that it is one, whatever its
-/// header begins with.
-fn surplus(bytes: &[u8]) -> Option<i64> {
-    Some((bytes.len() - START) as i64 - stated(bytes)? as i64)
+/// Whether a file is as long as a binary one of its triangles, which shows that it is one,
+/// whatever its header begins with.
+fn has_stated_length(bytes: &[u8]) -> bool {
+    stated(bytes).is_some_and(|expected| bytes.len() == START + expected)
 }
 
 /// A binary file of the right length, with a header that no reader takes for text.
 fn plainly_binary(bytes: &[u8]) -> Result<Vec<u8>, Mistake> {
+    let other = Mistake::WrongFormat { format: "an STL file", start: start_of(bytes) };
     let Some(expected) = stated(bytes) else {
-        return Err(Mistake::WrongFormat { format: "an STL file", start: start_of(bytes) });
+        return Err(other);
     };
     let found = bytes.len() - START;
     match found.checked_sub(expected) {
+        _ if looks_otherwise(bytes) => Err(other),
         None => Err(Mistake::Truncated { expected, found }),
         Some(TRIANGLE..) => Err(Mistake::Excess { expected }),
         Some(_) => Ok([&[0; START - 4], &bytes[START - 4..]].concat()),
     }
 }
 
-/// A text file whose solid has a name, as the reader needs it.
-fn unnamed_text(bytes: &[u8]) -> Vec<u8> {
-    let first = bytes.iter().position(|&b| b == b'\n').unwrap_or(bytes.len());
-    [b"solid surface", &bytes[first..]].concat()
+/// Whether a file of another length than stated begins as compressed data, or with text where the
+/// number of triangles stands, which would be beyond 150 million.
+fn looks_otherwise(bytes: &[u8]) -> bool {
+    const GZIP: &[u8] = &[0x1f, 0x8b];
+    let text = |byte: &u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
+    let other = bytes.starts_with(GZIP) || bytes[..START].iter().all(text);
+    other && !has_stated_length(bytes)
 }
 
 #[cfg(test)]
@@ -119,7 +188,7 @@ mod tests {
             .to_vec()
     }
 
-    fn binary() -> Vec<u8> {
+    fn written() -> Vec<u8> {
         let mut bytes = Vec::new();
         stl_io::write_stl(&mut bytes, tetrahedron().iter()).unwrap();
         bytes
@@ -139,7 +208,7 @@ mod tests {
 
     #[test]
     fn binary_and_ascii_give_the_same_surface_in_metres() {
-        let from_binary = parse(&binary(), LengthUnit::Millimetre).unwrap();
+        let from_binary = parse(&written(), LengthUnit::Millimetre).unwrap();
         assert_eq!(from_binary, parse(ascii().as_bytes(), LengthUnit::Millimetre).unwrap());
         assert_eq!((from_binary.vertices.len(), from_binary.triangles.len()), (4, 4));
         assert!(from_binary.vertices.contains(&Vector3::new(0.01, 0.0, 0.0)));
@@ -147,10 +216,10 @@ mod tests {
 
     #[test]
     fn a_binary_surface_whose_header_begins_with_solid_is_read() {
-        let mut bytes = binary();
+        let mut bytes = written();
         bytes[..13].copy_from_slice(b"solid surface");
         let read = parse(&bytes, LengthUnit::Metre).unwrap();
-        assert_eq!(read, parse(&binary(), LengthUnit::Metre).unwrap());
+        assert_eq!(read, parse(&written(), LengthUnit::Metre).unwrap());
     }
 
     #[test]
@@ -162,7 +231,7 @@ mod tests {
 
     #[test]
     fn a_surface_with_more_triangles_than_stated_is_refused() {
-        let mut bytes = binary();
+        let mut bytes = written();
         bytes[80] = 3;
         let error = parse(&bytes, LengthUnit::Metre).unwrap_err();
         assert!(matches!(error, Mistake::Excess { expected: 150 }), "{error}");
@@ -170,8 +239,57 @@ mod tests {
 
     #[test]
     fn a_truncated_surface_is_refused_with_its_length() {
-        let bytes = binary();
+        let bytes = written();
         let error = parse(&bytes[..bytes.len() - 30], LengthUnit::Metre).unwrap_err();
         assert!(matches!(error, Mistake::Truncated { expected: 200, found: 170 }), "{error}");
+    }
+
+    #[test]
+    fn a_surface_of_two_solids_has_the_triangles_of_both() {
+        let both = ascii() + &ascii().replace("10", "20");
+        let read = parse(both.as_bytes(), LengthUnit::Metre).unwrap();
+        assert_eq!((read.vertices.len(), read.triangles.len()), (7, 8));
+    }
+
+    #[test]
+    fn the_space_of_a_header_or_a_name_is_honoured() {
+        let plain = parse(&written(), LengthUnit::Metre).unwrap();
+        let turned: Vec<Vector3> =
+            plain.vertices.iter().map(|v| Vector3::new(-v.x, -v.y, v.z)).collect();
+        for (space, expected) in [("LPS", &turned), ("RAS", &plain.vertices)] {
+            let mut bytes = written();
+            bytes[..9].copy_from_slice(format!("SPACE={space}").as_bytes());
+            let text = ascii().replace("solid tetrahedron", &format!("solid liver SPACE={space}"));
+            for file in [&bytes, text.as_bytes()] {
+                assert_eq!(&parse(file, LengthUnit::Metre).unwrap().vertices, expected);
+            }
+        }
+        let unknown = ascii().replace("solid tetrahedron", "solid SPACE=LAS");
+        let error = parse(unknown.as_bytes(), LengthUnit::Metre).unwrap_err().to_string();
+        assert!(error.contains("`SPACE` is `LAS`; expected `LPS` or `RAS`"), "{error}");
+    }
+
+    #[test]
+    fn a_surface_that_was_written_is_read_at_the_same_place() {
+        let surface = parse(&written(), LengthUnit::Millimetre).unwrap();
+        let again = parse(&to_stl(&surface), LengthUnit::Millimetre).unwrap();
+        assert_eq!(again, surface);
+    }
+
+    #[test]
+    fn files_of_other_formats_are_not_called_truncated() {
+        let object = "# an object\n".to_string() + &"v 0.0 1.0 2.0\n".repeat(20);
+        let packed = [&[0x1f, 0x8b, 8, 0][..], &[7; 200]].concat();
+        for (file, start) in [(object.as_bytes(), "# an object"), (&packed, "\\u{1f}")] {
+            let error = parse(file, LengthUnit::Metre).unwrap_err();
+            assert!(matches!(error, Mistake::WrongFormat { .. }), "{error}");
+            assert!(error.to_string().contains(start), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_text_without_a_triangle_is_refused() {
+        let error = parse(b"solid nothing\nendsolid\n", LengthUnit::Metre).unwrap_err();
+        assert!(matches!(error, Mistake::NoTriangles), "{error}");
     }
 }
