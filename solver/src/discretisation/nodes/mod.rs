@@ -2,6 +2,7 @@
 
 mod borders;
 mod cloud;
+mod curves;
 mod given;
 mod graded;
 mod held_edges;

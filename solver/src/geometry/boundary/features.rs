@@ -10,6 +10,7 @@ use crate::geometry::polygon::{Outline, anticlockwise};
 use crate::geometry::primitives::perpendicular;
 use crate::geometry::shape::Shape;
 use crate::geometry::surface::Surface;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 /// Candidates \[m\] in the order in which they are chosen.
@@ -82,7 +83,7 @@ pub(super) fn of_solid(shape: &Shape, target: &TargetSpacing) -> Features {
 
 /// Points that divide a polyline evenly in units of the local spacing: all
 /// of a closed one, those between the ends of an open one.
-fn divide(curve: &[Vector3], target: &TargetSpacing, closed: bool) -> Vec<Vector3> {
+pub(super) fn divide(curve: &[Vector3], target: &TargetSpacing, closed: bool) -> Vec<Vector3> {
     let mut points = vec![curve[0]];
     let mut sums = vec![0.0];
     let mut sum = 0.0;
@@ -210,23 +211,53 @@ fn fibonacci(centre: &Vector3, radius: f64, spacing: f64) -> Vec<Vector3> {
         .collect()
 }
 
-/// Corners where other than two sharp edges meet or two meet at an angle, and
-/// points along the sharp edges.
+/// Corners where other than two sharp edges meet or two meet at an angle, and points that divide
+/// the chains of sharp edges between corners evenly.
 fn sharp(surface: &Surface, target: &TargetSpacing, features: &mut Features) {
-    let edges = surface.sharp_edges();
-    let mut meeting: std::collections::BTreeMap<u32, Vec<Vector3>> = Default::default();
-    for &(a, b) in &edges {
-        let along = (surface.vertex(b) - surface.vertex(a)).normalize();
-        meeting.entry(a).or_default().push(along);
-        meeting.entry(b).or_default().push(-along);
+    let mut edges = SharpEdges::default();
+    for (a, b) in surface.sharp_edges() {
+        edges.neighbours.entry(a).or_default().insert(b);
+        edges.neighbours.entry(b).or_default().insert(a);
     }
-    for (vertex, directions) in meeting {
-        let straight = directions.len() == 2 && directions[0].dot(&directions[1]) < -0.866;
-        if !straight {
-            features.corners.push(surface.vertex(vertex));
+    let is_corner = |vertex: &u32, next: &BTreeSet<u32>| {
+        let away = |v: &u32| (surface.vertex(*v) - surface.vertex(*vertex)).normalize();
+        let away: Vec<Vector3> = next.iter().map(away).collect();
+        away.len() != 2 || away[0].dot(&away[1]) > -0.866
+    };
+    let corners = edges.neighbours.iter().filter(|(vertex, next)| is_corner(vertex, next));
+    let corners: BTreeSet<u32> = corners.map(|(vertex, _)| *vertex).collect();
+    features.corners.extend(corners.iter().map(|vertex| surface.vertex(*vertex)));
+    // From corner to corner first; what is left then closes.
+    let starts: Vec<u32> = corners.iter().chain(edges.neighbours.keys()).copied().collect();
+    for start in starts {
+        while let Some(chain) = edges.take_chain(start, &corners) {
+            let closed = chain.len() > 2 && chain[0] == chain[chain.len() - 1];
+            let count = chain.len() - usize::from(closed && !corners.contains(&start));
+            let curve: Vec<Vector3> = chain[..count].iter().map(|v| surface.vertex(*v)).collect();
+            features.edges.extend(divide(&curve, target, count < chain.len()));
         }
     }
-    for (a, b) in edges {
-        features.edges.extend(divide(&[surface.vertex(a), surface.vertex(b)], target, false));
+}
+
+/// Vertices that sharp edges join, from both sides.
+#[derive(Default)]
+struct SharpEdges {
+    neighbours: BTreeMap<u32, BTreeSet<u32>>,
+}
+
+impl SharpEdges {
+    /// Removes the edges from a vertex on to the next corner, or back to the vertex.
+    fn take_chain(&mut self, start: u32, corners: &BTreeSet<u32>) -> Option<Vec<u32>> {
+        let mut chain = vec![start];
+        loop {
+            let at = chain[chain.len() - 1];
+            if chain.len() > 1 && (at == start || corners.contains(&at)) {
+                return Some(chain);
+            }
+            let next = self.neighbours.get_mut(&at).and_then(BTreeSet::pop_first);
+            let Some(next) = next else { return (chain.len() > 1).then_some(chain) };
+            self.neighbours.entry(next).or_default().remove(&at);
+            chain.push(next);
+        }
     }
 }

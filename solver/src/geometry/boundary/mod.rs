@@ -1,6 +1,7 @@
 //! The boundary of a solid: panels for integrals, points for nodes, outlines.
 
 mod composite;
+mod creases;
 mod curve_panels;
 mod features;
 mod marching;
@@ -13,3 +14,6 @@ mod target_spacing;
 pub use panel::Panel;
 pub(crate) use points::{BoundaryPoints, boundary_points, project};
 pub(crate) use target_spacing::{TargetSpacing, lattice_cells};
+
+#[cfg(test)]
+mod tests;

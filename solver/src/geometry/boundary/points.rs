@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
+use crate::geometry::boundary::creases::creases;
 use crate::geometry::boundary::features::{Features, of_section, of_solid};
 use crate::geometry::boundary::panel::pieces_of_box;
 use crate::geometry::boundary::target_spacing::TargetSpacing;
@@ -56,12 +57,16 @@ pub(crate) fn boundary_points(
         hash: PointHash::new(FILL * target.smallest, FILL * target.largest),
         points: Vec::new(),
     };
+    let panels = section.boundary_panels(0.3 * target.smallest, dimension)?;
+    let centres: Vec<Vector3> = panels.iter().map(|panel| panel.centre).collect();
+    let in_plane = matches!(dimension, Dimension::PlaneStrain { .. });
+    let mut meeting = creases(&section, &centres, target, in_plane);
+    features.corners.append(&mut meeting.corners);
+    features.edges.append(&mut meeting.edges);
     chosen.add(&features.corners, 0.3);
     chosen.add(&features.edges, CLOSEST);
     let fixed = chosen.points.len();
     chosen.add(&features.faces, CLOSEST);
-    let panels = section.boundary_panels(0.3 * target.smallest, dimension)?;
-    let centres: Vec<Vector3> = panels.iter().map(|panel| panel.centre).collect();
     chosen.add(&centres, FILL);
     Ok(BoundaryPoints { points: chosen.points, fixed })
 }
