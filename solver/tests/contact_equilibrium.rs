@@ -206,3 +206,77 @@ fn a_body_that_nothing_catches_ends_in_an_error() {
     assert!(ended.is_err());
     assert!(state.displacement.iter().all(|u| u.is_finite()));
 }
+
+/// A cube that stands on its base, its top moved as prescribed.
+fn with_top_moved(cells: usize, prescribed: Prescribed) -> Problem {
+    let mut problem = cube(cells);
+    problem.recipe.gradients = Gradients::Consistent { tolerance: 1e-6 };
+    problem.conditions.push(condition("base", face(2, 0.0), [Some(0.0); 3]));
+    let mut top = condition("top", face(2, EDGE), [None; 3]);
+    top.prescribed = prescribed;
+    top.amplitude = Amplitude::Linear { duration: 1.0 };
+    problem.conditions.push(top);
+    problem.motion = newton();
+    problem
+}
+
+#[test]
+fn an_obstacle_out_of_reach_changes_nothing_however_far_the_top_is_moved() {
+    let spacing = EDGE / 10.0;
+    let centre = Vector3::new(0.5 * EDGE, 0.5 * EDGE, EDGE);
+    for prescribed in [
+        Prescribed::Displacement([Some(0.0), Some(0.0), Some(5.0 * spacing)]),
+        Prescribed::Displacement([None, None, Some(-3.0 * spacing)]),
+        Prescribed::Displacement([Some(3.0 * spacing), Some(0.0), Some(0.0)]),
+        Prescribed::Rotation { point: centre, axis: Vector3::z(), angle: 0.8 },
+    ] {
+        for change in [|problem| problem, collocated] {
+            let mut problem = change(with_top_moved(10, prescribed.clone()));
+            let alone = statics::solve_by(&problem, newton());
+            problem.obstacles.push(floor(-1.0, Vector3::z(), Friction::Frictionless));
+            let beside = statics::solve_by(&problem, newton());
+            let error = statics::difference(&beside.state.displacement, &alone.state.displacement);
+            assert!(error < 1e-7, "{prescribed:?}: {error:e}");
+            for (a, b) in beside.recorder.reactions.iter().zip(&alone.recorder.reactions) {
+                let error = (a.force - b.force).norm() + (a.moment - b.moment).norm() / EDGE;
+                let size = b.force.norm() + b.moment.norm() / EDGE;
+                assert!(error < 1e-6 * size, "{prescribed:?}: {error:e} of {size:e} N");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_block_that_bulges_against_a_plate_is_compressed_by_all_that_is_prescribed() {
+    let shortened = [Some(0.0), Some(0.0), Some(-0.3 * EDGE)];
+    let mut problem = with_top_moved(10, Prescribed::Displacement(shortened));
+    problem.obstacles.push(floor(-1.03 * EDGE, -Vector3::x(), Friction::Frictionless));
+    let by_newton = solve(&problem);
+    let top = |X: &Vector3| X.z == EDGE;
+    let Solved { model, state, .. } = &by_newton;
+    for node in (0..model.positions.len()).filter(|&node| top(&model.positions[node])) {
+        let error = state.displacement_of(node, 3) + 0.3 * EDGE * Vector3::z();
+        assert!(error.norm() < 1e-12, "{error:?}");
+    }
+    assert!(smallest_gap(&by_newton) > -1e-6 * model.contact.skin);
+    problem.motion = Motion::Static(Relaxation { tolerance: 1e-5, ..Relaxation::default() });
+    let sum = |state: &State| state.contact_forces().iter().map(|contact| contact.force).sum();
+    let (force, relaxed): (Vector3, Vector3) = (sum(state), sum(&solve(&problem).state));
+    assert!(relaxed.x < -0.1, "{relaxed}");
+    // Relaxation keeps parameters of nodes out, not the field.
+    assert!((force - relaxed).norm() < 0.05 * relaxed.norm(), "{force} {relaxed}");
+}
+
+#[test]
+fn a_body_pushed_across_a_smooth_floor_goes_as_far_as_is_prescribed() {
+    let mut problem = resting(0.3);
+    let way = 3.0 * EDGE / 6.0;
+    let mut push = condition("push", face(0, 0.0), [Some(way), None, None]);
+    push.amplitude = Amplitude::Linear { duration: 1.0 };
+    problem.conditions.push(push);
+    let solved = solve(&problem);
+    let moved = mean_by_mass(&solved.model, &solved.state.displacement).x;
+    assert!((moved / way - 1.0).abs() < 0.01, "{moved:e} m");
+    let force = contact_force(&solved.state) / weight(&solved.model);
+    assert!((force - Vector3::z()).norm() < 1e-6, "{force}");
+}

@@ -5,7 +5,8 @@ use super::conjugate_gradients::{Correction, Solver as LinearSolver, System};
 use super::drift::drifts;
 use super::free_space::FreeSpace;
 use super::load_path::Path;
-use crate::algebra::packed::{dot, largest};
+use super::taken::{Outcome, is_left};
+use crate::algebra::packed::largest;
 use crate::model::Model;
 use crate::model::contact::ContactForce;
 use crate::model::rigid_motions::rigid_motions_left_to_contact;
@@ -21,22 +22,16 @@ use crate::problem::Newton;
 /// Corrections in one increment of the load; more where contacts have to be found.
 const MOST_ITERATIONS: usize = 20;
 const MOST_ITERATIONS_IN_CONTACT: usize = 100;
-/// Halvings of a correction that overshoots.
-const MOST_HALVINGS: usize = 6;
 /// Bounds of the relative residual at which conjugate gradients end.
 const FORCING: (f64, f64) = (1e-4, 0.1);
 /// Part of the tolerance that the last correction aims at \[–\].
 const ENOUGH: f64 = 0.3;
 /// Bound for the first correction, which is not followed by a line search.
 const FIRST_FORCING: f64 = 0.01;
-/// A correction may not compress a point to less than this fraction of its volume.
-const SMALLEST_VOLUME: f64 = 0.1;
 /// Round-off of a nodal force over ε K u.
 const ROUND_OFF: f64 = 100.0;
 /// Gap of a closed contact over the mean nodal spacing \[–\].
 const CLOSED: f64 = 1e-6;
-/// Largest move of a node in a correction with contact, over the mean nodal spacing \[–\].
-const LARGEST_MOVE: f64 = 2.0;
 /// Move of a body that only contacts can hold in its first correction, over the mean
 /// nodal spacing \[–\].
 const FIRST_MOVE: f64 = 0.5;
@@ -45,7 +40,7 @@ const TOO_FAR: f64 = 10.0;
 /// Factor of the shift while a body falls that touches nothing \[–\].
 const FALLING: f64 = 0.5;
 /// Bounds of the shift \[–\]; 0 where the body is held without contact.
-const SHIFTS: (f64, f64) = (1e-9, 1.0);
+pub(super) const SHIFTS: (f64, f64) = (1e-9, 1.0);
 
 pub(super) struct Solver<'a> {
     pub model: &'a Model,
@@ -53,12 +48,12 @@ pub(super) struct Solver<'a> {
     pub counts: NewtonCounts,
     pub smallest_jacobian: SmallestJacobian,
     linear: LinearSolver,
-    free: FreeSpace<'a>,
+    pub(super) free: FreeSpace<'a>,
     contacts: ActiveContacts,
     /// Whether only contacts can hold the body.
-    floating: bool,
+    pub(super) floating: bool,
     /// Part of the diagonal that is added to K \[–\].
-    shift: f64,
+    pub(super) shift: f64,
 }
 
 /// Displacements in equilibrium at a fraction of the load.
@@ -75,14 +70,6 @@ pub(super) enum Unsolved {
     },
     /// The observer ended the run here.
     Stopped(Box<Equilibrium>),
-}
-
-/// How a correction is taken.
-enum Outcome {
-    Taken(Equilibrium),
-    /// Refused; a larger shift may do better.
-    TooFar,
-    Failed,
 }
 
 impl<'a> Solver<'a> {
@@ -114,7 +101,12 @@ impl<'a> Solver<'a> {
         solver
     }
 
-    fn imbalance(&mut self, u: &[f64], fraction: f64, buffers: &mut Buffers) -> Imbalance {
+    pub(super) fn imbalance(
+        &mut self,
+        u: &[f64],
+        fraction: f64,
+        buffers: &mut Buffers,
+    ) -> Imbalance {
         self.counts.evaluations += 1;
         self.path.external_force(self.model, fraction, &mut buffers.f_ext);
         let t = self.path.time(fraction);
@@ -133,7 +125,17 @@ impl<'a> Solver<'a> {
         observer: &mut dyn Observer,
     ) -> Result<Equilibrium, Unsolved> {
         let contacts = self.contacts.clone();
+        let asked = largest(&self.jump(start, fraction));
         let solved = self.iterate(start, fraction, tolerance, buffers, observer);
+        // Whatever an iteration does, it may not end short of what is prescribed.
+        let solved =
+            solved.and_then(|now| match is_left(&self.jump(&now.u, fraction), asked, &now.u) {
+                true => Err(Unsolved::Failed {
+                    residual: now.imbalance.relative(self.model),
+                    indefinite: false,
+                }),
+                false => Ok(now),
+            });
         if matches!(solved, Err(Unsolved::Failed { .. })) {
             self.contacts = contacts;
         }
@@ -151,11 +153,13 @@ impl<'a> Solver<'a> {
         let model = self.model;
         self.free.t = self.path.time(fraction);
         self.contacts.begin();
-        let mut jump = self.path.jump(model, fraction, start, &mut self.free.forces);
+        let mut jump = self.jump(start, fraction);
+        let asked = largest(&jump);
         let imbalance = self.imbalance(start, fraction, buffers);
         self.shift = if self.floating { self.first_shift(&imbalance) } else { 0.0 };
         let mut now = Equilibrium { u: start.to_vec(), imbalance };
-        let (mut forcing, mut indefinite, mut first) = (FIRST_FORCING, false, true);
+        // The jump of what is prescribed may take several corrections.
+        let (mut forcing, mut indefinite, mut jumping) = (FIRST_FORCING, false, true);
         let most = match model.contact.obstacles.is_empty() {
             true => MOST_ITERATIONS,
             false => MOST_ITERATIONS_IN_CONTACT,
@@ -169,11 +173,11 @@ impl<'a> Solver<'a> {
             }
             let open = self.free.contacts.iter().fold(0.0f64, |a, row| a.max(row.way.abs()));
             let settled = changes == 0 && open <= CLOSED.max(tolerance) * model.contact.skin;
-            if !first && settled && !indefinite && self.is_balanced(&now, tolerance) {
+            if !jumping && settled && !indefinite && self.is_balanced(&now, tolerance) {
                 return Ok(now);
             }
-            self.free.close_contacts(&mut jump);
-            let change = std::mem::take(&mut jump);
+            let (mut change, whole) = self.part_of(std::mem::take(&mut jump));
+            self.free.close_contacts(&mut change);
             let (progress, count) = (progress(residual, tolerance), self.counts.iterations);
             let mut go_on = || observer.iterate(fraction * progress, count) == Continue::Yes;
             let correction =
@@ -184,26 +188,30 @@ impl<'a> Solver<'a> {
             indefinite = correction.indefinite;
             // Nothing balances a falling body before it touches something.
             let falling = self.floating && self.free.contacts.is_empty();
-            let searched = !first && settled && !falling;
+            let searched = !jumping && settled && !falling;
             let norm = now.imbalance.norm(model);
-            match self.take(&now, &correction.change, fraction, searched, buffers) {
-                Outcome::Taken(next) => now = next,
+            let cut = match self.take(&now, &correction.change, fraction, searched, buffers) {
+                Outcome::Taken(next, length) => {
+                    now = next;
+                    jumping && !(whole && length == 1.0)
+                }
                 Outcome::TooFar if self.floating && self.shift < SHIFTS.1 => {
                     self.shift = (TOO_FAR * self.shift).min(SHIFTS.1);
-                    jump = self.path.jump(model, fraction, &now.u, &mut self.free.forces);
+                    jump = self.jump(&now.u, fraction);
                     continue;
                 }
                 _ => return Err(failed),
-            }
+            };
             if self.floating {
                 let changed = changes as f64 / (self.free.contacts.len() as f64).max(10.0);
                 let factor = if falling { FALLING } else { shift_factor(changed) };
                 self.shift = (factor * self.shift).clamp(SHIFTS.0, SHIFTS.1);
             }
-            jump = vec![0.0; start.len()];
+            let left = if cut { self.left_of_jump(&now.u, fraction, asked) } else { None };
             // Eisenstat and Walker 1996, choice 2.
             let fallen = now.imbalance.norm(model) / norm;
-            forcing = match first {
+            forcing = match jumping {
+                true if left.is_some() => FIRST_FORCING,
                 true => FORCING.1,
                 false => {
                     // Not much beyond the tolerance (Kelley 1995, eq. 6.20).
@@ -211,7 +219,8 @@ impl<'a> Solver<'a> {
                     (0.9 * fallen * fallen).max(enough).clamp(FORCING.0, FORCING.1)
                 }
             };
-            first = false;
+            jumping = left.is_some();
+            jump = left.unwrap_or_else(|| vec![0.0; start.len()]);
         }
         Err(Unsolved::Failed { residual: now.imbalance.relative(model), indefinite })
     }
@@ -310,60 +319,6 @@ impl<'a> Solver<'a> {
         self.counts.evaluations += correction.products;
         correction
     }
-
-    /// Takes a correction: all of it where it jumps, or as much as brings the forces
-    /// closer to balance.
-    fn take(
-        &mut self,
-        now: &Equilibrium,
-        change: &[f64],
-        fraction: f64,
-        searched: bool,
-        buffers: &mut Buffers,
-    ) -> Outcome {
-        if searched {
-            return match self.search(now, change, fraction, buffers) {
-                Some(next) => Outcome::Taken(next),
-                None => Outcome::TooFar,
-            };
-        }
-        let model = self.model;
-        let farthest = LARGEST_MOVE * model.contact.skin / largest(change);
-        let length = if model.contact.obstacles.is_empty() { 1.0 } else { farthest.min(1.0) };
-        if self.floating && farthest < 1.0 && self.shift < SHIFTS.1 {
-            return Outcome::TooFar;
-        }
-        let volume = SMALLEST_VOLUME * now.imbalance.smallest_jacobian.jacobian.min(1.0);
-        let u = moved(&now.u, change, length);
-        let imbalance = self.imbalance(&u, fraction, buffers);
-        match imbalance.smallest_jacobian.jacobian > volume {
-            true => Outcome::Taken(Equilibrium { u, imbalance }),
-            false if self.floating => Outcome::TooFar,
-            false => Outcome::Failed,
-        }
-    }
-
-    /// The longest of the halved corrections that keeps points from collapsing
-    /// and brings the forces, or their work along it, closer to balance.
-    fn search(
-        &mut self,
-        now: &Equilibrium,
-        change: &[f64],
-        fraction: f64,
-        buffers: &mut Buffers,
-    ) -> Option<Equilibrium> {
-        let (model, before) = (self.model, &now.imbalance);
-        let slope = dot(change, &before.free(model)).abs();
-        let volume = SMALLEST_VOLUME * before.smallest_jacobian.jacobian.min(1.0);
-        (0..=MOST_HALVINGS).find_map(|halvings| {
-            let u = moved(&now.u, change, 0.5f64.powi(halvings as i32));
-            let imbalance = self.imbalance(&u, fraction, buffers);
-            let valid = imbalance.smallest_jacobian.jacobian > volume;
-            let closer = imbalance.norm(model) <= 0.99 * before.norm(model)
-                || dot(change, &imbalance.free(model)).abs() <= 0.8 * slope;
-            (valid && closer).then_some(Equilibrium { u, imbalance })
-        })
-    }
 }
 
 /// How far a residual has fallen to its tolerance, in orders of magnitude \[–\].
@@ -379,8 +334,4 @@ fn shift_factor(changed: f64) -> f64 {
         changed if changed < 0.05 => 0.1,
         _ => 0.5,
     }
-}
-
-fn moved(u: &[f64], change: &[f64], length: f64) -> Vec<f64> {
-    u.iter().zip(change).map(|(u, change)| u + length * change).collect()
 }

@@ -11,5 +11,6 @@ mod increment;
 mod load_path;
 mod nodal_values;
 mod preconditioner;
+mod taken;
 
 pub(crate) use equilibrate::equilibrate;
