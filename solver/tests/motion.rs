@@ -188,3 +188,23 @@ fn a_run_ends_exactly_at_its_end() {
     let state = run(&model, &motion);
     assert!((state.time - 0.0777).abs() < 1e-15);
 }
+
+#[test]
+fn a_body_that_is_held_whole_flies_on_from_its_release_with_its_speed() {
+    let whole = |fixed| StepControl { fixed, ..StepControl::default() };
+    for (release, step) in [(0.01, whole(None)), (0.1, whole(None)), (0.01, whole(Some(0.012)))] {
+        let mut problem = cube(4);
+        let mut kick = condition("kick", mtled::geometry::Selector::All, [Some(0.0); 3]);
+        kick.extent = mtled::geometry::Extent::Volume;
+        kick.prescribed = Prescribed::Displacement([Some(1.0), Some(0.0), Some(0.0)]);
+        kick.amplitude = Amplitude::Linear { duration: 1.0 };
+        kick.release = Some(release);
+        problem.conditions.push(kick);
+        let (_, model) = build(&problem);
+        let state = run(&model, &Motion::Dynamic { end: 0.5, step, damping: 0.0 });
+        for node in 0..model.positions.len() {
+            let u = state.displacement_of(node, 3);
+            assert!((u - 0.5 * Vector3::x()).norm() < 1e-9, "released at {release} s: {u:?}");
+        }
+    }
+}

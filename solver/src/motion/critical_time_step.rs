@@ -44,7 +44,9 @@ const FEWEST_PRODUCTS_KNOWN: usize = 8;
 /// `u` \[m\] under the conditions of time `t` \[s\], by Lanczos with full
 /// reorthogonalisation on M^(−1/2) K M^(−1/2). The returned step belongs to
 /// the Ritz value plus its residual, which is the safe side unless a mode was
-/// missed (study "time_step" measures how often, on random small bodies).
+/// missed (study "time_step" measures how often, on random small bodies). Where the
+/// conditions leave nothing free until a release, the step is that after it: no step
+/// would be too long for a body without freedom, and it would pass over the release.
 pub fn critical_time_step(
     model: &Model,
     u: &[f64],
@@ -52,7 +54,7 @@ pub fn critical_time_step(
     earlier: Option<&CriticalStep>,
     workspace: &mut Workspace,
 ) -> CriticalStep {
-    let mut tangent = Tangent::new(model, u, t, workspace);
+    let mut tangent = Tangent::new(model, u, decisive_time(model, t), workspace);
     let mut basis = vec![starting_vector(&mut tangent, earlier)];
     let fewest = if earlier.is_some() { FEWEST_PRODUCTS_KNOWN } else { FEWEST_PRODUCTS };
     let (mut diagonal, mut off_diagonal): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
@@ -93,7 +95,7 @@ pub fn local_growth(
     pattern: &mut Vec<f64>,
     workspace: &mut Workspace,
 ) -> f64 {
-    let mut tangent = Tangent::new(model, u, t, workspace);
+    let mut tangent = Tangent::new(model, u, decisive_time(model, t), workspace);
     let before = local_squares(model, pattern);
     let image = tangent.apply(pattern);
     let after = local_squares(model, &image);
@@ -102,6 +104,20 @@ pub fn local_growth(
     *pattern = image;
     level(model, pattern, &after);
     largest
+}
+
+/// The time \[s\] under whose conditions a step from `t` has to be stable: where they leave
+/// nothing free at `t`, the first release after it that frees something.
+fn decisive_time(model: &Model, t: f64) -> f64 {
+    let constraints = &model.constraints;
+    let held = |t: f64| constraints.active(t).iter().map(|set| set.rows.len()).sum::<usize>();
+    let frees_some = |t: &f64| held(*t) < model.size();
+    if frees_some(&t) {
+        return t;
+    }
+    let releases = constraints.conditions.iter().filter_map(|condition| condition.release);
+    let first = releases.filter(|release| *release > t && frees_some(release)).reduce(f64::min);
+    first.unwrap_or(t)
 }
 
 /// Mean square of a field over the supports of the points around each node.

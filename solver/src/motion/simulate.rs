@@ -94,6 +94,21 @@ fn refuse_unheld(model: &Model, load_end: f64) -> Result<(), Error> {
     Ok(())
 }
 
+/// Fewest steps between two releases: a step ends under the conditions of its end, and what is
+/// released within the first one would have held nothing.
+const FEWEST_STEPS: f64 = 10.0;
+/// Shortest step for that over the end of the motion \[–\]: time has to go on.
+const SHORTEST: f64 = 1e-12;
+
+/// The longest step \[s\] at time `t` of a motion since `start` \[s\] that leaves the conditions of
+/// `t` some steps to act in.
+fn longest_step(model: &Model, start: f64, t: f64) -> f64 {
+    let releases = || model.constraints.conditions.iter().filter_map(|c| c.release);
+    let next = releases().filter(|release| *release > t).fold(f64::INFINITY, f64::min);
+    let last = releases().filter(|release| *release <= t).fold(start, f64::max);
+    (next - last) / FEWEST_STEPS
+}
+
 fn integrate(
     model: &Model,
     end: f64,
@@ -105,13 +120,16 @@ fn integrate(
     let mut buffers = Buffers::new(model, observer.tracks_work());
     let mut control = StepController::new(model, settings, state, &mut buffers)?;
     let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
+    let start = state.time;
     while !stopped && state.time < end * (1.0 - 1e-12) {
         control.reevaluate(model, state, &mut buffers);
         let awaited = observer.awaited_time().filter(|time| *time > state.time);
         let remaining = awaited.map_or(end, |time| time.min(end)) - state.time;
         // Whole steps to the end or to a time of the observer: the last one must not be a
         // sliver, and round-off must not halve it.
-        let time_step = remaining / (remaining / control.time_step - 1e-9).ceil().max(1.0);
+        let longest = longest_step(model, start, state.time).max(SHORTEST * end);
+        let longest = longest.min(control.time_step);
+        let time_step = remaining / (remaining / longest - 1e-9).ceil().max(1.0);
         let scheme = Scheme::central_difference(time_step, state.time_step, damping);
         let (now, then) = (state.time, state.time + time_step);
         let report = step(model, &scheme, now, then, state, &mut buffers);
