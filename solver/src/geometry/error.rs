@@ -49,12 +49,26 @@ pub enum GeometryError {
     #[error("triangle {triangle} uses vertex {vertex} of {count}")]
     SurfaceVertex { triangle: usize, vertex: u32, count: usize },
     #[error(
-        "the surface is not closed: the edge from {from:?} m to {to:?} m has {forward} triangles on one side and {backward} on the other"
+        "the surface is not closed: the edge from {from:?} m to {to:?} m has {forward} triangles on one side and {backward} on the other; {more} more edges are alike"
     )]
-    SurfaceOpen { from: [f64; 3], to: [f64; 3], forward: usize, backward: usize },
-    #[error("the surface encloses {volume} m³: its triangles face inwards")]
+    SurfaceOpen { from: [f64; 3], to: [f64; 3], forward: usize, backward: usize, more: usize },
+    #[error("the surface encloses {volume} m³: its triangles face inwards; turn them outwards")]
     SurfaceInsideOut { volume: f64 },
+    #[error(
+        "shells {first} and {second} of the {count} that the surface consists of cross or coincide near {at:?} m, so that what lies in both would count twice: make one of them where the surface comes from, or give each a file of its own and use their `union`"
+    )]
+    ShellsCross { first: usize, second: usize, count: usize, at: [f64; 3] },
+    #[error(
+        "shell {inner} of the {count} that the surface consists of, at {at:?} m, lies inside shell {outer} and faces outwards like it, so that its volume would count twice: remove it or, if it is a cavity, turn its triangles inwards"
+    )]
+    ShellInside { inner: usize, outer: usize, count: usize, at: [f64; 3] },
+    #[error(
+        "shell {shell} of the {count} that the surface consists of, at {at:?} m, faces inwards, and there is no body around it that it could be a cavity of: turn its triangles outwards"
+    )]
+    ShellInwards { shell: usize, count: usize, at: [f64; 3] },
 
+    #[error("the body encloses no volume: its shapes leave nothing of each other")]
+    NoVolume,
     #[error("no node lies in the body")]
     NoNodes,
     #[error("{count} nodes are too few; at least {needed} are needed")]

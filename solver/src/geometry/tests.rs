@@ -321,6 +321,24 @@ fn a_soup_of_triangles_is_merged() {
 }
 
 #[test]
+fn vertices_that_differ_by_round_off_are_one() {
+    let (vertices, triangles) = cube_mesh(1.0);
+    let soup = |difference: f64| -> Vec<Vector3> {
+        let shifted = |(n, &v): (usize, &u32)| {
+            vertices[v as usize] - Vector3::repeat(if n == 4 { difference } else { 0.0 })
+        };
+        triangles.iter().flatten().enumerate().map(shifted).collect()
+    };
+    let numbers: Vec<[u32; 3]> = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    for difference in [1e-22, 1e-12, 9e-10] {
+        let surface = Surface::new(soup(difference), numbers.clone()).unwrap();
+        assert!((surface.volume() - 1.0).abs() < 1e-8);
+    }
+    let error = Surface::new(soup(2e-9), numbers).unwrap_err();
+    assert!(matches!(error, GeometryError::SurfaceOpen { .. }), "{error}");
+}
+
+#[test]
 fn invalid_shapes_are_refused() {
     let origin = Vector3::zeros();
     let refused = |shape: Shape| shape.validate_body().unwrap_err();

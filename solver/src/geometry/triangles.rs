@@ -1,10 +1,16 @@
 //! Triangles in space.
 
 use crate::algebra::tensor::Vector3;
+use parry3d_f64::math::Vector as ParryVector;
 use std::collections::HashMap;
 
 /// Corners of a triangle \[m\], anticlockwise seen from outside the solid.
 pub(super) type Triangle = [Vector3; 3];
+
+/// A point as the library of triangle meshes has it.
+pub(super) fn parry(v: &Vector3) -> ParryVector {
+    ParryVector::new(v.x, v.y, v.z)
+}
 
 /// Area times unit normal \[m²\].
 pub(super) fn area_vector(t: &Triangle) -> Vector3 {

@@ -10,6 +10,7 @@ pub mod nrrd;
 mod nrrd_header;
 pub mod points;
 pub mod stl;
+mod stl_space;
 mod stl_text;
 mod unit;
 mod voxels;

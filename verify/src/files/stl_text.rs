@@ -1,7 +1,7 @@
 //! STL files of text: every `solid` block of a file, in capitals or not.
 
 use super::error::Mistake;
-use super::stl::{Corner, Space};
+use super::stl_space::{Corner, Space};
 use std::iter::Enumerate;
 use std::str::{Split, SplitWhitespace};
 

@@ -67,9 +67,12 @@ pub enum ShapeFormat {
     Intersection(Vec<ShapeFormat>),
     /// The first without the second.
     Difference(Box<ShapeFormat>, Box<ShapeFormat>),
-    /// A closed surface from an STL file, path relative to the case file.
+    /// A closed surface from an STL file, path relative to the case file. It may consist of
+    /// several shells that neither cross nor lie in each other but as cavities.
     Stl {
-        /// The STL file, ASCII or binary.
+        /// The STL file, ASCII or binary, all its solids. Vertices no further apart than 1e-9 of
+        /// the size of the surface are one. Coordinates are along R, A and S; where the header or
+        /// the name of a solid says `SPACE=LPS`, x and y change their signs.
         file: PathBuf,
         /// Unit of the coordinates in the file.
         unit: UnitFormat,

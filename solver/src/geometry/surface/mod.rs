@@ -1,13 +1,17 @@
 //! Solids enclosed by triangles.
 #![allow(non_snake_case)]
 
-use crate::algebra::tensor::Vector3;
+mod sets;
+mod shells;
+
+use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::{closed_chains, polygon_area};
-use crate::geometry::triangles::{Triangle, area_vector, merged};
-use parry3d_f64::math::Vector as ParryVector;
+use crate::geometry::triangles::{Triangle, area_vector, merged, parry};
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
+use sets::Sets;
+use shells::check_shells;
 use std::collections::BTreeMap;
 
 /// A closed surface of triangles that run anticlockwise seen from outside.
@@ -20,10 +24,12 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// From vertices \[m\] and their indices. Vertices with equal coordinates
-    /// are merged and triangles that thereby vanish are dropped; what is left
-    /// must be closed, each edge run through once in either direction, with
-    /// the normals outwards.
+    /// From vertices \[m\] and their indices. Vertices no further apart than
+    /// 1e-9 of the size of the surface are merged and triangles that thereby
+    /// vanish are dropped; what is left must be closed, each edge run through
+    /// once in either direction, with the normals outwards. Of several shells
+    /// none may cross another, and none may lie in another except as a cavity
+    /// or in one, since volumes would count twice.
     pub fn new(vertices: Vec<Vector3>, triangles: Vec<[u32; 3]>) -> Result<Self, GeometryError> {
         if !vertices.iter().all(|v| v.iter().all(|c| c.is_finite())) {
             return Err(GeometryError::NotFinite { name: "the surface" });
@@ -35,6 +41,7 @@ impl Surface {
             return Err(empty);
         }
         check_closed(&vertices, &triangles)?;
+        check_shells(&vertices, &triangles)?;
         let points = vertices.iter().map(parry).collect();
         let mesh = TriMesh::with_flags(points, triangles.clone(), TriMeshFlags::ORIENTED)
             .map_err(|_| empty)?;
@@ -129,14 +136,10 @@ impl Surface {
     }
 }
 
-fn parry(v: &Vector3) -> ParryVector {
-    ParryVector::new(v.x, v.y, v.z)
-}
-
 type Mesh = (Vec<Vector3>, Vec<[u32; 3]>);
 
 fn merge(vertices: Vec<Vector3>, triangles: Vec<[u32; 3]>) -> Result<Mesh, GeometryError> {
-    let (merged, number) = merged(vertices.iter());
+    let (merged, number) = welded(&vertices);
     let mut kept = Vec::with_capacity(triangles.len());
     for (triangle, t) in triangles.iter().enumerate() {
         if let Some(&vertex) = t.iter().find(|&&v| v as usize >= vertices.len()) {
@@ -150,6 +153,39 @@ fn merge(vertices: Vec<Vector3>, triangles: Vec<[u32; 3]>) -> Result<Mesh, Geome
     Ok((merged, kept))
 }
 
+/// Distance up to which vertices are one, in terms of the size of the surface \[–\]: a hundredth
+/// of the single precision of coordinates as large as it, so that only round-off near 0 is mended.
+const WELD: f64 = 1e-9;
+
+/// Vertices without those that are one with an earlier one, and the number among them of each.
+fn welded(vertices: &[Vector3]) -> (Vec<Vector3>, Vec<u32>) {
+    let (distinct, numbers) = merged(vertices.iter());
+    if distinct.is_empty() {
+        return (distinct, numbers);
+    }
+    let (lower, upper) = bounding_box(&distinct);
+    let tolerance = WELD * (upper - lower).norm();
+    // Along a direction that hardly any face is across, so that few vertices are abreast.
+    let direction = Vector3::new(0.538, 0.787, 0.301).normalize();
+    let mut along: Vec<(f64, u32)> = (distinct.iter().zip(0..))
+        .map(|(v, number)| ((v - lower).dot(&direction), number))
+        .collect();
+    along.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut sets = Sets::new(distinct.len());
+    for (n, &(place, a)) in along.iter().enumerate() {
+        let abreast = along[n + 1..].iter().take_while(|(next, _)| next - place <= tolerance);
+        for &(_, b) in abreast {
+            if (distinct[a as usize] - distinct[b as usize]).norm() <= tolerance {
+                sets.join(a, b);
+            }
+        }
+    }
+    let firsts: Vec<Vector3> =
+        (0..distinct.len() as u32).map(|v| distinct[sets.first(v) as usize]).collect();
+    let (kept, among) = merged(firsts.iter());
+    (kept, numbers.iter().map(|&v| among[v as usize]).collect())
+}
+
 fn check_closed(vertices: &[Vector3], triangles: &[[u32; 3]]) -> Result<(), GeometryError> {
     let mut edges: BTreeMap<(u32, u32), (usize, usize)> = BTreeMap::new();
     for t in triangles {
@@ -159,13 +195,15 @@ fn check_closed(vertices: &[Vector3], triangles: &[[u32; 3]]) -> Result<(), Geom
             if a < b { count.0 += 1 } else { count.1 += 1 }
         }
     }
-    match edges.into_iter().find(|(_, count)| *count != (1, 1)) {
+    let mut open = edges.into_iter().filter(|(_, count)| *count != (1, 1));
+    match open.next() {
         None => Ok(()),
         Some(((a, b), (forward, backward))) => Err(GeometryError::SurfaceOpen {
             from: vertices[a as usize].into(),
             to: vertices[b as usize].into(),
             forward,
             backward,
+            more: open.count(),
         }),
     }
 }
