@@ -13,7 +13,7 @@ use crate::discretisation::quadrature::{Moves, NodalSpacing, Quadrature, quadrat
 use crate::discretisation::rows::{Evaluated, Requested, Rows};
 use crate::discretisation::surface_rule::SurfaceRule;
 use crate::error::Error;
-use crate::geometry::{Extent, Panel, Shape};
+use crate::geometry::{Extent, GeometryError, Panel, Shape};
 use crate::problem::{
     BackgroundGrid, Cloud, Dimension, EssentialCondition, Gradients, Loads, Problem, Recipe,
 };
@@ -252,6 +252,10 @@ fn panels_of(
     }
     let size = PANEL * cloud.smallest_spacing();
     let panels = problem.body.boundary_panels(size, &problem.dimension)?;
+    // A solid without itself has no boundary.
+    if panels.is_empty() {
+        return Err(GeometryError::NoVolume.into());
+    }
     if held {
         HeldParts::new(body, &problem.conditions, &panels, size).place_nodes(cloud);
     }

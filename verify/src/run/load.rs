@@ -5,6 +5,7 @@ use crate::bundled::{CASES, unpack};
 use crate::scene::{Case, Diagnostic, Override, one_error, parse_overridden, read_overridden};
 use anyhow::{Context, Result};
 use mtled::error::Error;
+use mtled::geometry::GeometryError;
 use std::path::Path;
 
 /// Reads a case file, or a bundled case by its name, with overrides. It fits into the memory.
@@ -75,6 +76,7 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         Error::TooMuchAddedMass { .. } | Error::UnscaledMass { .. } => "time.mass_scaling",
         Error::ProbeOutside { .. } => "probe",
         Error::PointWithoutRegion { .. } => "region",
+        Error::Geometry(GeometryError::NoVolume) => "geometry.shape",
         Error::Geometry(_) => "discretisation",
         Error::NoEquilibrium { .. } => "time.solver",
         Error::Diverged { .. }

@@ -6,11 +6,11 @@ use anyhow::Result;
 use mtled_checks::escape::csv_text;
 
 /// Names of columns with units, and one row per sample; probes with one position only (lattices
-/// are in `result.json`).
+/// are in `result.json`). A run that ended before its probes were made has no columns for them.
 pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) {
     let axes = ["x", "y", "z"];
     let single: Vec<usize> =
-        (0..case.probes.len()).filter(|&i| record.references[i].len() == 1).collect();
+        (0..record.references.len()).filter(|&i| record.references[i].len() == 1).collect();
     let mut header: Vec<String> =
         ["step", "time_s", "smallest_jacobian", "touching_nodes"].map(String::from).into();
     header.extend(
