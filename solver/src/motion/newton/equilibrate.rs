@@ -1,6 +1,7 @@
 //! Newton's method towards a static solution, the load in as few parts as it takes.
 
-use super::increment::{Equilibrium, Solver, Unsolved};
+use super::increment::Unsolved;
+use super::solver::{Equilibrium, Solver};
 use crate::algebra::packed::dot;
 use crate::error::{Error, Instability};
 use crate::model::Model;

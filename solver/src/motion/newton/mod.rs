@@ -11,6 +11,7 @@ mod increment;
 mod load_path;
 mod nodal_values;
 mod preconditioner;
+mod solver;
 mod taken;
 
 pub(crate) use equilibrate::equilibrate;

@@ -1,6 +1,6 @@
 //! How much of a correction is taken, and what it leaves of the jump of prescribed values.
 
-use super::increment::{Equilibrium, SHIFTS, Solver};
+use super::solver::{Equilibrium, SHIFTS, Solver};
 use crate::algebra::packed::{dot, largest};
 use crate::motion::step::Buffers;
 
