@@ -47,7 +47,7 @@ pub(super) fn creases(
     for (n, second) in members.iter().enumerate() {
         for first in &members[..n] {
             let pair = Pair { whole, members: [first, second], target };
-            let found = places.par_iter().filter_map(|place| pair.from_place(place, in_plane));
+            let found = places.par_iter().filter_map(|place| pair.near_place(place, in_plane));
             let found: Vec<Vector3> = found.collect();
             if in_plane {
                 features.corners.extend(found);
@@ -82,7 +82,7 @@ struct Pair<'a> {
 
 impl Pair<'_> {
     /// The point of an edge that is close to a place on the boundary.
-    fn from_place(&self, place: &Vector3, in_plane: bool) -> Option<Vector3> {
+    fn near_place(&self, place: &Vector3, in_plane: bool) -> Option<Vector3> {
         let size = (self.target.at)(place);
         let near = |member: &&Shape| member.signed_distance(place).abs() < REACH * size;
         if !self.members.iter().all(near) {
