@@ -17,6 +17,13 @@ pub(super) fn area_vector(t: &Triangle) -> Vector3 {
     0.5 * (t[1] - t[0]).cross(&(t[2] - t[0]))
 }
 
+/// Volume \[m³\] enclosed by the triangles of a closed surface, as the sum of their tetrahedra
+/// with `apex`.
+pub(super) fn enclosed_volume(triangles: impl Iterator<Item = Triangle>, apex: Vector3) -> f64 {
+    let o = apex;
+    triangles.map(|[a, b, c]| (a - o).dot(&(b - o).cross(&(c - o))) / 6.0).sum()
+}
+
 /// Halves the longest edge until no edge is longer than `size` \[m\].
 pub(super) fn subdivide(mut t: Triangle, size: f64, keep: &mut impl FnMut(Triangle)) {
     let mut halves = Vec::new();

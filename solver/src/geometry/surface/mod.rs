@@ -7,7 +7,7 @@ mod shells;
 use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::{closed_chains, polygon_area};
-use crate::geometry::triangles::{Triangle, area_vector, merged, parry};
+use crate::geometry::triangles::{Triangle, area_vector, enclosed_volume, merged, parry};
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 use sets::Sets;
@@ -45,8 +45,7 @@ impl Surface {
         let points = vertices.iter().map(parry).collect();
         let mesh = TriMesh::with_flags(points, triangles.clone(), TriMeshFlags::ORIENTED)
             .map_err(|_| empty)?;
-        let first = (vertices[0], vertices[0]);
-        let bounds = vertices.iter().fold(first, |(l, u), v| (l.inf(v), u.sup(v)));
+        let bounds = bounding_box(&vertices);
         let surface = Surface { vertices, triangles, mesh, bounds };
         let volume = surface.volume();
         if volume > 0.0 { Ok(surface) } else { Err(GeometryError::SurfaceInsideOut { volume }) }
@@ -55,8 +54,7 @@ impl Surface {
     /// Enclosed volume \[m³\].
     pub fn volume(&self) -> f64 {
         // From a vertex, not the origin, which may be far away.
-        let o = self.vertices[0];
-        self.corners().map(|[a, b, c]| (a - o).dot(&(b - o).cross(&(c - o))) / 6.0).sum()
+        enclosed_volume(self.corners(), self.vertices[0])
     }
 
     /// Number of triangles.

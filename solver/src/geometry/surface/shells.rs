@@ -4,7 +4,7 @@
 use super::sets::Sets;
 use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::geometry::error::GeometryError;
-use crate::geometry::triangles::{Triangle, area_vector, parry};
+use crate::geometry::triangles::{Triangle, area_vector, enclosed_volume, parry};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
@@ -44,10 +44,11 @@ pub(super) fn check_shells(
     if shells.iter().all(|shell| shell.volume <= 0.0) {
         return Ok(());
     }
+    let flat: Vec<bool> = shells.iter().map(|shell| shell.is_flat(size)).collect();
     let mut around = vec![(0, None); shells.len()];
     for (i, shell) in shells.iter().enumerate() {
         for (j, other) in shells.iter().enumerate() {
-            if i == j || shell.is_flat(size) || other.is_flat(size) || !shell.is_near(other) {
+            if i == j || flat[i] || flat[j] || !shell.is_near(other) {
                 continue;
             }
             if shell.lies_in(other, TOUCH * size).map_err(|at| cross(i, j, shells.len(), at))? {
@@ -114,9 +115,7 @@ impl Shell {
         let mesh = TriMesh::with_flags(points, triangles.clone(), TriMeshFlags::ORIENTED).ok()?;
         let bounds = bounding_box(&vertices);
         let mut shell = Shell { vertices, triangles, mesh, bounds, volume: 0.0 };
-        let o = shell.vertices[0];
-        shell.volume =
-            shell.corners().map(|[a, b, c]| (a - o).dot(&(b - o).cross(&(c - o))) / 6.0).sum();
+        shell.volume = enclosed_volume(shell.corners(), shell.vertices[0]);
         Some(shell)
     }
 
