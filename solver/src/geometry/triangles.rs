@@ -52,9 +52,9 @@ pub(super) fn merged<'a>(points: impl Iterator<Item = &'a Vector3>) -> (Vec<Vect
     let mut numbers = Vec::new();
     for v in points {
         // Adding zero turns −0 into 0.
-        let key = [v.x + 0.0, v.y + 0.0, v.z + 0.0].map(f64::to_bits);
-        numbers.push(*first.entry(key).or_insert_with(|| {
-            merged.push(*v);
+        let v = v.add_scalar(0.0);
+        numbers.push(*first.entry([v.x, v.y, v.z].map(f64::to_bits)).or_insert_with(|| {
+            merged.push(v);
             merged.len() as u32 - 1
         }));
     }

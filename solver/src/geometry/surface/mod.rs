@@ -3,6 +3,8 @@
 
 mod sets;
 mod shells;
+#[cfg(test)]
+mod tests;
 
 use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::geometry::error::GeometryError;
@@ -12,6 +14,7 @@ use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 use sets::Sets;
 use shells::check_shells;
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// A closed surface of triangles that run anticlockwise seen from outside.
@@ -29,7 +32,8 @@ impl Surface {
     /// vanish are dropped; what is left must be closed, each edge run through
     /// once in either direction, with the normals outwards. Of several shells
     /// none may cross another, and none may lie in another except as a cavity
-    /// or in one, since volumes would count twice.
+    /// or in one, since volumes would count twice. The order of vertices and
+    /// triangles, and which corner of a triangle comes first, change no bit.
     pub fn new(vertices: Vec<Vector3>, triangles: Vec<[u32; 3]>) -> Result<Self, GeometryError> {
         if !vertices.iter().all(|v| v.iter().all(|c| c.is_finite())) {
             return Err(GeometryError::NotFinite { name: "the surface" });
@@ -42,6 +46,7 @@ impl Surface {
         }
         check_closed(&vertices, &triangles)?;
         check_shells(&vertices, &triangles)?;
+        let (vertices, triangles) = sorted(&vertices, &triangles);
         let points = vertices.iter().map(parry).collect();
         let mesh = TriMesh::with_flags(points, triangles.clone(), TriMeshFlags::ORIENTED)
             .map_err(|_| empty)?;
@@ -178,10 +183,47 @@ fn welded(vertices: &[Vector3]) -> (Vec<Vector3>, Vec<u32>) {
             }
         }
     }
-    let firsts: Vec<Vector3> =
-        (0..distinct.len() as u32).map(|v| distinct[sets.first(v) as usize]).collect();
-    let (kept, among) = merged(firsts.iter());
+    // The least of those that are one, whichever was first in the file.
+    let mut least = distinct.clone();
+    for (v, number) in distinct.iter().zip(0..) {
+        let one = &mut least[sets.first(number) as usize];
+        if in_order(v, one).is_lt() {
+            *one = *v;
+        }
+    }
+    let ones: Vec<Vector3> =
+        (0..distinct.len() as u32).map(|v| least[sets.first(v) as usize]).collect();
+    let (kept, among) = merged(ones.iter());
     (kept, numbers.iter().map(|&v| among[v as usize]).collect())
+}
+
+/// Which of two points comes first: that of the smaller x, of those the one of the smaller y, z.
+fn in_order(a: &Vector3, b: &Vector3) -> Ordering {
+    let by = |k: usize| a[k].total_cmp(&b[k]);
+    by(0).then(by(1)).then(by(2))
+}
+
+/// The vertices that triangles use, in the order of their coordinates, and the triangles in the
+/// order of their vertices, each from its first vertex on.
+fn sorted(vertices: &[Vector3], triangles: &[[u32; 3]]) -> Mesh {
+    let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    used.sort_unstable_by(|&a, &b| in_order(&vertices[a as usize], &vertices[b as usize]));
+    let mut numbers = vec![0; vertices.len()];
+    for (&v, number) in used.iter().zip(0..) {
+        numbers[v as usize] = number;
+    }
+    let mut sorted: Vec<[u32; 3]> = (triangles.iter())
+        .map(|t| {
+            let mut t = t.map(|v| numbers[v as usize]);
+            let first = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
+            t.rotate_left(first);
+            t
+        })
+        .collect();
+    sorted.sort_unstable();
+    (used.iter().map(|&v| vertices[v as usize]).collect(), sorted)
 }
 
 fn check_closed(vertices: &[Vector3], triangles: &[[u32; 3]]) -> Result<(), GeometryError> {
