@@ -1,5 +1,6 @@
 """Meshes of the cases, and cases with known solutions."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from mtled_reference.scikit_fem.model import Model
 from mtled_reference.scikit_fem.newton import solve_static
 from mtled_reference.scikit_fem.record import Recorder
 from mtled_reference.scikit_fem.solve import solve_mesh
-from mtled_reference.shared.case import read_case
+from mtled_reference.shared.case import BodyForce, read_case
 from mtled_reference.shared.selection import bounding_box
 
 CASES = Path(__file__).parent.parent / "cases"
@@ -89,6 +90,17 @@ def test_a_uniaxial_stretch_is_exact():
     assert lattice == pytest.approx(
         case.probes[0].positions * [0.2, lateral - 1.0, lateral - 1.0], abs=1e-9
     )
+
+
+def test_a_body_force_on_a_part_of_the_body_is_refused():
+    case = read_case(CASES / "uniaxial_bar.toml")
+    part = {"half_space": {"point": [0.05, 0.0, 0.0], "normal": [1.0, 0.0, 0.0]}}
+    force = BodyForce((0.0, 0.0, -9.81), lambda t: 1.0, selector=part)
+    case = replace(case, body_forces=[force])
+    division = case_mesh(case, 0)
+    model = Model(case, mesh_of_blocks(division.blocks), division.symmetry)
+    with pytest.raises(ValueError, match="a body force on a part of the body is not solved"):
+        model.loads(lambda amplitude: 1.0)
 
 
 def values_of(name: str, division: CaseMesh) -> dict:

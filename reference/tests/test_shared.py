@@ -42,7 +42,7 @@ def test_what_no_reference_solves_is_refused(tmp_path):
     part = "{ sphere = { centre = [0.0, 0.0, 0.0], radius = 1.0 } }"
     case.write_text(text + f"[[body_force]]\nwhere = {part}\nacceleration = [0.0, 0.0, 1.0]\n")
     with pytest.raises(ValueError, match="a body force on a part of the body is not solved"):
-        read_case(case).acceleration(1.0)
+        read_case(case).uniform_body_forces()
 
 
 def test_formulas_of_the_position():

@@ -16,7 +16,9 @@ def is_even(case: Case) -> bool:
     selectors = [p.selector for p in case.prescriptions] + [r.selector for r in case.regions]
     selectors += [traction.selector for traction in case.tractions]
     kinds = {s if isinstance(s, str) else next(iter(s)) for s in selectors}
-    return case.is_static and case.dimension == 3 and "box" in case.shape and kinds <= EVEN
+    on_all = all(force.selector == "all" for force in case.body_forces)
+    is_box = case.dimension == 3 and "box" in case.shape
+    return case.is_static and is_box and on_all and kinds <= EVEN
 
 
 def counts(case: Case, spacing: float, degree: int) -> tuple[np.ndarray, np.ndarray, list[int]]:

@@ -26,7 +26,7 @@ class Conditions:
         self._tractions = [(row, self._traction(row)) for row in self.case.tractions]
         self._body_forces = [
             (row, model.mass_force(self._in_unknowns(row.acceleration)))
-            for row in self.case.body_forces
+            for row in self.case.uniform_body_forces()
         ]
 
     def _in_unknowns(self, vector) -> np.ndarray:

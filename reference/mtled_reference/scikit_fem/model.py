@@ -181,7 +181,7 @@ class Model:
         """Nodal forces (n, d) [N] of body forces and tractions."""
         forces = np.zeros(self.nodes.shape)
         nodal_masses = np.asarray(self.mass.sum(axis=1)).ravel()
-        for body in self.case.body_forces:
+        for body in self.case.uniform_body_forces():
             acceleration = factor_of(body.amplitude) * np.array(body.acceleration[: self.d])
             forces += nodal_masses[:, None] * acceleration
         for traction in self.case.tractions:

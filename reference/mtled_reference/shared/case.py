@@ -174,14 +174,11 @@ class Case:
         z = np.full(points.shape[:-1] + (1,), self.plane_z)
         return np.concatenate([points, z], axis=-1)
 
-    def acceleration(self, t: float) -> np.ndarray:
-        """Sum of the body forces per mass [m/s²] at time t [s], which act on the whole body."""
-        total = np.zeros(3)
-        for force in self.body_forces:
-            if force.selector != "all":
-                raise ValueError("a body force on a part of the body is not solved here")
-            total += force.amplitude(t) * np.asarray(force.acceleration)
-        return total
+    def uniform_body_forces(self) -> list[BodyForce]:
+        """The body forces, each of which acts on the whole body."""
+        if any(force.selector != "all" for force in self.body_forces):
+            raise ValueError("a body force on a part of the body is not solved here")
+        return self.body_forces
 
 
 def read_case(path: str | Path) -> Case:
