@@ -46,18 +46,23 @@ fn checked_out_commit() -> Option<String> {
     first_line("git", &["rev-parse", &format!("--short={DIGITS}"), "HEAD"])
 }
 
-/// Of the solver and of what reads cases and makes records. DefaultHasher may change
-/// with the compiler, which may change results too.
+/// Of the solver, of all that reads cases and makes records, which is everything here but the
+/// command line, and of the versions of dependencies, where they are locked. DefaultHasher may
+/// change with the compiler, which may change results too.
 fn fingerprint() -> u64 {
     let variable = |name: &str| std::env::var(name).unwrap_or_else(|_| panic!("{name} is not set"));
     // From the build script of the solver that this build is linked with, wherever it lies.
     let solver = PathBuf::from(variable("DEP_MTLED_SOURCES"));
     let here = PathBuf::from(variable("CARGO_MANIFEST_DIR"));
-    let own = ["accuracy", "files", "run", "scene", "explore/store"];
+    let (own, command_line) = (here.join("src"), here.join("src/cli"));
+    // A packed crate has a lock file of its own.
+    let locked = [here.join("../Cargo.lock"), here.join("Cargo.lock")];
     let mut hasher = DefaultHasher::new();
-    for folder in std::iter::once(solver).chain(own.map(|name| here.join("src").join(name))) {
+    let folders = [solver, own].into_iter().chain(locked.into_iter().find(|file| file.is_file()));
+    for folder in folders {
         println!("cargo::rerun-if-changed={}", folder.display());
-        for file in sources(&folder) {
+        let decide = sources(&folder).into_iter().filter(|file| !file.starts_with(&command_line));
+        for file in decide {
             let bytes = std::fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
             // The same on checkouts with other line ends.
             hasher.write(&bytes.into_iter().filter(|byte| *byte != b'\r').collect::<Vec<u8>>());
@@ -66,12 +71,14 @@ fn fingerprint() -> u64 {
     hasher.finish()
 }
 
-/// All files below a folder, in the order of their names.
+/// All files below a folder, in the order of their names, or the file itself.
 fn sources(folder: &Path) -> Vec<PathBuf> {
+    if folder.is_file() {
+        return vec![folder.to_path_buf()];
+    }
     let entries = std::fs::read_dir(folder);
     let entries = entries.unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.sort();
-    let below = |path: PathBuf| if path.is_dir() { sources(&path) } else { vec![path] };
-    paths.into_iter().flat_map(below).collect()
+    paths.iter().flat_map(|path| sources(path)).collect()
 }
