@@ -2,6 +2,7 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::GeometryError;
+use crate::problem::Mistake;
 
 /// An equilibrium that a body leaves at the slightest touch, or has left by itself.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +36,9 @@ impl std::fmt::Display for Instability {
 pub enum Error {
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// A number of the problem cannot be used.
+    #[error(transparent)]
+    Mistake(#[from] Mistake),
     #[error("the background grid gives no quadrature point inside the body: use smaller cells")]
     NoQuadraturePoints,
     #[error("no region contains the point ({}): let the last region contain everything", show(.position))]

@@ -15,7 +15,7 @@ use crate::discretisation::surface_rule::SurfaceRule;
 use crate::error::Error;
 use crate::geometry::{Extent, GeometryError, Panel, Shape};
 use crate::problem::{
-    BackgroundGrid, Cloud, Dimension, EssentialCondition, Gradients, Loads, Problem, Recipe,
+    BackgroundGrid, Cloud, Dimension, EssentialCondition, Gradients, Loads, Problem, Recipe, refuse,
 };
 use rayon::prelude::*;
 
@@ -52,6 +52,7 @@ impl Discretisation {
     /// Nodes and quadrature points of a problem with their supports. Points
     /// are sorted by region and patch, neighbours in space close in memory.
     pub fn new(problem: &Problem) -> Result<Discretisation, Error> {
+        refuse(problem.check())?;
         problem.body.validate_body()?;
         let dimension = problem.dimension;
         // In a plane the body is its cross-section, whose ends are no boundary.

@@ -10,7 +10,7 @@ use crate::motion::state::State;
 use crate::motion::step::{Buffers, Scheme, StepReport, add_pressures, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};
 use crate::motion::summary::{NewtonFailure, Summary};
-use crate::problem::{Motion, Relaxation, StepControl, sticks};
+use crate::problem::{Motion, Relaxation, StepControl, refuse, sticks};
 
 /// Runs the motion of a problem from `state`, and notifies `observer` after every step.
 /// After an error the state is the last one reached, and the observer keeps its records.
@@ -20,6 +20,7 @@ pub fn simulate(
     state: &mut State,
     observer: &mut dyn Observer,
 ) -> Result<Summary, Error> {
+    refuse(motion.check())?;
     match motion {
         Motion::Dynamic { end, step, damping } => {
             if model.added_mass == 0.0 && model.inertia != model.lumped_mass {

@@ -1,6 +1,7 @@
 //! What is to be solved: plain data, read from a case file or written by hand.
 
 mod amplitude;
+mod check;
 mod conditions;
 pub mod defaults;
 mod motion;
@@ -8,6 +9,8 @@ mod recipe;
 
 pub use crate::geometry::{Dimension, Field};
 pub use amplitude::Amplitude;
+pub(crate) use check::refuse;
+pub use check::{Mistake, Wrong};
 pub(crate) use conditions::sticks;
 pub use conditions::{
     BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed, Pressure,
@@ -21,6 +24,7 @@ pub use recipe::{
 
 use crate::geometry::{Selector, Shape};
 use crate::material::Material;
+use check::Mistakes;
 
 /// A whole problem: body, discretisation recipe, conditions, loads, motion.
 #[derive(Debug, Clone)]
@@ -59,6 +63,30 @@ impl Problem {
             obstacles: Vec::new(),
             motion: Motion::Automatic(Relaxation::default()),
         }
+    }
+
+    /// Every number with which it cannot be solved, in the order of its fields. What needs the
+    /// geometry, such as selections of nothing, is refused when the problem is discretised.
+    pub fn check(&self) -> Vec<Mistake> {
+        let mut found = Mistakes::default();
+        for (n, region) in self.regions.iter().enumerate() {
+            found.positive(&format!("regions[{n}].material.density"), region.material.density);
+        }
+        found.part("recipe", self.recipe.check());
+        let loads = &self.loads;
+        let amplitudes: [(&str, Vec<&Amplitude>); 4] = [
+            ("conditions", self.conditions.iter().map(|row| &row.amplitude).collect()),
+            ("loads.body_forces", loads.body_forces.iter().map(|row| &row.amplitude).collect()),
+            ("loads.tractions", loads.tractions.iter().map(|row| &row.amplitude).collect()),
+            ("loads.pressures", loads.pressures.iter().map(|row| &row.amplitude).collect()),
+        ];
+        for (list, amplitudes) in amplitudes {
+            for (n, amplitude) in amplitudes.into_iter().enumerate() {
+                found.part(&format!("{list}[{n}].amplitude"), amplitude.check());
+            }
+        }
+        found.part("motion", self.motion.check());
+        found.0
     }
 
     /// Whether Newton's method is what is tried at first.

@@ -76,6 +76,7 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         Error::TooMuchAddedMass { .. } | Error::UnscaledMass { .. } => "time.mass_scaling",
         Error::ProbeOutside { .. } => "probe",
         Error::PointWithoutRegion { .. } => "region",
+        Error::Mistake(_) => "discretisation",
         Error::Geometry(GeometryError::NoVolume) => "geometry.shape",
         Error::Geometry(_) => "discretisation",
         Error::NoEquilibrium { .. } => "time.solver",

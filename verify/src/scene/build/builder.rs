@@ -7,7 +7,7 @@ use crate::scene::format::UnitFormat;
 use crate::scene::nearest::nearest;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{LabelField, LabelMap, Shape};
-use mtled::problem::Dimension;
+use mtled::problem::{Dimension, Mistake};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::fmt::Display;
@@ -49,6 +49,13 @@ impl Builder<'_> {
     pub fn refuse_if(&mut self, wrong: bool, key: &str, message: impl Display) {
         if wrong {
             self.mistake(key, message);
+        }
+    }
+
+    /// Records what the solver refuses of a part of the problem, each at the key of its field.
+    pub fn refused(&mut self, mistakes: Vec<Mistake>, key: impl Fn(&str) -> String) {
+        for Mistake { field, wrong } in mistakes {
+            self.mistake(&key(&field), wrong);
         }
     }
 

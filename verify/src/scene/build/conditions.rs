@@ -84,32 +84,14 @@ impl Builder<'_> {
     }
 
     fn amplitude(&mut self, key: &str, format: &AmplitudeFormat) -> Amplitude {
-        match format {
+        let amplitude = match format {
             AmplitudeFormat::Constant => Amplitude::Constant,
-            AmplitudeFormat::Linear { duration } => {
-                self.positive(&format!("{key}.linear.duration"), *duration);
-                Amplitude::Linear { duration: *duration }
-            }
-            AmplitudeFormat::Smooth { duration } => {
-                self.positive(&format!("{key}.smooth.duration"), *duration);
-                Amplitude::Smooth { duration: *duration }
-            }
-            AmplitudeFormat::Table(rows) => {
-                self.table(&format!("{key}.table"), rows);
-                Amplitude::Table(rows.clone())
-            }
-        }
-    }
-
-    fn table(&mut self, key: &str, rows: &[(f64, f64)]) {
-        self.refuse_if(rows.is_empty(), key, "is empty; it needs rows of time and factor");
-        for (n, pair) in rows.windows(2).enumerate() {
-            let ((before, _), (after, _)) = (pair[0], pair[1]);
-            if after <= before {
-                let message = format!("has time {after} after {before}; times must increase");
-                self.mistake(&format!("{key}[{}]", n + 1), message);
-            }
-        }
+            AmplitudeFormat::Linear { duration } => Amplitude::Linear { duration: *duration },
+            AmplitudeFormat::Smooth { duration } => Amplitude::Smooth { duration: *duration },
+            AmplitudeFormat::Table(rows) => Amplitude::Table(rows.clone()),
+        };
+        self.refused(amplitude.check(), |field| format!("{key}.{field}"));
+        amplitude
     }
 
     pub fn loads(&mut self, format: &CaseFormat) -> Loads {

@@ -10,7 +10,7 @@ use mtled::algebra::tensor::{Vector3, bounding_box};
 use mtled::discretisation::nodes::{refuse_far_nodes, refuse_fine_spacing};
 use mtled::geometry::GeometryError;
 use mtled::problem::{
-    BackgroundGrid, Basis, Cloud, Dimension, Gradients, Recipe, Refinement, defaults,
+    BackgroundGrid, Basis, Cloud, Dimension, Gradients, Mistake, Recipe, Refinement, defaults,
 };
 
 /// Tolerance of selectors that state none, over the nodal spacing \[–\].
@@ -34,12 +34,6 @@ impl Builder<'_> {
     pub fn recipe(&mut self, format: &DiscretisationFormat) -> Option<Recipe> {
         let basis = self.basis(format);
         let dilation = format.dilation.unwrap_or(defaults::dilation(basis));
-        if dilation <= 1.0 {
-            let message = format!(
-                "is {dilation}; it must be larger than 1, or nodes do not reach their neighbours"
-            );
-            self.mistake("discretisation.dilation", message);
-        }
         self.keys_of_cloud(format);
         if let Some(spacing) = format.spacing {
             self.spacing_fits(spacing);
@@ -55,16 +49,17 @@ impl Builder<'_> {
             ..Recipe::with_spacing(1.0)
         };
         format.choose(&mut recipe);
+        let stated = |mistake: &Mistake| key_of(&mistake.field).is_some();
+        let mistakes = recipe.check().into_iter().filter(stated).collect();
+        self.refused(mistakes, |field| {
+            format!("discretisation.{}", key_of(field).unwrap_or(field))
+        });
         Some(recipe)
     }
 
     fn basis(&mut self, format: &DiscretisationFormat) -> Basis {
         let key = "discretisation.regularisation";
         let regularisation = format.regularisation.unwrap_or(defaults::REGULARISATION);
-        if !(regularisation > 0.0 && regularisation <= 1.0) {
-            let message = format!("is {regularisation}; it must lie in 0 < regularisation ≤ 1");
-            self.mistake(key, message);
-        }
         let basis = match format.basis {
             None => defaults::BASIS,
             Some(BasisFormat::Linear) => Basis::Linear,
@@ -80,7 +75,6 @@ impl Builder<'_> {
     fn gradients(&mut self, format: &DiscretisationFormat) -> Gradients {
         let key = "discretisation.gradient_tolerance";
         let tolerance = format.gradient_tolerance.unwrap_or(defaults::GRADIENT_TOLERANCE);
-        self.positive(key, tolerance);
         match format.gradients {
             None => defaults::GRADIENTS.with_tolerance(tolerance),
             Some(GradientsFormat::Consistent) => Gradients::Consistent { tolerance },
@@ -156,9 +150,6 @@ impl Builder<'_> {
                     self.mistake(key, "is missing; cloud = \"jittered\" needs it");
                     return None;
                 };
-                if !(0.0..0.5).contains(&jitter) {
-                    self.mistake(key, format!("is {jitter}; it must lie in 0 ≤ jitter < 0.5"));
-                }
                 let seed = format.seed.unwrap_or(defaults::SEED);
                 Some(Cloud::Jittered { spacing: format.spacing?, jitter, seed })
             }
@@ -169,7 +160,6 @@ impl Builder<'_> {
 
     fn graded(&mut self, format: &DiscretisationFormat) -> Option<Cloud> {
         let growth = format.growth.unwrap_or(defaults::GROWTH);
-        self.positive("discretisation.growth", growth);
         let mut refinements = Vec::new();
         for (n, row) in format.refine.iter().flatten().enumerate() {
             let key = format!("discretisation.refine[{n}]");
@@ -238,13 +228,6 @@ impl Builder<'_> {
     ) -> Option<BackgroundGrid> {
         let key = "discretisation.grid";
         let gauss_points = format.gauss_points.unwrap_or(defaults::GAUSS_POINTS);
-        if !(1..=5).contains(&gauss_points) {
-            let message = format!("is {gauss_points}; it must be 1 to 5");
-            self.mistake(&format!("{key}.gauss_points"), message);
-        }
-        if let Some(edge) = format.boundary_cell {
-            self.positive(&format!("{key}.boundary_cell"), edge);
-        }
         let mut refinements = Vec::new();
         for (n, row) in format.refine.iter().enumerate() {
             let key = format!("{key}.refine[{n}]");
@@ -298,6 +281,20 @@ impl Builder<'_> {
                 None
             }
         }
+    }
+}
+
+/// The key of a field of the recipe; `None` for those that are computed from keys, which are
+/// judged before.
+fn key_of(field: &str) -> Option<&str> {
+    match field {
+        "dilation" => Some(field),
+        "basis.regularisation" => Some("regularisation"),
+        "cloud.jitter" => Some("jitter"),
+        "cloud.growth" => Some("growth"),
+        "gradients.tolerance" => Some("gradient_tolerance"),
+        "grid.boundary_cell" | "grid.gauss_points" => Some(field),
+        _ => None,
     }
 }
 

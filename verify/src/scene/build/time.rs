@@ -22,41 +22,25 @@ const ROUND_OFF: f64 = 1e-9;
 impl Builder<'_> {
     pub fn motion(&mut self, format: &TimeFormat) -> Motion {
         self.keys_of_method(format);
-        let step = self.step(format);
-        match format.method {
+        let motion = match format.method {
             MethodFormat::Dynamic => {
                 if format.end.is_none() {
                     self.mistake("time.end", "is missing; method = \"dynamic\" needs it");
                 }
-                let end = format.end.unwrap_or(1.0);
-                self.positive("time.end", end);
-                let damping = format.damping.unwrap_or(0.0);
-                self.not_negative("time.damping", damping);
-                Motion::Dynamic { end, step, damping }
+                let (end, damping) = (format.end.unwrap_or(1.0), format.damping.unwrap_or(0.0));
+                Motion::Dynamic { end, step: step(format), damping }
             }
-            MethodFormat::Static if format.solver == Some(SolverFormat::Newton) => {
-                self.newton(format)
-            }
-            MethodFormat::Static => {
-                let preset = Relaxation::default();
-                let relaxation = Relaxation {
-                    load_end: format.load_end.unwrap_or(preset.load_end),
-                    load_steps: format.load_steps.unwrap_or(preset.load_steps),
-                    tolerance: format.tolerance.unwrap_or(preset.tolerance),
-                    max_steps: format.max_steps.unwrap_or(preset.max_steps),
-                    step,
-                    mass: preset.mass,
-                };
-                self.positive("time.load_end", relaxation.load_end);
-                self.at_least_one("time.load_steps", relaxation.load_steps);
-                self.at_least_one("time.max_steps", relaxation.max_steps);
-                self.tolerance_of_time(relaxation.tolerance);
-                match format.solver {
-                    Some(SolverFormat::Relaxation) => Motion::Static(relaxation),
-                    _ => Motion::Automatic(relaxation),
-                }
-            }
-        }
+            MethodFormat::Static => match format.solver {
+                Some(SolverFormat::Newton) => self.newton(format),
+                Some(SolverFormat::Relaxation) => Motion::Static(relaxation(format)),
+                None | Some(SolverFormat::Auto) => Motion::Automatic(relaxation(format)),
+            },
+        };
+        self.refused(motion.check(), |field| match field {
+            "step.fixed" => "time.fixed_step".into(),
+            _ => format!("time.{}", field.trim_start_matches("step.")),
+        });
+        motion
     }
 
     fn newton(&mut self, format: &TimeFormat) -> Motion {
@@ -72,19 +56,10 @@ impl Builder<'_> {
             self.mistake(&format!("time.{name}"), message);
         }
         let preset = Newton::default();
-        let newton = Newton {
+        Motion::Equilibrium(Newton {
             load_end: format.load_end.unwrap_or(preset.load_end),
             tolerance: format.tolerance.unwrap_or(preset.tolerance),
-        };
-        self.positive("time.load_end", newton.load_end);
-        self.tolerance_of_time(newton.tolerance);
-        Motion::Equilibrium(newton)
-    }
-
-    fn tolerance_of_time(&mut self, tolerance: f64) {
-        if !(tolerance > 0.0 && tolerance < 1.0) {
-            self.mistake("time.tolerance", format!("is {tolerance}; it must lie in (0, 1)"));
-        }
+        })
     }
 
     /// Refuses keys that belong to the other method.
@@ -106,31 +81,6 @@ impl Builder<'_> {
                 self.mistake(&format!("time.{name}"), format!("belongs to method = \"{other}\""));
             }
         }
-    }
-
-    fn step(&mut self, format: &TimeFormat) -> StepControl {
-        let undamped =
-            format.method == MethodFormat::Dynamic && format.damping.unwrap_or(0.0) == 0.0;
-        let preset = if undamped { StepControl::UNDAMPED } else { StepControl::default() };
-        let step = StepControl {
-            safety_factor: format.safety_factor.unwrap_or(preset.safety_factor),
-            reevaluate_every: format.reevaluate_every.unwrap_or(preset.reevaluate_every),
-            fixed: format.fixed_step,
-            mass_scaling: format.mass_scaling.unwrap_or(preset.mass_scaling),
-        };
-        if !(step.mass_scaling >= 1.0 && step.mass_scaling.is_finite()) {
-            let message = format!("is {}; it must be 1 or more", step.mass_scaling);
-            self.mistake("time.mass_scaling", message);
-        }
-        if !(step.safety_factor > 0.0 && step.safety_factor <= 1.0) {
-            let message = format!("is {}; it must lie in (0, 1]", step.safety_factor);
-            self.mistake("time.safety_factor", message);
-        }
-        self.at_least_one("time.reevaluate_every", step.reevaluate_every);
-        if let Some(fixed) = step.fixed {
-            self.positive("time.fixed_step", fixed);
-        }
-        step
     }
 
     pub fn probes(&mut self, format: &CaseFormat) -> Vec<Probe> {
@@ -308,5 +258,28 @@ impl Builder<'_> {
             self.refuse_if(!(at > before && at <= end), &format!("{key}[{n}]"), message);
             before = at;
         }
+    }
+}
+
+fn relaxation(format: &TimeFormat) -> Relaxation {
+    let preset = Relaxation::default();
+    Relaxation {
+        load_end: format.load_end.unwrap_or(preset.load_end),
+        load_steps: format.load_steps.unwrap_or(preset.load_steps),
+        tolerance: format.tolerance.unwrap_or(preset.tolerance),
+        max_steps: format.max_steps.unwrap_or(preset.max_steps),
+        step: step(format),
+        mass: preset.mass,
+    }
+}
+
+fn step(format: &TimeFormat) -> StepControl {
+    let undamped = format.method == MethodFormat::Dynamic && format.damping.unwrap_or(0.0) == 0.0;
+    let preset = if undamped { StepControl::UNDAMPED } else { StepControl::default() };
+    StepControl {
+        safety_factor: format.safety_factor.unwrap_or(preset.safety_factor),
+        reevaluate_every: format.reevaluate_every.unwrap_or(preset.reevaluate_every),
+        fixed: format.fixed_step,
+        mass_scaling: format.mass_scaling.unwrap_or(preset.mass_scaling),
     }
 }
