@@ -45,10 +45,10 @@ impl Verdict {
 }
 
 /// What all relations say of a scene, or why it has no answer.
-pub fn examine(scene: &Scene, only: Option<&str>) -> Result<Vec<Verdict>, String> {
+pub fn examine(scene: &Scene, chosen: &dyn Fn(&Relation) -> bool) -> Result<Vec<Verdict>, String> {
     let subject = Subject::new(scene)?;
-    let chosen = all().filter(|relation| only.is_none_or(|name| relation.name == name));
-    Ok(chosen
+    Ok(all()
+        .filter(|relation| chosen(relation))
         .map(|relation| Verdict {
             relation,
             compared: (relation.compare)(&subject),
@@ -64,8 +64,9 @@ const MOST_TRIED: usize = 400;
 pub fn smallest(scene: &Scene, verdict: &Verdict) -> Scene {
     let refused = matches!(verdict.compared, Some(Compared::Refused(_)));
     let fails = |scene: &Scene| {
-        let examined =
-            catch_unwind(AssertUnwindSafe(|| examine(scene, Some(verdict.relation.name))));
+        let examined = catch_unwind(AssertUnwindSafe(|| {
+            examine(scene, &|relation| relation.name == verdict.relation.name)
+        }));
         let Ok(Ok(verdicts)) = examined else { return false };
         verdicts.iter().any(|verdict| {
             verdict.is_finding()

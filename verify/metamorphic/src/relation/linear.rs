@@ -139,10 +139,7 @@ fn only_displacements(subject: &Subject, other: &Scene, view: &View) -> Option<C
 fn reciprocal(subject: &Subject) -> Option<Compared> {
     let mut scene = linear(&subject.scene)?;
     scene.holds.iter_mut().for_each(|hold| hold.to = still(&hold.to));
-    if scene.pushes.len() < 2 {
-        let along = [0.03, 0.05, 0.0];
-        scene.pushes.push(Push::Gravity(along));
-    }
+    scene.pushes.extend([Push::Gravity([0.03, 0.05, 0.0]), Push::Gravity([0.02, -0.05, 0.0])]);
     let only = |n: usize| {
         let pushes = scene.pushes[n..=n].to_vec();
         solved(&Scene { pushes, ..scene.clone() })

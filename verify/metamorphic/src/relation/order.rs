@@ -35,7 +35,8 @@ pub const RELATIONS: &[Relation] = &[
         compare: |subject| {
             let reversed = changed(subject, |problem| problem.conditions.reverse());
             let view = View { each_reaction: false, ..View::default() };
-            (subject.scene.holds.len() > 1).then(|| subject.with(reversed, &view))?
+            // On the same nodes: those on the edges of held parts are numbered by condition.
+            (subject.scene.holds.len() > 1).then(|| subject.given_with(reversed, &view))?
         },
     },
     Relation {
