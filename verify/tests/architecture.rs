@@ -15,9 +15,10 @@ use std::path::{Path, PathBuf};
 use tokens::tokens;
 
 /// Source folders of the crates.
-const CRATES: [&str; 6] = [
+const CRATES: [&str; 7] = [
     "solver/src",
     "verify/checks/src",
+    "verify/metamorphic/src",
     "verify/src",
     "verify/fuzz/src",
     "verify/python/src",

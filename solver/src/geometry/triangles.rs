@@ -24,13 +24,18 @@ pub(super) fn enclosed_volume(triangles: impl Iterator<Item = Triangle>, apex: V
     triangles.map(|[a, b, c]| (a - o).dot(&(b - o).cross(&(c - o))) / 6.0).sum()
 }
 
-/// Halves the longest edge until no edge is longer than `size` \[m\].
+/// Lengths that differ by less are equal, so that round-off does not choose an edge or divide a
+/// triangle of just the right size \[–\].
+const EQUAL: f64 = 1e-9;
+
+/// Halves the longest edge, the first of several, until no edge is longer than `size` \[m\].
 pub(super) fn subdivide(mut t: Triangle, size: f64, keep: &mut impl FnMut(Triangle)) {
     let mut halves = Vec::new();
     loop {
         let lengths = [0, 1, 2].map(|k| (t[(k + 1) % 3] - t[k]).norm());
-        let longest = (0..3).fold(0, |l, k| if lengths[k] > lengths[l] { k } else { l });
-        if lengths[longest] <= size {
+        let longest =
+            (0..3).fold(0, |l, k| if lengths[k] > (1.0 + EQUAL) * lengths[l] { k } else { l });
+        if lengths[longest] <= (1.0 + EQUAL) * size {
             keep(t);
             match halves.pop() {
                 Some(half) => t = half,

@@ -2,8 +2,8 @@
 
 use crate::corpus;
 use crate::finding::{Finding, Outcome};
-use crate::minimise::minimised;
-use crate::mutate::{Input, mutated};
+use crate::minimise::{minimised, smallest_scene};
+use crate::mutate::{Input, drawn_scene, mutated};
 use crate::process::Limits;
 use crate::seeds;
 use crate::station::{Station, Trial};
@@ -135,7 +135,10 @@ impl Campaign<'_> {
     fn one(&self, station: &mut Station, target: Target, pool: &mut Pool) -> Result<()> {
         let Pool { inputs, first_kept, rng } = pool;
         let [a, b] = [0, 1].map(|_| rng.usize(..inputs.len()));
-        let input = mutated(&inputs[a], &inputs[b], target.extensions(), rng);
+        let input = match target {
+            Target::Scene => drawn_scene(rng),
+            _ => mutated(&inputs[a], &inputs[b], target.extensions(), rng),
+        };
         let trial = self.counted(station, target, &input)?;
         for finding in &trial.findings {
             self.save(station, target, &input, finding)?;
@@ -171,7 +174,10 @@ impl Campaign<'_> {
         if !self.results().known.insert((target, signature.clone())) {
             return Ok(());
         }
-        let small = minimised(station, target, input, &signature)?;
+        let small = match target {
+            Target::Scene => smallest_scene(station, input, &signature)?,
+            _ => minimised(station, target, input, &signature)?,
+        };
         let path = corpus::save(&self.options.corpus, target, finding.kind, &small)?;
         self.add(target, finding.clone(), path);
         Ok(())

@@ -7,6 +7,8 @@ use anyhow::Result;
 use clap::ValueEnum;
 use mtled::discretisation::Footprint;
 use mtled::problem::Problem;
+use mtled_metamorphic::hunt::examine;
+use mtled_metamorphic::scene::Scene;
 use mtled_verify::machine::peak_memory;
 use mtled_verify::run::{prepare_to_run, refuse_beyond_memory};
 use mtled_verify::scene::read_case;
@@ -42,6 +44,8 @@ pub struct Answer {
     pub outcome: Outcome,
     /// The refusal.
     pub message: Option<String>,
+    /// Relations that do not hold.
+    pub broken: Vec<String>,
     /// Peak memory \[byte\].
     pub peak: u64,
 }
@@ -93,11 +97,15 @@ fn work(target: Target) -> Result<()> {
     let mut out = std::io::stdout().lock();
     for line in std::io::stdin().lock().lines() {
         reset_peak();
+        let line = line?;
+        let file = Path::new(&line);
+        let mut broken = Vec::new();
         let (outcome, message) = match target {
-            Target::Trap => trap(Path::new(&line?)),
-            _ => check(Path::new(&line?)),
+            Target::Trap => trap(file),
+            Target::Scene => scene(file, &mut broken),
+            _ => check(file),
         };
-        let answer = Answer { outcome, message, peak: peak_memory().unwrap_or(0) };
+        let answer = Answer { outcome, message, broken, peak: peak_memory().unwrap_or(0) };
         writeln!(out, "{}", serde_json::to_string(&answer)?)?;
         out.flush()?;
     }
@@ -132,6 +140,24 @@ fn check(file: &Path) -> (Outcome, Option<String>) {
             true => (Outcome::Succeeded, None),
             false => located("the condition is not finite, without an error".into()),
         },
+    }
+}
+
+/// Holds all relations against a scene.
+fn scene(file: &Path, broken: &mut Vec<String>) -> (Outcome, Option<String>) {
+    let text = std::fs::read_to_string(file).unwrap_or_default();
+    let scene = match Scene::from_text(&text) {
+        Ok(scene) => scene,
+        Err(error) => return (Outcome::Refused, Some(format!("input.toml: {error}"))),
+    };
+    match examine(&scene, &|_| true) {
+        // It has no answer, and relations say nothing.
+        Err(_) => (Outcome::Diverged, None),
+        Ok(verdicts) => {
+            let findings = verdicts.iter().filter(|verdict| verdict.is_finding());
+            broken.extend(findings.map(|v| format!("{}: {}", v.relation.name, v.text())));
+            (Outcome::Succeeded, None)
+        }
     }
 }
 

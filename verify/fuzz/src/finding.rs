@@ -29,6 +29,8 @@ pub enum Kind {
     BadFile,
     /// It changed something outside its own folder.
     Outside,
+    /// A relation that must hold of any scene does not.
+    Relation,
 }
 
 impl Kind {
@@ -46,6 +48,7 @@ impl Kind {
             Kind::NotFinite => "not-finite",
             Kind::BadFile => "bad-file",
             Kind::Outside => "outside",
+            Kind::Relation => "relation",
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Smaller inputs with the same finding.
 
-use crate::mutate::Input;
+use crate::mutate::{Input, smaller_scenes};
 use crate::station::Station;
 use crate::target::Target;
 use anyhow::Result;
@@ -36,4 +36,26 @@ pub fn minimised(
         part /= 2;
     }
     Ok(best)
+}
+
+/// Time for a scene, each of which takes a second \[s\].
+const MOST_TIME_OF_SCENE: Duration = Duration::from_secs(60);
+
+/// Leaves out one thing of a scene after another while a finding of this signature stays.
+pub fn smallest_scene(station: &mut Station, input: &Input, signature: &str) -> Result<Input> {
+    let start = Instant::now();
+    let mut best = input.clone();
+    'smaller: loop {
+        for next in smaller_scenes(&best) {
+            if start.elapsed() > MOST_TIME_OF_SCENE {
+                return Ok(best);
+            }
+            let trial = station.try_input(Target::Scene, &next)?;
+            if trial.findings.iter().any(|finding| finding.signature() == signature) {
+                best = next;
+                continue 'smaller;
+            }
+        }
+        return Ok(best);
+    }
 }

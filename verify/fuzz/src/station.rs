@@ -77,6 +77,8 @@ impl Station {
                 if answer.outcome == Outcome::Refused {
                     trial.findings.extend(judge::unlocated(message, "input"));
                 }
+                let broken = answer.broken.iter();
+                trial.findings.extend(broken.map(|what| Finding::new(Kind::Relation, what)));
             }
         }
         self.compare(&before, "out", &mut trial)?;

@@ -32,6 +32,8 @@ pub enum Target {
     Job,
     /// Answers of the solver protocol: `mtled protocol check`.
     Answer,
+    /// Random scenes: relations that must hold of any of them.
+    Scene,
     /// Inputs that misbehave on purpose, to test the harness.
     #[value(hide = true)]
     Trap,
@@ -95,7 +97,7 @@ const ANSWER: &[Step] = &[step(&["protocol", "check", "job.json", "input.json"],
 
 impl Target {
     /// All but the traps.
-    pub const ALL: [Target; 14] = [
+    pub const ALL: [Target; 15] = [
         Target::Case,
         Target::LabelMap,
         Target::Surface,
@@ -110,6 +112,7 @@ impl Target {
         Target::Reference,
         Target::Job,
         Target::Answer,
+        Target::Scene,
     ];
 
     /// Its name on the command line and in the corpus.
@@ -129,6 +132,7 @@ impl Target {
             Target::Reference => "reference",
             Target::Job => "job",
             Target::Answer => "answer",
+            Target::Scene => "scene",
             Target::Trap => "trap",
         }
     }
@@ -145,9 +149,12 @@ impl Target {
     /// faster.
     pub fn steps(self) -> Option<&'static [Step]> {
         match self {
-            Target::Case | Target::LabelMap | Target::Surface | Target::Points | Target::Trap => {
-                None
-            }
+            Target::Case
+            | Target::LabelMap
+            | Target::Surface
+            | Target::Points
+            | Target::Scene
+            | Target::Trap => None,
             Target::Inspect => Some(INSPECT),
             Target::Solve => Some(SOLVE),
             Target::Migrate => Some(MIGRATE),

@@ -8,6 +8,7 @@ mod error_bars;
 mod hard;
 mod manufactured;
 mod meta;
+mod metamorphic;
 mod motion;
 mod patch;
 mod regression;
@@ -148,6 +149,13 @@ pub const STUDIES: &[Definition] = &[
         claim: "Making the gradients consistent takes the same few iterations at any number of nodes \
                 and on any shape, and the whole set-up costs as much as some hundred steps.",
         body: meta::set_up::set_up,
+    },
+    Definition {
+        id: "metamorphic",
+        title: "Random scenes",
+        claim: "Of random scenes, who asks for the same in other words gets the same answer: other \
+                orders, places, directions, units and ways; and what is asked for is what is done.",
+        body: metamorphic::metamorphic,
     },
     Definition {
         id: "work",

@@ -165,8 +165,9 @@ fn candidates(
 ) -> Result<(), GeometryError> {
     let axes = dimension.components();
     let edge = field.requested.spacing;
-    let count = [0, 1, 2]
-        .map(|k| if k < axes { ((upper[k] - lower[k]) / edge).ceil().max(1.0) } else { 1.0 });
+    // Cubes that fit exactly must not get another layer from round-off.
+    let along = |k: usize| ((upper[k] - lower[k]) / edge - 1e-9).ceil().max(1.0);
+    let count = [0, 1, 2].map(|k| if k < axes { along(k) } else { 1.0 });
     NODES.check(count.iter().product())?;
     let count = count.map(|n| n as usize);
     let middle = 0.5 * (lower + upper);

@@ -21,6 +21,8 @@ const FRACTION_DEPTH_PLANE: usize = 5;
 const FLAT: f64 = 1e-9;
 /// The same for a boundary that is cut as a plane of the same mean distance \[–\].
 const NEARLY_FLAT: f64 = 0.004;
+/// Components of a normal that differ by less are equal: it comes from differences \[–\].
+const TIE: f64 = 1e-3;
 /// Parts of a cell smaller than this fraction of it are dropped \[–\].
 const SMALLEST_FRACTION: f64 = 1e-4;
 
@@ -320,10 +322,15 @@ impl PointCollector<'_> {
         if self.components == 2 {
             normal.z = 0.0;
         }
-        let axis = normal.iamax();
+        // Round-off must not choose among axes that are equally near.
+        let most = normal.amax();
+        let nearest = [0, 1, 2].map(|axis| normal[axis].abs() > (1.0 - TIE) * most);
+        let share = 1.0 / nearest.iter().filter(|&&nearest| nearest).count().max(1) as f64;
         let mut shift = Vector3::zeros();
-        shift[axis] = -normal[axis].signum() * 0.5 * (1.0 - fraction) * cell.edge;
-        spread[(axis, axis)] *= fraction * fraction;
+        for axis in (0..3).filter(|&axis| nearest[axis]) {
+            shift[axis] = -share * normal[axis].signum() * 0.5 * (1.0 - fraction) * cell.edge;
+            spread[(axis, axis)] *= 1.0 - share * (1.0 - fraction * fraction);
+        }
         (fraction, shift, spread)
     }
 

@@ -5,10 +5,12 @@
 
 mod archive;
 mod binary;
+mod scene;
 mod text;
 mod token;
 
 pub use archive::compressed;
+pub use scene::{drawn_scene, smaller_scenes};
 
 use fastrand::Rng;
 

@@ -45,7 +45,8 @@ pub fn inputs(target: Target) -> Result<Vec<Input>> {
         | Target::Baseline
         | Target::Plan
         | Target::Job
-        | Target::Answer => {}
+        | Target::Answer
+        | Target::Scene => {}
     }
     Ok(all)
 }

@@ -1,0 +1,121 @@
+//! The same body in other words.
+
+use super::{Compared, Relation, Subject};
+use crate::answer::View;
+use crate::build::{self, Frame};
+use crate::scene::Part;
+use mtled::Vector3;
+use mtled::geometry::{Selector, Shape};
+use mtled::problem::Region;
+
+const SAME_BODY: &str = "Distances, panels and cells are those of the one body, to round-off, times a \
+                         condition of up to 1e5";
+
+pub const RELATIONS: &[Relation] = &[
+    Relation {
+        name: "united_with_itself",
+        claim: "A ∪ A is A",
+        bound: 1e-6,
+        reason: SAME_BODY,
+        compare: |subject| with_body(subject, |body, _| Shape::Union(vec![body.clone(), body])),
+    },
+    Relation {
+        name: "without_what_is_elsewhere",
+        claim: "A without a ball beside it is A",
+        bound: 1e-6,
+        reason: SAME_BODY,
+        compare: |subject| {
+            with_body(subject, |body, size| {
+                let centre = Vector3::repeat(-2.0 * size);
+                Shape::Difference(Box::new(body), Box::new(Shape::Sphere { centre, radius: size }))
+            })
+        },
+    },
+    Relation {
+        name: "in_something_larger",
+        claim: "A ∩ a box around it is A",
+        bound: 1e-6,
+        reason: SAME_BODY,
+        compare: |subject| {
+            with_body(subject, |body, size| {
+                let corner = Vector3::repeat(3.0 * size);
+                Shape::Intersection(vec![body, Shape::Box { min: -corner, max: corner }])
+            })
+        },
+    },
+    Relation {
+        name: "as_triangles",
+        claim: "A box of triangles moves like the box",
+        bound: 0.05,
+        reason: "The body is the same to round-off, but triangles are cut into other panels than \
+                 rectangles, which changes the integral of φ over the boundary by its own error",
+        compare: |subject| {
+            let surface = build::as_surface(&subject.scene, &Frame::home(&subject.scene))?;
+            let mut other = subject.problem();
+            other.body = surface.ok()?;
+            subject.given_with(other, &View::default())
+        },
+    },
+    Relation {
+        name: "as_voxels",
+        claim: "A box of voxels moves nearly like the box",
+        bound: 0.25,
+        reason: "The surface of voxels is smoothed over 0.7 of them, a twentieth of the size: its \
+                 edges are rounded, with up to a tenth of what is held or loaded there",
+        compare: |subject| {
+            let scene = &subject.scene;
+            let is_box = scene.form == crate::scene::Form::Box && scene.components() == 3;
+            let mut other = subject.problem();
+            other.body = build::as_voxels(scene, &Frame::home(scene)).ok()?;
+            let loaded = !scene.pushes.is_empty() && !other.loads.tractions.is_empty();
+            (is_box && !loaded && other.loads.pressures.is_empty())
+                .then(|| subject.given_with(other, &View::default()))?
+        },
+    },
+    Relation {
+        name: "part_in_other_words",
+        claim: "A part, twice its complement, or united with itself selects the same",
+        bound: 1e-6,
+        reason: SAME_BODY,
+        compare: |subject| {
+            let mut other = subject.problem();
+            let not = |part: &Selector| Selector::Not(Box::new(part.clone()));
+            for condition in &mut other.conditions {
+                condition.part = not(&not(&condition.part));
+            }
+            for traction in &mut other.loads.tractions {
+                traction.part = Selector::Union(vec![traction.part.clone(), traction.part.clone()]);
+            }
+            for pressure in &mut other.loads.pressures {
+                pressure.part = Selector::Intersection(vec![Selector::All, pressure.part.clone()]);
+            }
+            for force in &mut other.loads.body_forces {
+                force.part = not(&not(&force.part));
+            }
+            subject.with(other, &View::default())
+        },
+    },
+    Relation {
+        name: "one_material_in_two_regions",
+        claim: "A body of one material moves like one of two regions of that material",
+        bound: 0.1,
+        reason: "Cells that the border cuts have a point on either side of it: another quadrature \
+                 of the same order on a coarse cloud",
+        compare: |subject| {
+            let mut other = subject.problem();
+            let rest = other.regions.last()?.clone();
+            let end = Part::End { axis: 0, upper: false, depth: 0.47 };
+            let part = build::part(&Frame::home(&subject.scene), &end);
+            let at = other.regions.len() - 1;
+            other.regions.insert(at, Region { name: "the same".into(), part, ..rest });
+            (subject.scene.inclusion.is_none()).then(|| subject.with(other, &View::default()))?
+        },
+    },
+];
+
+/// With another body on the same nodes.
+fn with_body(subject: &Subject, change: impl FnOnce(Shape, f64) -> Shape) -> Option<Compared> {
+    let mut other = subject.problem();
+    other.body = change(other.body, subject.scene.size);
+    subject.given_with(other, &View::default())
+}

@@ -1,0 +1,142 @@
+//! Place, direction and units.
+#![allow(non_snake_case)]
+
+use super::{Compared, Relation, Subject, with_nodes};
+use crate::answer::{View, relative};
+use crate::build::{self, Frame};
+use crate::scene::{Form, Gradients, Push, Scene};
+use mtled::{Discretisation, Vector3};
+
+const ROUND_OFF: &str = "Coordinates are rounded to 1e-16 of their size, times a condition of up to \
+                         1e6; no cell, node or panel may hang on the last digit";
+
+pub const RELATIONS: &[Relation] = &[
+    Relation {
+        name: "translated",
+        claim: "The same nodes elsewhere in space move in the same way",
+        bound: 1e-6,
+        reason: ROUND_OFF,
+        compare: |subject| {
+            let shift = Vector3::new(3.1, -2.3, 1.7);
+            in_frame(subject, &Frame { shift, ..Frame::home(&subject.scene) })
+        },
+    },
+    Relation {
+        name: "turned_or_mirrored",
+        claim: "The same nodes turned by right angles or in a mirror move in the same way",
+        bound: 1e-6,
+        reason: ROUND_OFF,
+        compare: |subject| keeps_its_directions(&subject.scene).then(|| turned(subject))?,
+    },
+    Relation {
+        name: "turned_or_mirrored_in_other_pieces",
+        claim: "Where patches of points or panels of the boundary follow the axes, turned ones \
+                move nearly in the same way",
+        bound: 0.3,
+        reason: "Patches of some ten points, and panels of half a spacing, are cut along the axes one \
+                 after the other; another cut is another discretisation of the same order, and clouds \
+                 here are as coarse as three spacings",
+        compare: |subject| (!keeps_its_directions(&subject.scene)).then(|| turned(subject))?,
+    },
+    Relation {
+        name: "lengths_times_four",
+        claim: "In a unit of length a quarter as long the same bits result",
+        bound: 1e-13,
+        reason: "Powers of two are exact in binary numbers; only a length in metres in the program \
+                 could tell them apart",
+        compare: |subject| in_units(subject, [4.0, 1.0, 1.0]),
+    },
+    Relation {
+        name: "forces_times_two",
+        claim: "In other units of force and mass the same bits result",
+        bound: 1e-13,
+        reason: "Powers of two are exact in binary numbers; only a stress or a density in the \
+                 program could tell them apart",
+        compare: |subject| in_units(subject, [1.0, 1024.0, 16.0]),
+    },
+    Relation {
+        name: "lengths_times_thousand",
+        claim: "In millimetres the same displacements result",
+        bound: 1e-6,
+        reason: ROUND_OFF,
+        compare: |subject| in_units(subject, [1000.0, 1.0, 1.0]),
+    },
+    Relation {
+        name: "a_hair_larger",
+        claim: "A body that is larger by 1e-13 moves in the same way",
+        bound: 1e-6,
+        reason: ROUND_OFF,
+        compare: |subject| in_units(subject, [1.0 + 1e-13, 1.0, 1.0]),
+    },
+    Relation {
+        name: "cloud_of_a_hair_larger_body",
+        claim: "A body that is larger by 1e-13 has the same nodes",
+        bound: 1e-9,
+        reason: "Coordinates are rounded to 1e-16 of the size; whether there is a node may not hang \
+                 on the last digit",
+        compare: |subject| {
+            let scene = &subject.scene;
+            let larger = Scene { size: (1.0 + 1e-13) * scene.size, ..scene.clone() };
+            let made = Discretisation::new(&build::problem(&larger).ok()?);
+            Some(match made {
+                Err(error) => Compared::Refused(error.to_string()),
+                Ok(made) => nodes_moved(subject.base.positions(), &made.cloud.positions),
+            })
+        },
+    },
+    Relation {
+        name: "thickness_of_a_slice",
+        claim: "The thickness of a slice in plane strain scales forces and nothing else",
+        bound: 1e-6,
+        reason: ROUND_OFF,
+        compare: |subject| {
+            let thickness = subject.scene.thickness?;
+            let factor = 0.013;
+            let thin = Scene { thickness: Some(factor * thickness), ..subject.scene.clone() };
+            let view = View { force: factor, ..View::default() };
+            subject.given_with(build::problem(&thin).ok()?, &view)
+        },
+    },
+];
+
+/// Whether nothing in the discretisation follows the axes: of all forms only boxes have
+/// panels that do not, and clouds without consistent gradients and surface loads have none.
+fn keeps_its_directions(scene: &Scene) -> bool {
+    let loads_surface = |push: &Push| matches!(push, Push::Traction(..) | Push::Pressure(..));
+    let has_panels = scene.gradients != Gradients::Plain || scene.pushes.iter().any(loads_surface);
+    !scene.has_patches() && (scene.form == Form::Box || !has_panels)
+}
+
+fn in_frame(subject: &Subject, frame: &Frame) -> Option<Compared> {
+    let (problem, view) = subject.in_frame(frame)?;
+    subject.given_with(problem, &view)
+}
+
+/// In one of the frames, by the seed of the scene; the first is a mirror image.
+fn turned(subject: &Subject) -> Option<Compared> {
+    let which = 1 + subject.scene.seed as usize;
+    in_frame(subject, &Frame::turned(&subject.scene, which))
+}
+
+/// Largest distance between nodes of the same number over the size of the cloud \[–\].
+fn nodes_moved(nodes: &[Vector3], others: &[Vector3]) -> Compared {
+    if nodes.len() != others.len() {
+        return Compared::Difference(f64::INFINITY);
+    }
+    Compared::Difference(relative(nodes, others, 0.0))
+}
+
+/// With lengths, stresses and densities times a factor each.
+fn in_units(subject: &Subject, [length, stress, density]: [f64; 3]) -> Option<Compared> {
+    let scene = &subject.scene;
+    let other = Scene {
+        size: length * scene.size,
+        young_modulus: stress * scene.young_modulus,
+        density: density * scene.density,
+        ..scene.clone()
+    };
+    let about = [scene, &other].map(|scene| scene.size * Frame::home(scene).middle());
+    let view = View { length, force: stress * length * length, about, ..View::default() };
+    let nodes = subject.given()?.positions().iter().map(|X| length * X).collect();
+    subject.given_with(with_nodes(build::problem(&other).ok()?, nodes), &view)
+}

@@ -1,0 +1,68 @@
+//! Smaller scenes: with one thing less, or one thing plainer.
+
+use super::{Basis, Cloud, Form, Gradients, Hold, Law, Part, Place, Scene, Way};
+
+impl Scene {
+    /// Scenes that are a little plainer than this one, the largest cuts first.
+    pub fn smaller(&self) -> Vec<Scene> {
+        let mut all = Vec::new();
+        let mut add = |change: &dyn Fn(&mut Scene)| {
+            let mut scene = self.clone();
+            change(&mut scene);
+            if scene != *self {
+                all.push(scene);
+            }
+        };
+        for n in 0..self.pushes.len() {
+            add(&|scene| {
+                scene.pushes.remove(n);
+            });
+        }
+        for n in 0..self.holds.len() {
+            add(&|scene| {
+                scene.holds.remove(n);
+            });
+        }
+        add(&|scene| scene.obstacle = None);
+        add(&|scene| scene.inclusion = None);
+        add(&|scene| scene.form = Form::Box);
+        add(&|scene| scene.way = Way::Newton);
+        add(&|scene| scene.law = Law::LogJ);
+        add(&|scene| scene.cloud = Cloud::Lattice);
+        add(&|scene| scene.basis = Basis::Linear);
+        add(&|scene| scene.gradients = Gradients::Plain);
+        if self.gradients == Gradients::SecondOrder {
+            add(&|scene| scene.gradients = Gradients::Consistent);
+        }
+        add(&|scene| scene.direct = false);
+        add(&|scene| scene.even_mass = scene.basis == Basis::Quadratic);
+        add(&|scene| scene.projected = false);
+        add(&|scene| scene.poisson_ratio = 0.25);
+        add(&|scene| (scene.size, scene.young_modulus, scene.density) = (1.0, 1.0, 1.0));
+        add(&|scene| scene.size = 1.0);
+        add(&|scene| scene.edges = [1.0; 3]);
+        add(&|scene| scene.spacings = (scene.spacings / 2).max(2));
+        add(&|scene| scene.spacings = (scene.spacings - 1).max(2));
+        add(&|scene| scene.thickness = scene.thickness.map(|_| 1.0));
+        add(&|scene| scene.seed = 1);
+        for n in 0..self.holds.len() {
+            for hold in plainer(&self.holds[n]) {
+                add(&|scene| scene.holds[n] = hold);
+            }
+        }
+        all
+    }
+}
+
+/// Plainer conditions.
+fn plainer(hold: &Hold) -> Vec<Hold> {
+    let mut all = vec![
+        Hold { release: None, ..*hold },
+        Hold { inner: false, ..*hold },
+        Hold { to: Place::Still, ..*hold },
+    ];
+    if let Part::End { axis, upper, .. } | Part::Spot { axis, upper, .. } = hold.part {
+        all.push(Hold { part: Part::End { axis, upper, depth: 1e-4 }, ..*hold });
+    }
+    all
+}
