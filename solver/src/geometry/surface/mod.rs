@@ -94,6 +94,27 @@ impl Surface {
         normals.keys().filter(|(a, b)| a < b).filter(|edge| sharp(edge)).copied().collect()
     }
 
+    /// Whether it is one shell that bends outwards at no edge.
+    pub(crate) fn is_convex(&self) -> bool {
+        let mut across = BTreeMap::new();
+        let mut shells = Sets::new(self.vertices.len());
+        for t in &self.triangles {
+            for k in 0..3 {
+                across.insert((t[k], t[(k + 1) % 3]), t[(k + 2) % 3]);
+                shells.join(t[k], t[(k + 1) % 3]);
+            }
+        }
+        let first = shells.first(self.triangles[0][0]);
+        let flat = WELD * (self.bounds.1 - self.bounds.0).norm();
+        let behind = |(t, corners): (&[u32; 3], Triangle)| {
+            let Some(normal) = area_vector(&corners).try_normalize(0.0) else { return true };
+            let others = (0..3).filter_map(|k| across.get(&(t[(k + 1) % 3], t[k])));
+            others.into_iter().all(|&v| (self.vertex(v) - corners[0]).dot(&normal) <= flat)
+        };
+        self.triangles.iter().zip(self.corners()).all(behind)
+            && self.triangles.iter().all(|t| shells.first(t[0]) == first)
+    }
+
     pub(super) fn vertex(&self, index: u32) -> Vector3 {
         self.vertices[index as usize]
     }
