@@ -22,7 +22,15 @@ pub struct BridgedGap {
     pub spacing: f64,
 }
 
+/// Slivers of less than this fraction of the body change no answer \[–\].
+const SLIVERS: f64 = 1e-3;
+
 impl BridgedGap {
+    /// Whether so much material moves with that across a gap that answers may be wrong.
+    pub fn matters(&self) -> bool {
+        self.fraction > SLIVERS
+    }
+
     /// Of the points `bridging`; `None` without any.
     pub(super) fn widest(
         approximation: &Approximation,

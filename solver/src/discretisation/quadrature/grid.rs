@@ -202,7 +202,7 @@ impl PointCollector<'_> {
             if (self.subdivision.spacing.beside_gap)(&part.centre) {
                 let mut leaves = Vec::new();
                 self.measure(&part, depth, &mut |leaf| leaves.push(leaf))?;
-                let piece = pieces(self.body, &leaves, part.edge);
+                let piece = pieces(self.body, &part, &leaves, 1 << depth, self.components);
                 let count = piece.iter().max().map_or(1, |&last| last + 1);
                 moments.resize(count * self.regions.len(), Moments::default());
                 for (leaf, piece) in leaves.iter().zip(piece) {
@@ -252,7 +252,8 @@ impl PointCollector<'_> {
         if fraction > 0.0 {
             let centroid = cell.centre + shift;
             let region = self.region_at(&centroid)? as usize;
-            keep(Leaf { region, centroid, volume: fraction * self.volume(cell), spread });
+            let volume = fraction * self.volume(cell);
+            keep(Leaf { cell: *cell, region, centroid, volume, spread });
         }
         Ok(())
     }

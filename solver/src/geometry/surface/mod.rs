@@ -1,16 +1,15 @@
 //! Solids enclosed by triangles.
 #![allow(non_snake_case)]
 
-mod sets;
 mod shells;
 
 use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::{closed_chains, polygon_area};
+use crate::geometry::sets::Sets;
 use crate::geometry::triangles::{Triangle, area_vector, enclosed_volume, merged, parry};
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
-use sets::Sets;
 use shells::check_shells;
 use std::collections::BTreeMap;
 
