@@ -52,7 +52,7 @@ pub(super) fn pieces(
 ) -> Vec<usize> {
     let places: Vec<Place> = leaves.iter().map(|leaf| body.place(&leaf.centroid)).collect();
     let mut sets = Sets::new(leaves.len());
-    let mut join = |sets: &mut Sets, a: u32, b: u32| {
+    let join = |sets: &mut Sets, a: u32, b: u32| {
         let (one, other) = (&places[a as usize], &places[b as usize]);
         if sets.first(a) != sets.first(b) && !body.parts(one, other, cell.edge) {
             sets.join(a, b);
