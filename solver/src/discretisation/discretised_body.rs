@@ -2,12 +2,14 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::{Matrix3, Vector3};
+use crate::discretisation::bridged_gap::BridgedGap;
 use crate::discretisation::consistency::{
     Correction, Layout, Targets, connected_bodies, make_consistent,
 };
 use crate::discretisation::mls::{Approximation, PoorSupport, Stiffness};
 use crate::discretisation::neighbours::Neighbours;
 use crate::discretisation::nodes::{HeldParts, NodeCloud, node_cloud, place_nodes_on_borders};
+use crate::discretisation::patch_pieces::part_at_gaps;
 use crate::discretisation::patches::sort_into_patches;
 use crate::discretisation::quadrature::{Moves, NodalSpacing, Quadrature, quadrature_following};
 use crate::discretisation::rows::{Evaluated, Requested, Rows};
@@ -43,6 +45,8 @@ pub struct Discretisation {
     pub enlarged: usize,
     /// Largest condition number of a moment matrix (local scaled basis).
     pub worst_condition: f64,
+    /// Where nodes on both sides of a gap act as one; `None` where none do.
+    pub bridged: Option<BridgedGap>,
 }
 
 /// Edge of the boundary panels over the smallest nodal spacing \[–\].
@@ -66,7 +70,8 @@ impl Discretisation {
             place_nodes_on_borders(&mut cloud, &body, stiffness);
         }
         let prescribed = prescribed_nodes(problem, &cloud);
-        let approximation = approximation_of(&cloud, recipe, stiffness, &dimension);
+        let approximation =
+            approximation_of(&cloud, recipe, stiffness, &dimension).within(&body, recipe.dilation);
         let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
         let mut quadrature = if recipe.gradients.is_second_order() {
             let held = held_nodes(&prescribed, &cloud);
@@ -79,8 +84,11 @@ impl Discretisation {
         let spacing: Vec<f64> = quadrature.positions.par_iter().map(spacing_at).collect();
         let (thickness, components) = (dimension.thickness(), dimension.components());
         let patches = sort_into_patches(&mut quadrature, &spacing, thickness, components);
-        let Evaluated { rows: supports, enlarged, worst_condition } =
+        let beside_gap = |X: &Vector3| approximation.is_beside_gap(X);
+        let patches = part_at_gaps(&mut quadrature, &patches, &body, &spacing_at, &beside_gap);
+        let Evaluated { rows: supports, enlarged, worst_condition, bridging } =
             evaluate_all(&approximation, &quadrature.positions)?;
+        let bridged = BridgedGap::widest(&approximation, &quadrature, &supports, &bridging);
         check_coverage(&cloud, &supports)?;
         let surface = surface_of(problem, panels, &cloud, &approximation, &prescribed)?;
         let mut discretisation = Discretisation {
@@ -94,6 +102,7 @@ impl Discretisation {
             correction: None,
             enlarged,
             worst_condition,
+            bridged,
         };
         if let Some(tolerance) = recipe.gradients.tolerance() {
             discretisation.make_consistent(tolerance, recipe.gradients.is_second_order())?;
@@ -234,8 +243,9 @@ pub(crate) fn quadrature_of(
     let dilation = problem.recipe.dilation;
     let within =
         |X: &Vector3, reach: f64| approximation.smallest_radius_within(X, reach) / dilation;
-    let spacing =
-        NodalSpacing { within: &within, largest: approximation.largest_radius() / dilation };
+    let largest = approximation.largest_radius() / dilation;
+    let beside_gap = |X: &Vector3| approximation.is_beside_gap(X);
+    let spacing = NodalSpacing { within: &within, largest, beside_gap: &beside_gap };
     quadrature_following(body, &problem.regions, grid, &spacing, &problem.dimension, moves)
 }
 

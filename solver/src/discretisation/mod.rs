@@ -1,6 +1,7 @@
 //! Nodes, quadrature points, supports, φ and Grad φ: all that does not depend
 //! on materials or conditions.
 
+mod bridged_gap;
 pub mod consistency;
 mod discretised_body;
 mod footprint;
@@ -8,6 +9,7 @@ pub mod mls;
 pub mod moments;
 pub mod neighbours;
 pub mod nodes;
+mod patch_pieces;
 pub mod patches;
 pub mod quadrature;
 pub mod rows;
@@ -16,6 +18,7 @@ pub mod surface_rule;
 mod warning;
 mod weight_function;
 
+pub use bridged_gap::BridgedGap;
 pub(crate) use discretised_body::quadrature_of;
 pub use discretised_body::{Discretisation, selects};
 pub use footprint::Footprint;

@@ -39,6 +39,8 @@ pub(crate) struct Evaluated {
     pub enlarged: usize,
     /// Largest condition number of a moment matrix.
     pub worst_condition: f64,
+    /// Points that have nodes from behind a gap of the body, for want of others.
+    pub bridging: Vec<usize>,
 }
 
 /// Points that are evaluated one after the other.
@@ -62,18 +64,22 @@ impl Evaluated {
             all.rows.push(&support, requested);
             all.enlarged += (support.enlargement > 1.0) as usize;
             all.worst_condition = all.worst_condition.max(support.condition);
+            if support.across_gap {
+                all.bridging.push(point);
+            }
         }
         Ok(all)
     }
 
     fn append(&mut self, other: Evaluated) {
         let rows = &mut self.rows;
-        let offset = rows.nodes.len();
+        let (offset, before) = (rows.nodes.len(), rows.len());
         rows.starts.extend(other.rows.starts[1..].iter().map(|start| start + offset));
         rows.nodes.extend(other.rows.nodes);
         rows.phi.extend(other.rows.phi);
         rows.grad_phi.extend(other.rows.grad_phi);
         self.enlarged += other.enlarged;
+        self.bridging.extend(other.bridging.iter().map(|point| before + point));
         self.worst_condition = self.worst_condition.max(other.worst_condition);
     }
 }

@@ -1,6 +1,7 @@
 //! Doubts about a discretisation, and about the problem that is put to it.
 
 use crate::algebra::tensor::Vector3;
+use crate::discretisation::bridged_gap::BridgedGap;
 use crate::discretisation::consistency::Correction;
 use crate::discretisation::discretised_body::Discretisation;
 use crate::error::show;
@@ -14,6 +15,19 @@ pub enum Warning {
         points: usize,
         /// Number of nodes.
         nodes: usize,
+    },
+    /// Points on one side of a gap have too few nodes there and share those of the other.
+    BridgedGap {
+        /// Number of quadrature points.
+        points: usize,
+        /// Number of all quadrature points.
+        of: usize,
+        /// Where the gap is widest.
+        position: Vector3,
+        /// Its width there \[m\].
+        width: f64,
+        /// Nodal spacing there \[m\].
+        spacing: f64,
     },
     /// Some supports were poor with the influence radii of the recipe.
     EnlargedSupports {
@@ -101,6 +115,13 @@ impl std::fmt::Display for Warning {
                  or fewer had motions of which less than 5 % of the strain energy is seen (hourglassing); \
                  use smaller cells: 1.26 per nodal spacing give two points per node"
             ),
+            Warning::BridgedGap { points, of, position, width, spacing } => write!(
+                f,
+                "{points} of {of} quadrature points beside gaps of the body have too few nodes on their own side, so that both \
+                 sides move as one there: at ({}) the gap is {width:.3e} m wide and the nodal spacing is {spacing:.3e} m; use a \
+                 spacing of at most half the thickness of the material beside the gap, or fill the gap",
+                show(position)
+            ),
             Warning::EnlargedSupports { points, of } => write!(
                 f,
                 "the influence radii had to be enlarged at {points} of {of} quadrature points; \
@@ -156,6 +177,10 @@ impl Discretisation {
         if points < nodes {
             warnings.push(Warning::FewerPointsThanNodes { points, nodes });
         }
+        if let Some(BridgedGap { points: bridging, position, width, spacing, .. }) = self.bridged {
+            let (points, of) = (bridging, points);
+            warnings.push(Warning::BridgedGap { points, of, position, width, spacing });
+        }
         if self.enlarged > 0 {
             warnings.push(Warning::EnlargedSupports { points: self.enlarged, of: points });
         }
@@ -205,6 +230,7 @@ mod tests {
             }),
             enlarged: 0,
             worst_condition: 1.0,
+            bridged: None,
         };
         assert!(discretisation(9e-4).warnings().is_empty());
         let warnings = discretisation(2e-3).warnings();

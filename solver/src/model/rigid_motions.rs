@@ -14,6 +14,31 @@ pub fn free_rigid_motions(model: &Model, t: f64, u: &[f64]) -> usize {
     kernel(model, &rows)
 }
 
+/// A separate piece of the body, and how many of its rigid motions are free.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreePiece {
+    /// Its number in [`Model::bodies`].
+    pub body: u32,
+    /// Number of rigid motions that nothing prevents.
+    pub motions: usize,
+}
+
+/// The pieces of a body of several whose rigid motions the conditions at time `t` \[s\] do not
+/// all prevent, each for itself. Of a body in one piece see [`free_rigid_motions`].
+pub fn free_pieces(model: &Model, t: f64) -> Vec<FreePiece> {
+    let count = model.bodies.iter().max().map_or(0, |&last| last + 1);
+    let mut rows = vec![Vec::new(); count as usize];
+    for (node, along) in prescribed(model, t) {
+        let body = model.bodies[node as usize] as usize;
+        rows[body].push((model.positions[node as usize], along));
+    }
+    let piece = |(rows, body): (&Vec<(Vector3, Vector3)>, u32)| {
+        let motions = kernel(model, rows);
+        (motions > 0).then_some(FreePiece { body, motions })
+    };
+    rows.iter().zip(0..).filter_map(piece).collect()
+}
+
 /// Number of rigid motions that the conditions at time `t` \[s\] leave to contact.
 pub fn rigid_motions_left_to_contact(model: &Model, t: f64) -> usize {
     kernel(model, &prescribed_places(model, t))

@@ -1,10 +1,11 @@
 //! From a problem to its discretisation and model.
 
+use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::{Discretisation, Warning};
 use mtled::error::Error;
 use mtled::model::Model;
 use mtled::model::contact::ContactSurface;
-use mtled::model::rigid_motions::free_rigid_motions;
+use mtled::model::rigid_motions::{free_pieces, free_rigid_motions};
 use mtled::model::zero_energy::refuse_zero_energy_modes;
 use mtled::motion::mass_scaling::raise_masses;
 use mtled::problem::{Motion, Problem};
@@ -46,8 +47,46 @@ impl Prepared {
         let mut doubts: Vec<String> =
             self.discretisation.warnings().iter().map(Warning::to_string).collect();
         doubts.extend(self.model.warnings.iter().map(Warning::to_string));
-        doubts.extend(self.not_held(problem));
+        doubts.extend(self.not_held(problem).or_else(|| self.free_pieces(problem)));
         doubts
+    }
+
+    /// Separate pieces that nothing holds in a static problem without obstacles.
+    fn free_pieces(&self, problem: &Problem) -> Option<String> {
+        let model = &self.model;
+        let is_dynamic = matches!(problem.motion, Motion::Dynamic { .. });
+        if is_dynamic || !model.contact.obstacles.is_empty() {
+            return None;
+        }
+        let free = free_pieces(model, problem.motion.end());
+        let pieces: Vec<(Vector3, f64)> = free.iter().map(|piece| self.piece(piece.body)).collect();
+        let largest = pieces.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (at, volume) = largest;
+        let which = match pieces.len() {
+            1 => "a separate piece of the body".to_string(),
+            several => format!("{several} separate pieces of the body, the largest"),
+        };
+        Some(format!(
+            "{which} of {volume:.3e} m³ around ({:.4}, {:.4}, {:.4}) can move without resistance, since no condition holds \
+             it enough: under loads on it a static problem has no solution; hold it, leave it out of \
+             the body, or close the gap around it",
+            at.x, at.y, at.z
+        ))
+    }
+
+    /// Centre \[m\] and volume \[m³\] of a separate piece.
+    fn piece(&self, body: u32) -> (Vector3, f64) {
+        let Discretisation { quadrature, supports, .. } = &self.discretisation;
+        let own = |q: &usize| {
+            let first = supports.nodes[supports.starts[*q]];
+            self.model.bodies[first as usize] == body
+        };
+        let (mut moment, mut volume) = (Vector3::zeros(), 0.0);
+        for q in (0..supports.len()).filter(own) {
+            moment += quadrature.weights[q] * quadrature.positions[q];
+            volume += quadrature.weights[q];
+        }
+        (moment / volume.max(f64::MIN_POSITIVE), volume)
     }
 
     /// What leaves a static problem without a single solution.

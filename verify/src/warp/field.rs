@@ -55,6 +55,7 @@ impl DisplacementField {
             approximation = approximation.with_sides(stiffness, recipe.dilation);
         }
         let body = problem.body.section(dimension)?;
+        approximation = approximation.within(&body, recipe.dilation);
         let plane = match dimension {
             Dimension::Three => None,
             Dimension::PlaneStrain { z, .. } => Some(*z),

@@ -8,7 +8,9 @@ use crate::discretisation::mls::regularised::{linear_part, regularise, restore_l
 use crate::discretisation::mls::sides::{Sides, Stiffness};
 use crate::discretisation::mls::sums::{fill, moment_matrix, slope_moments, weigh};
 use crate::discretisation::mls::support::{Near, PoorSupport, Scratch, Support, dimension};
+use crate::discretisation::mls::visibility::Visibility;
 use crate::discretisation::neighbours::Neighbours;
+use crate::geometry::Shape;
 use crate::problem::{Basis, Dimension, WeightFunction};
 use fearless_simd::{Level, Simd, f64x4, prelude::*};
 use nalgebra::SVector;
@@ -27,6 +29,8 @@ pub struct Approximation {
     components: usize,
     /// Where points do not see all nodes around them.
     sides: Option<Sides>,
+    /// Where gaps of the body bar the way to some of them.
+    visibility: Option<Visibility>,
     smallest_radius: f64,
     largest_radius: f64,
     neighbours: Neighbours,
@@ -63,6 +67,7 @@ impl Approximation {
             weight_function,
             components,
             sides: None,
+            visibility: None,
             smallest_radius,
             largest_radius,
             neighbours,
@@ -84,6 +89,41 @@ impl Approximation {
         let spacing: Vec<f64> = self.influence_radius.iter().map(|r| r / dilation).collect();
         let sides = Some(Sides::new(stiffness, &self.nodes, &spacing));
         Approximation { sides, ..self }
+    }
+
+    /// The same where points see nodes through the body only. Radii are `dilation` spacings.
+    pub fn within(self, body: &Shape, dilation: f64) -> Approximation {
+        let Approximation { nodes, influence_radius, neighbours, .. } = &self;
+        let visibility = Visibility::new(body, nodes, influence_radius, neighbours, dilation);
+        Approximation { visibility, ..self }
+    }
+
+    /// Whether a gap of the body bars the way from some node around X \[m\] to another.
+    pub fn is_beside_gap(&self, X: &Vector3) -> bool {
+        let Some(visibility) = &self.visibility else { return false };
+        let mut beside = false;
+        self.neighbours.for_each_within(X, self.reach(X, 1.0), |node, _| {
+            beside |= visibility.is_beside_gap(node);
+        });
+        beside
+    }
+
+    /// Middle \[m\] and width \[m\] of the widest gap between X \[m\] and one of some nodes.
+    pub(crate) fn widest_gap(&self, X: &Vector3, nodes: &[u32]) -> Option<(Vector3, f64)> {
+        self.visibility.as_ref()?.widest_gap(X, nodes)
+    }
+
+    /// Mean nodal spacing around X where gaps were looked for \[m\].
+    pub(crate) fn mean_spacing(&self, X: &Vector3) -> f64 {
+        let dilation = self.visibility.as_ref().map_or(1.0, Visibility::dilation);
+        self.mean_radius(X) / dilation
+    }
+
+    /// Drops the nodes of an ascending list that X \[m\] does not see through the body.
+    pub(crate) fn keep_seen(&self, X: &Vector3, nodes: &mut Vec<u32>) {
+        if let Some(visibility) = &self.visibility {
+            visibility.keep_seen(X, nodes);
+        }
     }
 
     /// Number of monomials in the basis.
@@ -167,8 +207,8 @@ impl Approximation {
     /// φ_a(X) = w_a pᵀ(X_a) A⁻¹(X) p(X) and its full derivatives (Lancaster,
     /// Salkauskas 1981; Belytschko, Lu, Gu 1994, eqs. 9–18; method book,
     /// eqs. 6.2 and 6.3). Where the support is poor the radii are enlarged in
-    /// steps of 10 %; where it stays poor with the nodes of one side of a border, all are
-    /// seen.
+    /// steps of 10 %; where it stays poor with the nodes of one side of a border, those of
+    /// both are seen, and where it does with those on one side of a gap, all are.
     pub fn evaluate(&self, X: &Vector3) -> Result<Support, PoorSupport> {
         let mut support = Support::default();
         self.evaluate_into(X, &mut Scratch::default(), &mut support)?;
@@ -186,18 +226,25 @@ impl Approximation {
         if let Some(sides) = &self.sides {
             let softest = sides.softest_seen(X);
             let seen = |node: u32| sides.is_seen(node, softest);
-            if self.evaluate_seeing(X, seen, scratch, support).is_ok() {
+            if self.evaluate_seeing(X, seen, true, scratch, support).is_ok() {
                 return Ok(());
             }
         }
-        self.evaluate_seeing(X, |_| true, scratch, support)
+        let result = self.evaluate_seeing(X, |_| true, true, scratch, support);
+        if result.is_ok() || self.visibility.is_none() {
+            return result;
+        }
+        let result = self.evaluate_seeing(X, |_| true, false, scratch, support);
+        support.across_gap = result.is_ok();
+        result
     }
 
-    /// From the nodes around X that are `seen` only.
+    /// From the nodes around X that are `seen` only, those behind gaps left out or not.
     fn evaluate_seeing(
         &self,
         X: &Vector3,
         seen: impl Fn(u32) -> bool,
+        by_sight: bool,
         scratch: &mut Scratch,
         support: &mut Support,
     ) -> Result<(), PoorSupport> {
@@ -206,6 +253,9 @@ impl Approximation {
         loop {
             support.clear(enlargement);
             self.find(X, enlargement, &seen, &mut scratch.near);
+            if let (true, Some(visibility)) = (by_sight, &self.visibility) {
+                visibility.keep_seen(X, &mut scratch.near.nodes);
+            }
             let result = with_vectors!(level, (simd, _numbers) => {
                 self.evaluate_near(simd, X, enlargement, &mut scratch.near, support)
             });

@@ -6,6 +6,7 @@ mod regularised;
 mod sides;
 mod sums;
 mod support;
+mod visibility;
 
 pub use approximation::{Approximation, LARGEST_ENLARGEMENT};
 pub(crate) use inverse::inverse;

@@ -19,6 +19,8 @@ pub struct Support {
     pub condition: f64,
     /// Factor by which influence radii were enlarged here; 1 for none.
     pub enlargement: f64,
+    /// Whether nodes behind a gap of the body are among them, for want of others.
+    pub across_gap: bool,
 }
 
 /// Why no sound approximation exists at a point, even with radii enlarged.
@@ -35,7 +37,7 @@ impl Support {
         self.nodes.clear();
         self.phi.clear();
         self.grad_phi.clear();
-        (self.condition, self.enlargement) = (0.0, enlargement);
+        (self.condition, self.enlargement, self.across_gap) = (0.0, enlargement, false);
     }
 }
 

@@ -5,6 +5,7 @@ use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::quadrature::cell::Cell;
 use crate::discretisation::quadrature::cut::{cut, spread};
 use crate::discretisation::quadrature::gauss::gauss_legendre;
+use crate::discretisation::quadrature::pieces::{Leaf, Moments, pieces};
 use crate::discretisation::quadrature::rule::Quadrature;
 use crate::discretisation::quadrature::second_order::{Moves, Piece};
 use crate::discretisation::quadrature::subdivision::{NodalSpacing, Subdivision};
@@ -40,17 +41,6 @@ struct PointCollector<'a> {
     pieces: Option<Vec<Piece>>,
 }
 
-/// Inside part of a cell.
-#[derive(Clone, Default)]
-struct Moments {
-    /// \[m³\]
-    volume: f64,
-    /// \[m⁴\]
-    first: Vector3,
-    /// About the centre of the cell, if points are moved afterwards \[m⁵\].
-    second: Matrix3,
-}
-
 /// As [`quadrature_following`] on a grid that does not follow the nodes.
 pub fn quadrature(
     body: &Shape,
@@ -58,7 +48,11 @@ pub fn quadrature(
     grid: &BackgroundGrid,
     dimension: &Dimension,
 ) -> Result<Quadrature, Error> {
-    let unknown = NodalSpacing { within: &|_, _| f64::INFINITY, largest: f64::INFINITY };
+    let unknown = NodalSpacing {
+        within: &|_, _| f64::INFINITY,
+        largest: f64::INFINITY,
+        beside_gap: &|_| false,
+    };
     quadrature_following(body, regions, grid, &unknown, dimension, None)
 }
 
@@ -201,16 +195,30 @@ impl PointCollector<'_> {
         Ok(())
     }
 
-    /// One point per sub-box and region at the centroid of what lies inside.
+    /// One point per sub-box, region and piece at the centroid of what lies inside.
     fn parts(&mut self, cell: &Cell) -> Result<(), Error> {
         let depth = if self.components == 2 { FRACTION_DEPTH_PLANE } else { FRACTION_DEPTH };
         for part in cell.divide(self.grid.gauss_points, self.components) {
+            let origin = self.pieces.is_some().then_some(part.centre);
             let mut moments = vec![Moments::default(); self.regions.len()];
-            self.measure(&part, depth, &part.centre, &mut moments)?;
-            for (region, Moments { volume, first, second }) in moments.into_iter().enumerate() {
+            if (self.subdivision.spacing.beside_gap)(&part.centre) {
+                let mut leaves = Vec::new();
+                self.measure(&part, depth, &mut |leaf| leaves.push(leaf))?;
+                let piece = pieces(self.body, &part, &leaves, 1 << depth, self.components);
+                let count = piece.iter().max().map_or(1, |&last| last + 1);
+                moments.resize(count * self.regions.len(), Moments::default());
+                for (leaf, piece) in leaves.iter().zip(piece) {
+                    let own = piece * self.regions.len() + leaf.region;
+                    moments[own].add(leaf, origin.as_ref());
+                }
+            } else {
+                let add = &mut |leaf: Leaf| moments[leaf.region].add(&leaf, origin.as_ref());
+                self.measure(&part, depth, add)?;
+            }
+            for (own, Moments { volume, first, second }) in moments.into_iter().enumerate() {
                 if volume > SMALLEST_FRACTION * self.volume(&part) {
                     let centroid = first / volume;
-                    self.push(centroid, volume, region as u16);
+                    self.push(centroid, volume, (own % self.regions.len()) as u16);
                     let offset = centroid - part.centre;
                     self.add_piece(part.edge, second / volume - offset * offset.transpose());
                 }
@@ -219,15 +227,9 @@ impl PointCollector<'_> {
         Ok(())
     }
 
-    /// Adds the inside volume of a cell and its moments, by region: halves it where the
-    /// boundary is not flat; the smallest cells are cut as if it were.
-    fn measure(
-        &self,
-        cell: &Cell,
-        depth: usize,
-        origin: &Vector3,
-        moments: &mut [Moments],
-    ) -> Result<(), Error> {
+    /// Visits the inside parts of a cell: halves it where the boundary is not flat; the
+    /// smallest cells are cut as if it were.
+    fn measure(&self, cell: &Cell, depth: usize, keep: &mut impl FnMut(Leaf)) -> Result<(), Error> {
         let distance = self.body.signed_distance(&cell.centre);
         let reach = cell.half_diagonal(self.components);
         if distance > reach {
@@ -245,21 +247,15 @@ impl PointCollector<'_> {
             None if depth > 0 => {
                 return cell
                     .children(self.components)
-                    .try_for_each(|child| self.measure(&child, depth - 1, origin, moments));
+                    .try_for_each(|child| self.measure(&child, depth - 1, keep));
             }
             None => self.axis_cut(cell, distance),
         };
         if fraction > 0.0 {
-            let volume = fraction * self.volume(cell);
             let centroid = cell.centre + shift;
             let region = self.region_at(&centroid)? as usize;
-            let own = &mut moments[region];
-            own.volume += volume;
-            own.first += centroid * volume;
-            if self.pieces.is_some() {
-                let offset = centroid - origin;
-                own.second += (spread + offset * offset.transpose()) * volume;
-            }
+            let volume = fraction * self.volume(cell);
+            keep(Leaf { cell: *cell, region, centroid, volume, spread });
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ mod cell;
 mod cut;
 mod gauss;
 mod grid;
+mod pieces;
 mod rule;
 mod second_order;
 mod subdivision;

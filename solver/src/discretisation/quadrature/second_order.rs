@@ -57,6 +57,7 @@ impl Moves<'_> {
         quadrature: &mut Quadrature,
     ) {
         let moments = moments(pieces, quadrature);
+        let has_gaps = !body.is_convex();
         let inside = |X: &Vector3, region: u16| {
             body.signed_distance(X) <= 0.0
                 && (regions.len() == 1 || regions[region as usize].part.contains(X))
@@ -69,7 +70,11 @@ impl Moves<'_> {
                 return X;
             }
             shift *= (LARGEST_MOVE * edge / length).min(1.0);
-            let allowed = |part: &f64| inside(&(X + *part * shift), region);
+            let allowed = |part: &f64| {
+                let to = X + *part * shift;
+                let across = || has_gaps && body.parts(&body.place(&X), &body.place(&to), edge);
+                inside(&to, region) && !across()
+            };
             PARTS.into_iter().find(allowed).map_or(X, |part| X + part * shift)
         };
         let positions = (0..pieces.len()).into_par_iter().map(moved).collect();

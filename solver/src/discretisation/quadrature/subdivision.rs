@@ -14,6 +14,8 @@ pub struct NodalSpacing<'a> {
     pub within: &'a (dyn Fn(&Vector3, f64) -> f64 + Sync),
     /// \[m\]
     pub largest: f64,
+    /// Whether a gap of the body is so near a place that nodes on its two sides are.
+    pub beside_gap: &'a (dyn Fn(&Vector3) -> bool + Sync),
 }
 
 /// Edge of a cell that is not divided to follow the spacing, over the one wanted \[–\].

@@ -210,7 +210,11 @@ fn moved_points_integrate_functions_of_second_order() {
         (ball(), &grid, Vector3::new(0.3, 0.1, -0.2), sphere, 0.25),
     ] {
         let regions = [region("all", Selector::All)];
-        let unknown = NodalSpacing { within: &|_, _| f64::INFINITY, largest: f64::INFINITY };
+        let unknown = NodalSpacing {
+            within: &|_, _| f64::INFINITY,
+            largest: f64::INFINITY,
+            beside_gap: &|_| false,
+        };
         let error = |moves: Option<&Moves>| {
             let q = quadrature_following(&body, &regions, grid, &unknown, &Dimension::Three, moves);
             second_moment(&q.unwrap(), &middle) / exact - 1.0
@@ -234,7 +238,11 @@ fn moved_points_stay_in_the_plane_and_in_their_regions() {
         radii: Vector3::new(0.05, 0.03, f64::INFINITY),
     };
     let grid = BackgroundGrid::with_cell(0.007);
-    let unknown = NodalSpacing { within: &|_, _| f64::INFINITY, largest: f64::INFINITY };
+    let unknown = NodalSpacing {
+        within: &|_, _| f64::INFINITY,
+        largest: f64::INFINITY,
+        beside_gap: &|_| false,
+    };
     let rule = |moves: Option<&Moves>| {
         quadrature_following(&body, &regions, &grid, &unknown, &dimension, moves).unwrap()
     };

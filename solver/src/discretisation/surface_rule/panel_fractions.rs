@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::{Matrix3, Vector3};
+use crate::discretisation::mls::Approximation;
 use crate::discretisation::neighbours::Neighbours;
 use crate::discretisation::nodes::NodeCloud;
 use crate::geometry::Panel;
@@ -18,18 +19,24 @@ const FLATTEST: f64 = 1e-3;
 /// The boundary nodes, sorted for a search by position.
 pub(super) struct BoundaryNodes<'a> {
     pub cloud: &'a NodeCloud,
+    approximation: &'a Approximation,
     boundary: &'a [u32],
     cells: Neighbours,
     largest: f64,
 }
 
 impl BoundaryNodes<'_> {
-    pub fn new<'a>(cloud: &'a NodeCloud, boundary: &'a [u32]) -> BoundaryNodes<'a> {
+    pub fn new<'a>(
+        cloud: &'a NodeCloud,
+        boundary: &'a [u32],
+        approximation: &'a Approximation,
+    ) -> BoundaryNodes<'a> {
         let positions: Vec<Vector3> =
             boundary.iter().map(|&node| cloud.positions[node as usize]).collect();
         let spacings = boundary.iter().map(|&node| cloud.spacing[node as usize]);
         let largest = spacings.fold(0.0f64, f64::max);
-        BoundaryNodes { cloud, boundary, cells: Neighbours::new(&positions, largest), largest }
+        let cells = Neighbours::new(&positions, largest);
+        BoundaryNodes { cloud, approximation, boundary, cells, largest }
     }
 
     /// Nodes and fractions of one panel; the fractions sum to 1.
@@ -62,6 +69,9 @@ impl BoundaryNodes<'_> {
             }
         });
         candidates.sort_unstable_by_key(|candidate| candidate.0);
+        let mut seen: Vec<u32> = candidates.iter().map(|candidate| candidate.0).collect();
+        self.approximation.keep_seen(&panel.centre, &mut seen);
+        candidates.retain(|candidate| seen.binary_search(&candidate.0).is_ok());
         candidates
     }
 

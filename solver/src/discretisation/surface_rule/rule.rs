@@ -61,7 +61,7 @@ impl SurfaceRule {
         let boundary: Vec<u32> = nodes().filter(on_boundary).collect();
         let prescribed: Vec<u32> =
             nodes().filter(|node| on_boundary(node) && prescribed[*node as usize]).collect();
-        let near = BoundaryNodes::new(cloud, &boundary);
+        let near = BoundaryNodes::new(cloud, &boundary, approximation);
         let (centres, panel_rows) = panel_rows(&panels, approximation, &near)?;
         let positions: Vec<Vector3> =
             prescribed.iter().map(|&node| cloud.positions[node as usize]).collect();

@@ -56,6 +56,7 @@ pub(crate) fn boundary_points(
         target,
         hash: PointHash::new(FILL * target.smallest, FILL * target.largest),
         points: Vec::new(),
+        has_gaps: !section.is_convex(),
     };
     let panels = section.boundary_panels(0.3 * target.smallest, dimension)?;
     let centres: Vec<Vector3> = panels.iter().map(|panel| panel.centre).collect();
@@ -86,6 +87,7 @@ struct Chosen<'a> {
     target: &'a TargetSpacing<'a>,
     hash: PointHash,
     points: Vec<Vector3>,
+    has_gaps: bool,
 }
 
 impl Chosen<'_> {
@@ -119,12 +121,22 @@ impl Chosen<'_> {
     /// Whether a point is so near that none is possible about here.
     fn is_crowded(&self, candidate: &Vector3, apart: f64) -> bool {
         // First without the local spacing, which costs more.
-        let near = |size: f64| self.hash.any_within(candidate, 0.7 * apart * size);
+        let near = |size: f64| self.has_within(candidate, 0.7 * apart * size);
         near(self.target.smallest) || near((self.target.at)(candidate))
     }
 
     fn has_near(&self, X: &Vector3, apart: f64) -> bool {
-        self.hash.any_within(X, apart * (self.target.at)(X))
+        self.has_within(X, apart * (self.target.at)(X))
+    }
+
+    /// Whether a point on this side of a gap is closer than `radius` \[m\].
+    fn has_within(&self, X: &Vector3, radius: f64) -> bool {
+        let mut found = false;
+        self.hash.visit(X, radius, |index, _| {
+            found = !self.has_gaps || !self.shape.has_gap_between(X, &self.points[index]);
+            !found
+        });
+        found
     }
 }
 

@@ -63,6 +63,16 @@ impl Outline {
         self.bounds
     }
 
+    /// Whether it turns the same way at every corner, once around.
+    pub(crate) fn is_convex(&self) -> bool {
+        let turn = |n: usize| {
+            let ((a, b), (_, c)) = (self.edge(n), self.edge((n + 1) % self.corners.len()));
+            (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+        };
+        let turns = || (0..self.corners.len()).map(turn);
+        turns().all(|turn| turn >= 0.0) || turns().all(|turn| turn <= 0.0)
+    }
+
     fn edge(&self, n: usize) -> ([f64; 2], [f64; 2]) {
         (self.corners[n], self.corners[(n + 1) % self.corners.len()])
     }

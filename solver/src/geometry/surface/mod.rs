@@ -1,7 +1,6 @@
 //! Solids enclosed by triangles.
 #![allow(non_snake_case)]
 
-mod sets;
 mod shells;
 #[cfg(test)]
 mod tests;
@@ -9,10 +8,10 @@ mod tests;
 use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::{closed_chains, polygon_area};
+use crate::geometry::sets::Sets;
 use crate::geometry::triangles::{Triangle, area_vector, enclosed_volume, merged, parry};
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
-use sets::Sets;
 use shells::check_shells;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -97,6 +96,27 @@ impl Surface {
             _ => false,
         };
         normals.keys().filter(|(a, b)| a < b).filter(|edge| sharp(edge)).copied().collect()
+    }
+
+    /// Whether it is one shell that bends outwards at no edge.
+    pub(crate) fn is_convex(&self) -> bool {
+        let mut across = BTreeMap::new();
+        let mut shells = Sets::new(self.vertices.len());
+        for t in &self.triangles {
+            for k in 0..3 {
+                across.insert((t[k], t[(k + 1) % 3]), t[(k + 2) % 3]);
+                shells.join(t[k], t[(k + 1) % 3]);
+            }
+        }
+        let first = shells.first(self.triangles[0][0]);
+        let flat = WELD * (self.bounds.1 - self.bounds.0).norm();
+        let behind = |(t, corners): (&[u32; 3], Triangle)| {
+            let Some(normal) = area_vector(&corners).try_normalize(0.0) else { return true };
+            let others = (0..3).filter_map(|k| across.get(&(t[(k + 1) % 3], t[k])));
+            others.into_iter().all(|&v| (self.vertex(v) - corners[0]).dot(&normal) <= flat)
+        };
+        self.triangles.iter().zip(self.corners()).all(behind)
+            && self.triangles.iter().all(|t| shells.first(t[0]) == first)
     }
 
     pub(super) fn vertex(&self, index: u32) -> Vector3 {

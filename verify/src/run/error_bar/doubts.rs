@@ -18,6 +18,9 @@ pub fn doubt_of_run(case: &Case, solved: &Solved) -> Option<NoErrorBar> {
     if matches!(case.problem.recipe.cloud, Cloud::Given { .. }) {
         return Some(NoErrorBar::GivenNodes);
     }
+    if solved.prepared.discretisation.bridged.is_some_and(|gap| gap.matters()) {
+        return Some(NoErrorBar::BridgedGap);
+    }
     let doubts = solved.summary.doubts(&solved.prepared.model);
     (!doubts.is_empty()).then_some(NoErrorBar::InDoubt)
 }

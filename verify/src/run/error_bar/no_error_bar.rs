@@ -15,6 +15,11 @@ pub enum NoErrorBar {
     /// Answers of a body that has lost its stability or its shape do not converge.
     #[error("the run itself is in doubt, and a coarser cloud cannot tell by how much")]
     InDoubt,
+    /// Coarser clouds join the sides of gaps even more.
+    #[error(
+        "both sides of a gap move as one where there are too few nodes, on coarser clouds even more so"
+    )]
+    BridgedGap,
     /// Too few coarser clouds could be solved; the last reason.
     #[error("coarser clouds cannot be solved: {0}")]
     Coarser(String),

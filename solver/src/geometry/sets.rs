@@ -1,7 +1,7 @@
 //! Things that belong together, found pair by pair.
 
 /// Sets of numbers from 0 on, each named after its smallest member.
-pub(super) struct Sets {
+pub(crate) struct Sets {
     /// A smaller member of the set of each number, or the number itself.
     parents: Vec<u32>,
 }

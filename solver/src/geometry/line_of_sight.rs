@@ -1,0 +1,284 @@
+//! Whether the straight way between two places of a body stays inside of it (method book,
+//! section 6).
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::geometry::shape::Shape;
+
+/// A way may leave the body by so much and come back through the same face \[length\].
+const GRAZING: f64 = 0.02;
+/// Outside by more than this is no round-off \[length\].
+const THIN: f64 = 1e-6;
+/// Shortest step along a way beside the boundary \[length\].
+const STEP: f64 = 0.1;
+/// Outward normals with a smaller product face each other across the outside.
+const FACING: f64 = -0.3;
+/// Steps along a way outside \[length\].
+const FINE: f64 = 0.01;
+/// Farther outside than this is straight between two faces \[half of the way across\].
+const STRAIGHT: f64 = 0.8;
+/// Looks for the outside between two places on its two sides.
+const LOOKS: usize = 2;
+/// Along the boundary, the sum of two depths is smaller than this part of the way between [–].
+const ALONG: f64 = 0.1;
+/// Looks are at least so far from the places between which they are [THIN].
+const MARGIN: f64 = 10.0;
+
+/// A place with its signed distance \[m\].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub X: Vector3,
+    /// Negative inside.
+    pub distance: f64,
+}
+
+impl Shape {
+    /// With its distance.
+    pub(crate) fn place(&self, X: &Vector3) -> Place {
+        Place { X: *X, distance: self.signed_distance(X) }
+    }
+
+    /// Whether every straight way between two points of the solid stays in it, as far as
+    /// its kind tells.
+    pub(crate) fn is_convex(&self) -> bool {
+        match self {
+            Shape::Box { .. }
+            | Shape::Cylinder { .. }
+            | Shape::Sphere { .. }
+            | Shape::Ellipsoid { .. }
+            | Shape::HalfSpace { .. } => true,
+            Shape::Polygon { points, .. } => points.is_convex(),
+            Shape::Union(members) => members.len() == 1 && members[0].is_convex(),
+            Shape::Intersection(members) => members.iter().all(Shape::is_convex),
+            Shape::Surface(surface) => surface.is_convex(),
+            Shape::Difference(..) | Shape::Labels(_) | Shape::Function(_) => false,
+        }
+    }
+
+    /// Whether a gap lies between two places of the body: the straight way leaves it by
+    /// more than 2 % of a `length` \[m\], the local nodal spacing, or through faces that face
+    /// each other, however narrow the gap. Steps are no longer than the distance to the
+    /// boundary, or a tenth of the length; across such a step the distance is looked at where
+    /// it would be 0 if it rose and fell evenly.
+    pub(crate) fn parts(&self, a: &Place, b: &Place, length: f64) -> bool {
+        let way = Way::new(self, a, b, length);
+        // Balls of material around both ends.
+        let depths = [a, b].map(|end| (-end.distance).max(0.0));
+        if depths[0] + depths[1] >= way.total {
+            return false;
+        }
+        way.is_parted()
+    }
+}
+
+impl Shape {
+    /// Middle \[m\] and length \[m\] of what lies outside on the straight way between two places, as
+    /// far as steps of a hundredth of a `length` \[m\] show it.
+    pub(crate) fn outside_between(&self, a: &Place, b: &Place, length: f64) -> (Vector3, f64) {
+        let way = b.X - a.X;
+        let count = (way.norm() / (FINE * length)).ceil().max(1.0);
+        let at = |step: f64| a.X + way * ((step + 0.5) / count);
+        let steps = (0..count as usize).map(|step| at(step as f64));
+        let outside: Vec<Vector3> = steps.filter(|X| self.signed_distance(X) > 0.0).collect();
+        let part = way.norm() / count;
+        match outside.len() {
+            0 => (0.5 * (a.X + b.X), 0.0),
+            found => (outside.iter().sum::<Vector3>() / found as f64, found as f64 * part),
+        }
+    }
+
+    /// Whether two places near the boundary lie on the two sides of a gap: their middle is
+    /// outside as far as they are from it, or outside and between faces that face each other.
+    pub(crate) fn has_gap_between(&self, X: &Vector3, Y: &Vector3) -> bool {
+        let (middle, half) = (0.5 * (X + Y), 0.5 * (Y - X).norm());
+        let distance = self.signed_distance(&middle);
+        let is_out = |X: &Vector3| self.signed_distance(X).max(0.0);
+        distance > THIN * half
+            && distance > 2.0 * is_out(X).max(is_out(Y))
+            && (distance > STRAIGHT * half || self.gradient(X).dot(&self.gradient(Y)) < FACING)
+    }
+}
+
+/// The straight way between two places.
+struct Way<'a> {
+    body: &'a Shape,
+    ends: [Place; 2],
+    along: Vector3,
+    /// \[m\]
+    total: f64,
+    /// Outside by more, a way has left the body \[m\].
+    allowed: f64,
+    /// How far outside the ends are \[m\].
+    outside: f64,
+    /// Outside by less is inside \[m\].
+    thin: f64,
+    /// \[m\]
+    step: f64,
+}
+
+impl<'a> Way<'a> {
+    fn new(body: &'a Shape, a: &Place, b: &Place, length: f64) -> Way<'a> {
+        let total = (b.X - a.X).norm();
+        let along = (b.X - a.X) / total.max(f64::MIN_POSITIVE);
+        // Centres of chords lie a little outside.
+        let outside = a.distance.max(b.distance).max(0.0);
+        let thin = outside + THIN * length;
+        let (allowed, step) = (outside + GRAZING * length, STEP * length);
+        Way { body, ends: [*a, *b], along, total, allowed, outside, thin, step }
+    }
+
+    fn at(&self, t: f64) -> Vector3 {
+        self.ends[0].X + t * self.along
+    }
+
+    fn distance(&self, t: f64) -> f64 {
+        self.body.signed_distance(&self.at(t))
+    }
+
+    fn is_parted(&self) -> bool {
+        let end = self.total + self.ends[1].distance.min(0.0);
+        // The last place inside, and whether the way is outside since.
+        let (mut inside, mut is_out) = (0.0, false);
+        let (mut t, mut distance) = (0.0, self.ends[0].distance);
+        while t < end {
+            let next = (t + distance.abs().max(self.step)).min(end);
+            let there = match next == self.total {
+                true => self.ends[1].distance,
+                false => self.distance(next),
+            };
+            if there > self.allowed {
+                return true;
+            }
+            let narrow = distance <= self.thin && there <= self.thin;
+            is_out |= narrow && self.leaves_between((t, distance), (next, there), LOOKS);
+            if is_out && there <= self.thin {
+                if self.are_facing(inside, next) {
+                    return true;
+                }
+                is_out = false;
+            }
+            match there > self.thin {
+                true => is_out = true,
+                false => inside = next,
+            }
+            (t, distance) = (next, there);
+        }
+        is_out && self.are_facing(inside, self.total)
+    }
+
+    /// Whether the way is outside somewhere between two places inside, (t, distance).
+    fn leaves_between(&self, from: (f64, f64), to: (f64, f64), looks: usize) -> bool {
+        let (before, after) = ((-from.1).max(0.0), (-to.1).max(0.0));
+        let span = to.0 - from.0;
+        let margin = MARGIN * (self.thin - self.outside);
+        // Balls of material that overlap, or a way along the boundary.
+        let is_plain = before + after >= span || before + after <= ALONG * span;
+        if looks == 0 || is_plain || span <= 2.0 * margin {
+            return false;
+        }
+        let even = from.0 + span * before / (before + after);
+        let t = even.clamp(from.0 + margin, to.0 - margin);
+        let distance = self.distance(t);
+        distance > self.thin
+            || self.leaves_between(from, (t, distance), looks - 1)
+            || self.leaves_between((t, distance), to, looks - 1)
+    }
+
+    /// Whether the faces through which the way leaves and comes back face each other.
+    fn are_facing(&self, leaves: f64, returns: f64) -> bool {
+        let normal = |t: f64| self.body.gradient(&self.at(t));
+        normal(leaves).dot(&normal(returns)) < FACING
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block(min: [f64; 3], max: [f64; 3]) -> Shape {
+        Shape::Box { min: Vector3::from(min), max: Vector3::from(max) }
+    }
+
+    /// Two blocks of 4 × 4 × 2 with a gap between z = 0 and a height.
+    fn two_blocks(gap: f64) -> Shape {
+        let lower = block([-2.0, -2.0, -2.0], [2.0, 2.0, 0.0]);
+        Shape::Union(vec![lower, block([-2.0, -2.0, gap], [2.0, 2.0, 2.0 + gap])])
+    }
+
+    fn is_parted(body: &Shape, a: [f64; 3], b: [f64; 3]) -> bool {
+        let (a, b) = (body.place(&Vector3::from(a)), body.place(&Vector3::from(b)));
+        let (there, back) = (body.parts(&a, &b, 1.0), body.parts(&b, &a, 1.0));
+        assert_eq!(there, back, "{a:?} {b:?}");
+        there
+    }
+
+    #[test]
+    fn a_gap_parts_what_is_above_from_what_is_below_however_narrow_it_is() {
+        for gap in [1e-3, 0.003, 0.01, 0.04, 0.3, 1.0] {
+            let body = two_blocks(gap);
+            for below in [-0.5, -0.21, -0.004, 0.0] {
+                for above in [0.0, 0.003, 0.17, 0.4] {
+                    for aside in [0.0, 0.05, 0.31, 0.9] {
+                        let (a, b) = ([0.1, 0.0, below], [0.1 + aside, 0.02, gap + above]);
+                        assert!(is_parted(&body, a, b), "gap {gap}: {a:?} to {b:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_that_touch_or_overlap_are_one() {
+        for gap in [0.0, -1e-3, -0.3] {
+            let body = two_blocks(gap);
+            for below in [-0.5, -0.21, -0.004, 0.0] {
+                for aside in [0.0, 0.3, 0.9] {
+                    let (a, b) = ([0.1, 0.0, below], [0.1 + aside, 0.02, 0.35]);
+                    assert!(!is_parted(&body, a, b), "gap {gap}: {a:?} to {b:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ways_along_faces_and_edges_of_a_body_with_a_notch_are_clear() {
+        let notch = block([0.0, -9.0, 0.0], [9.0, 9.0, 9.0]);
+        let body = Shape::Difference(Box::new(block([-2.0; 3], [2.0; 3])), Box::new(notch));
+        for (a, b) in [
+            ([-1.0, 0.0, 2.0], [0.0, 0.5, 2.0]),
+            ([0.0, -1.0, 0.0], [0.0, 0.8, 0.0]),
+            ([0.0, 0.0, 0.3], [0.0, 0.7, 1.2]),
+            ([2.0, 2.0, 0.0], [0.6, 2.0, 0.0]),
+        ] {
+            assert!(!is_parted(&body, a, b), "{a:?} to {b:?}");
+        }
+        assert!(is_parted(&body, [0.0, 0.0, 0.7], [0.7, 0.0, 0.0]), "across the notch");
+    }
+
+    #[test]
+    fn nodes_around_a_hole_as_wide_as_four_spacings_see_their_neighbours() {
+        let hole = Shape::Cylinder {
+            base: Vector3::new(0.0, 0.0, -9.0),
+            axis: Vector3::z(),
+            radius: 2.0,
+            height: 18.0,
+        };
+        let body = Shape::Difference(Box::new(block([-6.0; 3], [6.0; 3])), Box::new(hole));
+        let on_rim = |angle: f64| [2.0 * angle.cos(), 2.0 * angle.sin(), 0.0];
+        // A sag of 0.016 spacings.
+        assert!(!is_parted(&body, on_rim(0.2), on_rim(0.45)));
+        assert!(is_parted(&body, on_rim(0.2), on_rim(1.2)), "a sag of a quarter of a spacing");
+    }
+
+    #[test]
+    fn places_count_as_across_a_gap_where_faces_face_each_other() {
+        let body = two_blocks(0.1);
+        let across =
+            |a: [f64; 3], b: [f64; 3]| body.has_gap_between(&Vector3::from(a), &Vector3::from(b));
+        assert!(across([0.0, 0.0, 0.0], [0.0, 0.0, 0.1]));
+        assert!(across([0.0, 0.0, 0.0], [0.4, 0.0, 0.1]));
+        assert!(across([2.0, 2.0, 0.0], [2.0, 2.0, 0.1]), "corners");
+        assert!(!across([0.0, 0.0, 0.0], [0.4, 0.0, 0.0]));
+        assert!(!across([2.0, 0.0, -0.2], [1.8, 0.0, 0.0]));
+    }
+}
