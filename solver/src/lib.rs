@@ -60,6 +60,8 @@ pub mod discretisation;
 pub mod model;
 pub mod motion;
 
+pub mod audit;
+
 pub mod simulation;
 
 #[doc = include_str!("../docs/method.md")]

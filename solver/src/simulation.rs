@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
+use crate::audit::{Audit, audit};
 use crate::discretisation::{Discretisation, Warning};
 use crate::error::Error;
 use crate::model::Model;
@@ -13,7 +14,7 @@ use crate::motion::observe::Observer;
 use crate::motion::simulate::simulate;
 use crate::motion::state::State;
 use crate::motion::summary::Summary;
-use crate::problem::{Motion, Problem};
+use crate::problem::Problem;
 
 /// A problem that is set up, and the state that it has reached.
 ///
@@ -28,7 +29,7 @@ pub struct Simulation {
     pub model: Model,
     /// Displacements and velocities.
     pub state: State,
-    motion: Motion,
+    problem: Problem,
 }
 
 impl Simulation {
@@ -40,7 +41,7 @@ impl Simulation {
         let model = raise_masses(model, problem, &discretisation)?;
         refuse_zero_energy_modes(problem, &discretisation, &model)?;
         let state = State::new(&model);
-        Ok(Simulation { discretisation, model, state, motion: problem.motion.clone() })
+        Ok(Simulation { discretisation, model, state, problem: problem.clone() })
     }
 
     /// What to know before the result is trusted.
@@ -52,7 +53,12 @@ impl Simulation {
     /// Runs to the end of the motion, or to static equilibrium, and notifies `observer`
     /// after every step. After an error [`Simulation::state`] is the last one reached.
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<Summary, Error> {
-        simulate(&self.model, &self.motion, &mut self.state, observer)
+        simulate(&self.model, &self.problem.motion, &mut self.state, observer)
+    }
+
+    /// What the problem asked beside what the run has done, once it has come to its end.
+    pub fn audit(&self) -> Result<Audit, Error> {
+        audit(&self.problem, &self.discretisation, &self.model, &self.state)
     }
 
     /// The displacement field \[m\] at reference positions \[m\]. Shape functions do not

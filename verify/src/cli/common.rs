@@ -9,6 +9,8 @@ use std::sync::OnceLock;
 
 /// Exit code where something could not be run.
 pub const COULD_NOT_RUN: u8 = 2;
+/// Exit code where a question could not be decided, or a run is doubtful.
+pub const INCONCLUSIVE: u8 = 3;
 /// Exit code where the user stopped a run.
 pub const STOPPED: u8 = 130;
 

@@ -32,7 +32,7 @@ use streams::or_reader_has_ended;
 
 /// Meshless soft-tissue solver with its verification.
 ///
-/// Exit codes: 0 success, 1 a check failed, 2 could not run, 3 inconclusive, 130 stopped by Ctrl-C (files are
+/// Exit codes: 0 success, 1 a check failed, 2 could not run, 3 inconclusive or doubtful, 130 stopped by Ctrl-C (files are
 /// complete up to that moment). Data go to standard output, progress and messages to standard
 /// error; with --format json the first is one JSON document, the second one JSON object per line.
 #[derive(Debug, Parser)]

@@ -1,9 +1,9 @@
 //! `mtled solve`.
 
-use super::common::{Common, STOPPED};
+use super::common::{Common, INCONCLUSIVE, STOPPED};
 use super::load::{SetArgs, located};
 use super::progress::progress_bar;
-use crate::run::{Failed, Finished, PAGE_FILE, load, prepare_to_run, solve_recorded};
+use crate::run::{Failed, Finished, PAGE_FILE, audit_doubts, load, prepare_to_run, solve_recorded};
 use crate::scene::Case;
 use clap::Args;
 use mtled::error::Error;
@@ -87,6 +87,8 @@ fn write_partial(case: &Case, failed: &Failed, out: &Path, common: &Common) -> a
 
 fn finish(case: &Case, finished: &Finished, out: &Path, common: &Common) -> anyhow::Result<u8> {
     let result = finished.write(case, out)?;
+    let doubts = finished.audit.iter().flat_map(audit_doubts);
+    let doubts: Vec<String> = doubts.inspect(|doubt| common.complain(doubt)).collect();
     common.print_summary(&|| Ok(result.clone()), &|| {
         let summary = finished.text(case);
         format!("{summary}\n  results in {}, to be looked at in {PAGE_FILE} there\n", out.display())
@@ -102,5 +104,5 @@ fn finish(case: &Case, finished: &Finished, out: &Path, common: &Common) -> anyh
         ));
         return Ok(STOPPED);
     }
-    Ok(0)
+    Ok(if doubts.is_empty() { 0 } else { INCONCLUSIVE })
 }

@@ -1,5 +1,6 @@
 //! A run with all that its files are written from.
 
+use super::audit::{audit_json, audit_line};
 use super::contact::contact_results;
 use super::error_bar::{Estimated, error_bars};
 use super::output::{body_at_end, write_failed, write_outputs};
@@ -7,13 +8,16 @@ use super::prepare::Prepared;
 use super::record::{Recorder, Recording};
 use super::result::{outcome_of, result_json, summary_text};
 use super::solve::{Solved, integrate_prepared};
+use crate::machine::cpu_seconds;
 use crate::picture::Body;
 use crate::scene::Case;
 use anyhow::Result;
+use mtled::audit::{Audit, audit};
 use mtled::error::Error;
 use mtled::model::contact::ContactResult;
 use mtled::motion::observe::Continue;
-use serde_json::Value;
+use mtled::problem::Problem;
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// A run that came to its end, or that the user has stopped.
@@ -27,6 +31,10 @@ pub struct Finished {
     pub contacts: Vec<ContactResult>,
     /// Error bars, unless they were left out.
     pub bars: Option<Estimated>,
+    /// What was asked beside what was done; nothing of a run that the user has stopped.
+    pub audit: Option<Audit>,
+    /// Processor time of the audit \[s\].
+    pub audit_seconds: f64,
 }
 
 /// A run that ended with an error.
@@ -67,19 +75,45 @@ pub fn solve_recorded(
         Ok(contacts) => contacts,
         Err(error) => return Err(failed(error, solved.prepared, record)),
     };
+    let cpu = cpu_seconds();
+    let audit = match audited(&case.problem, &solved) {
+        Ok(audit) => audit,
+        Err(error) => return Err(failed(error, solved.prepared, record)),
+    };
+    let audit_seconds = cpu_seconds() - cpu;
     let bars = with_bars.then(|| error_bars(case, &solved, &record, !record.frames.is_empty()));
-    Ok(Finished { solved, record, contacts, bars })
+    Ok(Finished { solved, record, contacts, bars, audit, audit_seconds })
+}
+
+/// What was asked beside what was done, unless the user stopped the run before its end.
+fn audited(problem: &Problem, solved: &Solved) -> Result<Option<Audit>, Error> {
+    let Solved { prepared, state, summary, .. } = solved;
+    match summary.stopped {
+        true => Ok(None),
+        false => audit(problem, &prepared.discretisation, &prepared.model, state).map(Some),
+    }
 }
 
 impl Finished {
     /// `result.json`.
     pub fn json(&self, case: &Case) -> Value {
-        result_json(case, &self.solved, &self.record, &self.contacts, self.bars.as_ref())
+        let bars = self.bars.as_ref();
+        let mut result = result_json(case, &self.solved, &self.record, &self.contacts, bars);
+        if let Some(audit) = &self.audit {
+            result["audit"] = audit_json(audit);
+            result["timings"]["audit_cpu_s"] = json!(self.audit_seconds);
+        }
+        result
     }
 
     /// The main results, a line each.
     pub fn text(&self, case: &Case) -> String {
-        summary_text(case, &self.solved, &self.record, &self.contacts, self.bars.as_ref())
+        let bars = self.bars.as_ref();
+        let text = summary_text(case, &self.solved, &self.record, &self.contacts, bars);
+        match &self.audit {
+            Some(audit) => format!("{text}\n{}", audit_line(audit)),
+            None => text,
+        }
     }
 
     /// The body at the end with its fields, if the case has frames.
@@ -90,8 +124,8 @@ impl Finished {
 
     /// Writes all files of the run to `dir` and returns the text of `result.json`.
     pub fn write(&self, case: &Case, dir: &Path) -> Result<String> {
-        let bars = self.bars.as_ref();
-        write_outputs(case, &self.solved, &self.record, &self.contacts, bars, dir)
+        let indicator = self.bars.as_ref().and_then(|bars| bars.as_ref().ok()?.indicator.as_ref());
+        write_outputs(case, &self.solved, &self.record, indicator, &self.json(case), dir)
     }
 }
 

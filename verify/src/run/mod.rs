@@ -1,5 +1,6 @@
 //! One case from its problem to its result.
 
+mod audit;
 mod contact;
 mod error_bar;
 mod finished;
@@ -18,6 +19,7 @@ mod stored_field;
 pub mod vtu;
 mod work;
 
+pub use audit::audit_doubts;
 pub use contact::contact_results;
 pub use error_bar::{
     CoarserCloud, ErrorBar, ErrorBars, Estimated, Indicator, NoErrorBar, error_bars,

@@ -7,11 +7,11 @@ mod frames;
 mod history;
 mod node_fields;
 
-use super::error_bar::{Estimated, Indicator};
+use super::error_bar::Indicator;
 use super::page::run_page;
 use super::prepare::Prepared;
 use super::record::Recording;
-use super::result::{failed_json, result_json};
+use super::result::failed_json;
 use super::solve::Solved;
 use super::stored_field::StoredField;
 use crate::picture::Body;
@@ -27,32 +27,24 @@ pub use node_fields::field_at_nodes;
 use frames::write_frames;
 use history::history_csv;
 use mtled::error::Error;
-use mtled::model::contact::ContactResult;
 use mtled_checks::escape::printable_json;
 use mtled_checks::report::write_atomically;
 use serde_json::Value;
 use std::path::Path;
 
-/// Writes all files of a run to `dir` and returns the text of `result.json`.
+/// Writes all files of a run with this `result.json` to `dir`, and returns its text.
 pub fn write_outputs(
     case: &Case,
     solved: &Solved,
     record: &Recording,
-    contacts: &[ContactResult],
-    bars: Option<&Estimated>,
+    indicator: Option<&Indicator>,
+    result: &Value,
     dir: &Path,
 ) -> Result<String> {
-    let indicator = bars.and_then(|bars| bars.as_ref().ok()?.indicator.as_ref());
     let body = write_recorded(case, &solved.prepared, record, indicator, dir)?;
     let (u, stopped) = (&solved.state.displacement, solved.summary.stopped);
     StoredField::new(case, &solved.prepared, u, stopped).write(dir)?;
-    write_result(
-        case,
-        record,
-        body.as_ref(),
-        &result_json(case, solved, record, contacts, bars),
-        dir,
-    )
+    write_result(case, record, body.as_ref(), result, dir)
 }
 
 /// Writes what a run had recorded when it ended with an error.

@@ -14,7 +14,7 @@ use mtled::problem::Dimension;
 use mtled_checks::escape::printable_lines;
 use mtled_checks::report::{four_digits, html, svg};
 use serde_json::Value as Json;
-use tables::{answers, contacts, costs, materials, reactions, vector};
+use tables::{answers, audit, contacts, costs, materials, reactions, vector};
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
@@ -48,6 +48,7 @@ pub fn run_page(
         contacts => contacts(result),
         materials => materials(case),
         costs => costs(result),
+        audit => audit(result),
         warnings => texts(&result["warnings"]),
         version => result["version"].as_str(),
         plane => matches!(case.problem.dimension, Dimension::PlaneStrain { .. }),
@@ -90,7 +91,9 @@ fn verdict(result: &Json) -> Value {
         "diverged" => ("fail", "Diverged"),
         _ => ("fail", "Failed"),
     };
-    if class == "pass" && !motion["instability"].is_null() {
+    if class == "pass" && result["audit"]["doubtful"] == true {
+        (class, text) = ("doubt", "Doubtful: what was done is not what was asked");
+    } else if class == "pass" && !motion["instability"].is_null() {
         (class, text) = ("doubt", "Came to an end, but the body is unstable");
     } else if class == "pass" && warned {
         class = "doubt";

@@ -82,6 +82,29 @@ pub fn reactions(result: &Json) -> Vec<Value> {
     rows(&result["reactions"]).map(reaction).collect()
 }
 
+/// What was asked, what was done; what differs by more than it may comes first.
+pub fn audit(result: &Json) -> Vec<Value> {
+    let figure = |json: &Json| match json.is_array() {
+        true => vector(&components(json)),
+        false => json.as_f64().map_or("–".into(), four_digits),
+    };
+    let row = |row: &Json| {
+        context! {
+            label => row["label"].as_str(),
+            of => row["of"].as_str(),
+            unit => row["unit"].as_str(),
+            asked => figure(&row["asked"]),
+            done => figure(&row["done"]),
+            difference => figure(&row["difference"]),
+            limit => figure(&row["limit"]),
+            advice => row["advice"].as_str(),
+        }
+    };
+    let all = || rows(&result["audit"]["rows"]);
+    let (doubtful, good) = (all().filter(|row| row["doubtful"] == true), all());
+    doubtful.chain(good.filter(|row| row["doubtful"] != true)).map(row).collect()
+}
+
 /// What obstacles do.
 pub fn contacts(result: &Json) -> Vec<Value> {
     let number = |json: &Json| json.as_f64().map_or("–".into(), four_digits);

@@ -1,0 +1,90 @@
+//! The balance of forces, moments and energies.
+#![allow(non_snake_case)]
+
+use super::{Kind, Row, Run};
+use crate::algebra::tensor::{Vector3, vector_at};
+use crate::motion::energy::energies;
+use crate::motion::step::{add_pressures, external_force};
+
+/// Sum of all forces on a body at rest over the sum of their sizes \[–\]: the tolerance of usual
+/// relaxations is a tenth of it.
+const FORCES: f64 = 1e-3;
+/// Energy that is unaccounted for over the largest energy \[–\]: central differences keep it to
+/// second order of the step, a few thousandths near the critical one.
+const ENERGY: f64 = 0.01;
+/// The same of the work of what does not move \[–\].
+const WORK: f64 = 0.01;
+
+impl Run<'_> {
+    /// Loads at the nodes, reactions and contact of a body at rest, which add up to zero.
+    pub(super) fn forces(&self) -> Vec<Row> {
+        if self.moves() {
+            return Vec::new();
+        }
+        let (model, state) = (self.model, self.state);
+        let (u, d) = (&state.displacement, model.components);
+        let mut loads = vec![0.0; model.size()];
+        external_force(model, self.time, &mut loads);
+        add_pressures(model, self.time, u, &mut loads);
+        let (mut force, mut moment, mut sizes) = (Vector3::zeros(), Vector3::zeros(), 0.0);
+        let mut add = |place: Vector3, own: Vector3| {
+            force += own;
+            moment += (place - self.centre).cross(&own);
+            sizes += own.norm();
+        };
+        let place = |node: usize| model.positions[node] + vector_at(u, node, d);
+        for node in 0..model.positions.len() {
+            add(place(node), vector_at(&loads, node, d));
+        }
+        for contact in state.contact_forces() {
+            add(self.contact_place(contact.node as usize), contact.force);
+        }
+        for reaction in state.reactions(model, &self.centre) {
+            force += reaction.force;
+            moment += reaction.moment;
+            sizes += reaction.force.norm().max(reaction.moment.norm() / self.extent());
+        }
+        let limit = FORCES * sizes;
+        let zero = Vector3::zeros();
+        vec![
+            Row::vectors(Kind::Forces, "", zero, force, limit),
+            Row::vectors(Kind::Moments, "", zero, moment, limit * self.extent()),
+        ]
+    }
+
+    /// Where an obstacle pushes a node now \[m\]: Newton's method keeps the values of the
+    /// displacement out of it, steps keep the parameters out.
+    fn contact_place(&self, node: usize) -> Vector3 {
+        let (model, u) = (self.model, &self.state.displacement);
+        let X = model.positions[node];
+        match &model.nodal_rows {
+            Some(rows) if self.state.time_step == 0.0 => {
+                X + rows.interpolate(node, u, model.components)
+            }
+            _ => X + vector_at(u, node, model.components),
+        }
+    }
+
+    /// The energies of a motion whose works were accumulated.
+    pub(super) fn energy(&self) -> Vec<Row> {
+        let (model, state) = (self.model, self.state);
+        let work = state.work;
+        if !self.moves() || (work.external == 0.0 && work.constraint == 0.0 && work.damping == 0.0)
+        {
+            return Vec::new();
+        }
+        let now = energies(model, state);
+        let speeds = model.initial_velocity.iter().enumerate();
+        let start: f64 =
+            speeds.map(|(i, v)| 0.5 * model.inertia[i / model.components] * v * v).sum();
+        let largest = [now.kinetic, now.strain, work.external.abs(), work.constraint.abs(), start];
+        let largest = largest.into_iter().fold(work.damping.abs(), f64::max);
+        let balance = Row::numbers(Kind::Energy, "", start, now.balance(), ENERGY * largest);
+        let mut rows = vec![balance];
+        if model.constraints.hold_still(0.0, state.time) {
+            let done = work.constraint;
+            rows.push(Row::numbers(Kind::ContactWork, "", 0.0, done, WORK * largest));
+        }
+        rows
+    }
+}

@@ -1,0 +1,337 @@
+//! The cells, from the coarsest to those in which the signed distance is linear.
+#![allow(non_snake_case)]
+
+use super::level::level;
+use super::simplex::{Halves, OF_BOX, Tetrahedron, vector_area, volume};
+use super::surface::Facet;
+use crate::algebra::tensor::Vector3;
+use crate::error::Error;
+use crate::geometry::{Selector, Shape};
+use crate::problem::Dimension;
+use rayon::prelude::*;
+
+/// Edge of the largest cells over the nodal spacing \[–\]: what is inside them is smaller than
+/// anything that supports resolve.
+const COARSEST: f64 = 2.0;
+/// Edge of the cells in which a boundary that is flat is cut, over the spacing \[–\].
+const FLAT_CELL: f64 = 1.0;
+/// The same of the smallest cells, at edges of the body and at rough boundaries \[–\].
+const FINEST: f64 = 1.0 / 64.0;
+/// Deviation of the signed distance from a linear function over the edge of the cell \[–\]: with
+/// it a ball of radius R is cut in cells of 0.08 R and its volume is right to 0.1 %.
+const BEND: f64 = 0.01;
+/// Area of a cell that is cut at an edge of the body, over the square of its edge, which may
+/// be wrong \[–\]: a chamfer takes the place of two faces.
+const CHAMFER: f64 = 0.6;
+/// Cost of a signed distance of a shape that is no primitive, over that of one that is \[–\].
+const OF_LABELS: usize = 4;
+const OF_TRIANGLES: usize = 40;
+/// Signed distances of a primitive that are spent in all: a few milliseconds, and per node, about
+/// as much as a step of the solution costs there.
+const BUDGET: (usize, usize) = (150_000, 100);
+
+/// The body, and the parts that its volume is divided into.
+pub(crate) struct Divided<'a> {
+    /// In a plane the section.
+    pub body: &'a Shape,
+    pub dimension: &'a Dimension,
+    /// The first that contains a point owns it.
+    pub parts: Vec<&'a Selector>,
+    /// Typical nodal spacing \[m\].
+    pub spacing: f64,
+    pub nodes: usize,
+}
+
+/// Volume of a part with its first moments.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Volume {
+    /// \[m³\]
+    pub size: f64,
+    /// ∫ X dV \[m⁴\].
+    pub first: Vector3,
+    /// How wrong the size may be \[m³\].
+    pub doubt: f64,
+}
+
+/// What was found.
+#[derive(Debug, Default)]
+pub(crate) struct Sampled {
+    /// \[part\]
+    pub volumes: Vec<Volume>,
+    pub facets: Vec<Facet>,
+    /// Pieces of the volume for integrals: place \[m\], size \[m³\], part.
+    pub pieces: Vec<(Vector3, f64, usize)>,
+    /// Places at which the smallest cells have an edge of the body in them \[m\].
+    pub edges: Vec<Vector3>,
+    /// Edge of these cells \[m\].
+    pub finest: f64,
+}
+
+#[derive(Clone, Copy)]
+struct Cell {
+    centre: Vector3,
+    /// Half of its edges \[m\].
+    half: Vector3,
+}
+
+/// What becomes of a cell.
+enum Fate {
+    Outside,
+    Divided,
+    Cut { pieces: Vec<(Vector3, f64, usize)>, facets: Vec<Facet>, bend: f64, edge: bool },
+}
+
+/// Divides the bounding box of the body into cells, and these where they are cut.
+pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
+    let (lower, upper) = divided.body.finite_bounds(divided.dimension)?;
+    let edge = COARSEST * divided.spacing;
+    // Faces of the body that lie along the axes shall not lie between cells.
+    let counts = (upper - lower).map(|length| (length / edge + 0.7).ceil().max(1.0) as usize);
+    let start = 0.5 * (lower + upper) - 0.5 * edge * counts.map(|n| n as f64);
+    let flat = matches!(divided.dimension, Dimension::PlaneStrain { .. });
+    let count = counts.x * counts.y * if flat { 1 } else { counts.z };
+    let mut cells: Vec<Cell> = (0..count).map(|n| divided.cell(n, counts, &start, edge)).collect();
+    let mut budget = BUDGET.0 + BUDGET.1 * divided.nodes;
+    let cost = cost(divided.body) + divided.parts.iter().map(|part| cost_of(part)).sum::<usize>();
+    let mut sampled =
+        Sampled { volumes: vec![Volume::default(); divided.parts.len()], ..Sampled::default() };
+    while !cells.is_empty() {
+        let spent = cells.len() * cost * 5;
+        budget = budget.saturating_sub(spent);
+        let children = if flat { 4 } else { 8 };
+        // About half of the children of a cell on the boundary lie on it.
+        let last =
+            budget < spent * children / 2 || cells[0].half.x <= 0.51 * FINEST * divided.spacing;
+        let fates: Vec<Fate> = cells.par_iter().map(|cell| divided.fate(cell, last)).collect();
+        let mut next = Vec::new();
+        for (cell, fate) in cells.iter().zip(fates) {
+            match fate {
+                Fate::Outside => {}
+                Fate::Divided => next.extend(cell.children(flat)),
+                Fate::Cut { pieces, facets, bend, edge } => {
+                    sampled.add(cell, pieces, facets, bend, edge);
+                }
+            }
+        }
+        sampled.finest = 2.0 * cells[0].half.x;
+        cells = next;
+    }
+    Ok(sampled)
+}
+
+/// Signed distances of a primitive that take as long as one of a shape.
+fn cost(shape: &Shape) -> usize {
+    match shape {
+        Shape::Union(members) | Shape::Intersection(members) => members.iter().map(cost).sum(),
+        Shape::Difference(body, hole) => cost(body) + cost(hole),
+        Shape::Labels(_) => OF_LABELS,
+        Shape::Surface(_) | Shape::Function(_) => OF_TRIANGLES,
+        _ => 1,
+    }
+}
+
+fn cost_of(part: &Selector) -> usize {
+    match part {
+        Selector::Inside { shape, .. } => cost(shape),
+        Selector::Union(parts) | Selector::Intersection(parts) => parts.iter().map(cost_of).sum(),
+        Selector::Not(part) => cost_of(part),
+        Selector::All | Selector::Plane { .. } => 0,
+        Selector::Label { .. } | Selector::Facing { .. } => 1,
+    }
+}
+
+impl Cell {
+    fn corner(&self, n: usize) -> Vector3 {
+        let side =
+            |axis: usize| if n >> axis & 1 == 1 { self.half[axis] } else { -self.half[axis] };
+        self.centre + Vector3::new(side(0), side(1), side(2))
+    }
+
+    /// Halves along each direction, in a plane along x and y.
+    fn children(&self, flat: bool) -> impl Iterator<Item = Cell> {
+        let deep = if flat { 1.0 } else { 0.5 };
+        let half = self.half.component_mul(&Vector3::new(0.5, 0.5, deep));
+        let whole = *self;
+        (0..if flat { 4 } else { 8 }).map(move |n| {
+            let mut centre = 0.5 * (whole.centre + whole.corner(n));
+            if flat {
+                centre.z = whole.centre.z;
+            }
+            Cell { centre, half }
+        })
+    }
+
+    fn volume(&self) -> f64 {
+        8.0 * self.half.product()
+    }
+}
+
+impl Divided<'_> {
+    fn cell(&self, n: usize, counts: nalgebra::Vector3<usize>, start: &Vector3, edge: f64) -> Cell {
+        let index = [n % counts.x, n / counts.x % counts.y, n / (counts.x * counts.y)];
+        let mut centre = start + edge * Vector3::from_fn(|k, _| index[k] as f64 + 0.5);
+        let mut half = Vector3::repeat(0.5 * edge);
+        if let Dimension::PlaneStrain { thickness, z } = self.dimension {
+            (centre.z, half.z) = (*z, 0.5 * thickness);
+        }
+        Cell { centre, half }
+    }
+
+    /// The place at which functions are asked: in a plane nothing depends on z.
+    fn at(&self, mut X: Vector3) -> Vector3 {
+        if let Dimension::PlaneStrain { z, .. } = self.dimension {
+            X.z = *z;
+        }
+        X
+    }
+
+    fn distance(&self, X: &Vector3) -> f64 {
+        self.body.signed_distance(&self.at(*X))
+    }
+
+    fn owner(&self, X: &Vector3) -> Option<usize> {
+        let X = self.at(*X);
+        self.parts.iter().position(|part| level(part, &X, None).selects())
+    }
+
+    /// The part that owns all of a cell; `None` where several may.
+    fn only_owner(&self, cell: &Cell, reach: f64) -> Option<usize> {
+        if self.parts.len() == 1 {
+            return Some(0);
+        }
+        let X = self.at(cell.centre);
+        let mut signs_only = false;
+        for (index, part) in self.parts.iter().enumerate() {
+            let level = level(part, &X, None);
+            if level.metric && !level.is_uniform(reach) {
+                return None;
+            }
+            signs_only |= !level.metric;
+            if level.selects() {
+                let alike = || (0..8).all(|n| self.owner(&cell.corner(n)) == Some(index));
+                return (!signs_only || alike()).then_some(index);
+            }
+        }
+        None
+    }
+
+    fn fate(&self, cell: &Cell, last: bool) -> Fate {
+        let edge = 2.0 * cell.half.x;
+        let components = self.dimension.components();
+        let reach = cell.half.x * (components as f64).sqrt();
+        let distance = self.distance(&cell.centre);
+        if distance > reach {
+            return Fate::Outside;
+        }
+        let owner = self.only_owner(cell, reach);
+        if let (true, Some(owner)) = (distance < -reach, owner) {
+            let pieces = vec![(cell.centre, cell.volume(), owner)];
+            return Fate::Cut { pieces, facets: Vec::new(), bend: 0.0, edge: false };
+        }
+        let mut values = [0.0; 8];
+        for n in 0..8 {
+            // In a plane the upper corners are as the lower ones.
+            let known = components == 2 && n >= 4;
+            values[n] = if known { values[n - 4] } else { self.distance(&cell.corner(n)) };
+        }
+        let bend = bend(&values, distance);
+        let flat = bend <= BEND * edge && edge <= 1.01 * FLAT_CELL * self.spacing;
+        if !last && !(flat && owner.is_some()) {
+            return Fate::Divided;
+        }
+        self.cut(cell, &values, owner, bend)
+    }
+
+    /// Tetrahedra of a cell inside the body, by part, and the boundary between.
+    fn cut(&self, cell: &Cell, values: &[f64; 8], owner: Option<usize>, bend: f64) -> Fate {
+        let mut halves = Halves::default();
+        for tetrahedron in OF_BOX {
+            halves.cut(tetrahedron.map(|n| (cell.corner(n), values[n])));
+        }
+        let is_edge = bend > BEND * 2.0 * cell.half.x;
+        let facet = |corners| Facet { corners, edge: is_edge };
+        let facets = halves.border.iter().filter(|t| vector_area(t).norm() > 0.0);
+        let facets: Vec<Facet> = facets.map(|corners| facet(*corners)).collect();
+        let mut volumes = vec![(Vector3::zeros(), 0.0); self.parts.len()];
+        let mut add = |tetrahedra: &[Tetrahedron], part: usize| {
+            for tetrahedron in tetrahedra {
+                let size = volume(tetrahedron);
+                volumes[part].0 += size * tetrahedron.iter().sum::<Vector3>() / 4.0;
+                volumes[part].1 += size;
+            }
+        };
+        match owner {
+            Some(owner) => add(&halves.inside, owner),
+            None => self.divide(halves.inside, &mut add),
+        }
+        let filled = volumes.into_iter().enumerate().filter(|(_, (_, size))| *size > 0.0);
+        let pieces = filled.map(|(part, (first, size))| (first / size, size, part)).collect();
+        Fate::Cut { pieces, facets, bend, edge: is_edge && !halves.border.is_empty() }
+    }
+
+    /// Divides tetrahedra among the parts, along planes where the level is a distance.
+    fn divide(&self, mut rest: Vec<Tetrahedron>, add: &mut impl FnMut(&[Tetrahedron], usize)) {
+        for (index, part) in self.parts.iter().enumerate() {
+            let at = |X: &Vector3| level(part, &self.at(*X), None);
+            let mut halves = Halves::default();
+            for tetrahedron in std::mem::take(&mut rest) {
+                let middle = at(&(tetrahedron.iter().sum::<Vector3>() / 4.0));
+                match middle.metric && middle.value.is_finite() {
+                    true => halves.cut(tetrahedron.map(|X| (X, at(&X).value))),
+                    false if middle.selects() => halves.inside.push(tetrahedron),
+                    false => halves.outside.push(tetrahedron),
+                }
+            }
+            add(&halves.inside, index);
+            rest = halves.outside;
+        }
+    }
+}
+
+/// Largest deviation from a linear function, from the values at corners and in the middle.
+fn bend(values: &[f64; 8], middle: f64) -> f64 {
+    let slope: [f64; 3] = [0, 1, 2].map(|axis| {
+        let side = |n: usize| if n >> axis & 1 == 1 { 1.0 } else { -1.0 };
+        (0..8).map(|n| side(n) * values[n]).sum::<f64>() / 8.0
+    });
+    let linear = |n: usize| {
+        middle + (0..3).map(|k| if n >> k & 1 == 1 { slope[k] } else { -slope[k] }).sum::<f64>()
+    };
+    (0..8).map(|n| (values[n] - linear(n)).abs()).fold(0.0, f64::max)
+}
+
+impl Sampled {
+    fn add(
+        &mut self,
+        cell: &Cell,
+        pieces: Vec<(Vector3, f64, usize)>,
+        facets: Vec<Facet>,
+        bend: f64,
+        edge: bool,
+    ) {
+        let area: f64 = facets.iter().map(|facet| vector_area(&facet.corners).norm()).sum();
+        let parts = pieces.len() as f64;
+        for (place, size, part) in &pieces {
+            let own = &mut self.volumes[*part];
+            own.size += size;
+            own.first += *size * place;
+            // What a boundary that bends is off, and what several owners may get of another.
+            own.doubt += bend * area / parts;
+        }
+        if edge {
+            self.edges.push(cell.centre);
+        }
+        self.pieces.extend(pieces);
+        self.facets.extend(facets);
+    }
+
+    /// \[m³\]
+    pub fn volume(&self) -> f64 {
+        self.volumes.iter().map(|part| part.size).sum()
+    }
+}
+
+/// Area \[m²\] that a facet in a cell with an edge of the body may be wrong by.
+pub(super) fn doubtful_area(area: f64) -> f64 {
+    CHAMFER * area
+}

@@ -1,0 +1,10 @@
+//! Volumes, surfaces and their moments from the signed distance of a body alone: cells that it
+//! cuts are divided until it is linear in them, and cut there. Nothing here is used to solve.
+
+mod cells;
+mod level;
+mod simplex;
+mod surface;
+
+pub(crate) use cells::{Divided, Sampled, sample};
+pub(crate) use surface::part_of_surface;

@@ -1,0 +1,108 @@
+//! Pieces of the boundary, and what of them a selection contains.
+#![allow(non_snake_case)]
+
+use super::cells::doubtful_area;
+use super::level::level;
+use super::simplex::{Triangle, vector_area};
+use crate::algebra::tensor::Vector3;
+use crate::geometry::Selector;
+use crate::problem::Dimension;
+
+/// A flat piece of the boundary.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Facet {
+    /// Anticlockwise as seen from outside \[m\].
+    pub corners: Triangle,
+    /// Whether an edge of the body may run through it.
+    pub edge: bool,
+}
+
+/// Edge of the smallest pieces at the rim of a selection, over the nodal spacing \[–\].
+const RIM: f64 = 1.0 / 64.0;
+
+/// What a selection contains of the boundary.
+#[derive(Debug, Default)]
+pub(crate) struct PartOfSurface {
+    /// Centre \[m\] and normal times area \[m²\] of pieces.
+    pub pieces: Vec<(Vector3, Vector3)>,
+    /// \[m²\]
+    pub area: f64,
+    /// Area that may be wrong \[m²\].
+    pub doubt: f64,
+    /// Places at the rim \[m\].
+    pub rim: Vec<Vector3>,
+}
+
+/// The pieces of facets that a selection contains.
+pub(crate) fn part_of_surface(
+    facets: &[Facet],
+    selector: &Selector,
+    dimension: &Dimension,
+    spacing: f64,
+) -> PartOfSurface {
+    let mut part = PartOfSurface::default();
+    for facet in facets {
+        let area = vector_area(&facet.corners);
+        let normal = area.normalize();
+        let search = Search { selector, dimension, normal, smallest: RIM * spacing };
+        let before = part.area;
+        search.visit(facet.corners, &mut part);
+        if facet.edge {
+            let near = search.level(&middle(&facet.corners)).value <= 2.0 * area.norm().sqrt();
+            let own = part.area - before;
+            part.doubt += if near { doubtful_area(area.norm().max(own)) } else { 0.0 };
+        }
+    }
+    part
+}
+
+struct Search<'a> {
+    selector: &'a Selector,
+    dimension: &'a Dimension,
+    normal: Vector3,
+    smallest: f64,
+}
+
+fn middle(corners: &Triangle) -> Vector3 {
+    corners.iter().sum::<Vector3>() / 3.0
+}
+
+impl Search<'_> {
+    fn at(&self, mut X: Vector3) -> Vector3 {
+        if let Dimension::PlaneStrain { z, .. } = self.dimension {
+            X.z = *z;
+        }
+        X
+    }
+
+    fn level(&self, X: &Vector3) -> super::level::Level {
+        level(self.selector, &self.at(*X), Some(&self.normal))
+    }
+
+    /// Adds what is selected of a triangle; it is halved where that may not be all or nothing.
+    fn visit(&self, corners: Triangle, part: &mut PartOfSurface) {
+        let centre = middle(&corners);
+        let level = self.level(&centre);
+        let lengths: [f64; 3] =
+            [0, 1, 2].map(|i| (self.at(corners[i]) - self.at(corners[(i + 1) % 3])).norm());
+        let reach = lengths.iter().copied().fold(0.0, f64::max);
+        let decided = level.is_uniform(reach)
+            || (level.selects() && corners.iter().all(|X| self.level(X).selects()));
+        if decided || reach <= self.smallest {
+            if level.selects() {
+                let area = vector_area(&corners);
+                part.area += area.norm();
+                part.pieces.push((self.at(centre), area));
+            }
+            if !decided {
+                part.rim.push(self.at(centre));
+            }
+            return;
+        }
+        let longest = (0..3).max_by(|&a, &b| lengths[a].total_cmp(&lengths[b])).unwrap_or_default();
+        let [a, b, c] = [0, 1, 2].map(|i| corners[(longest + i) % 3]);
+        let half = 0.5 * (a + b);
+        self.visit([a, half, c], part);
+        self.visit([half, b, c], part);
+    }
+}
