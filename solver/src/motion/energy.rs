@@ -13,17 +13,23 @@ pub struct Energies {
     pub strain: f64,
     /// Work of body forces and tractions.
     pub external_work: f64,
-    /// Work of prescribed displacements and contact.
+    /// Work of prescribed displacements, and in static runs of contact.
     pub constraint_work: f64,
     /// Dissipated by damping.
     pub damping_loss: f64,
+    /// Of a motion: kept of nodes that touch obstacles.
+    pub contact_energy: f64,
+    /// Of a motion: what obstacles have taken for good.
+    pub contact_loss: f64,
 }
 
 impl Energies {
-    /// kinetic + strain + damping loss − external work − constraint work
-    /// \[J\]: constant up to O(Δt²) for central differences.
+    /// kinetic + strain + kept and lost in contact + damping loss − external work − constraint
+    /// work \[J\]: constant up to O(Δt²) for central differences.
     pub fn balance(&self) -> f64 {
-        self.kinetic + self.strain + self.damping_loss - self.external_work - self.constraint_work
+        let contact = self.contact_energy + self.contact_loss;
+        let held = self.kinetic + self.strain + contact + self.damping_loss;
+        held - self.external_work - self.constraint_work
     }
 }
 
@@ -43,11 +49,14 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         .map(|(u, v)| u - state.time_step * v)
         .collect();
     let strain = 0.5 * (strain_energy(model, &before) + strain_energy(model, &state.displacement));
+    let impacts = &state.contact.impacts;
     Energies {
         kinetic,
         strain,
         external_work: state.work.external,
-        constraint_work: state.work.constraint,
-        damping_loss: state.work.damping,
+        constraint_work: state.work.constraint - impacts.work,
+        damping_loss: state.work.damping + impacts.damped,
+        contact_energy: impacts.stored(),
+        contact_loss: impacts.lost,
     }
 }

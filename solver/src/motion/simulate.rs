@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::model::Model;
+use crate::model::contact::Impacts;
 use crate::motion::internal_force::internal_force;
 use crate::motion::newton::equilibrate;
 use crate::motion::observe::{Continue, Observer, notify};
@@ -9,7 +10,7 @@ use crate::motion::relaxation::relax;
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, Scheme, StepReport, add_pressures, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};
-use crate::motion::summary::{NewtonFailure, Summary};
+use crate::motion::summary::{ContactLoss, NewtonFailure, Summary};
 use crate::problem::{Motion, Relaxation, StepControl, refuse, sticks};
 
 /// Runs the motion of a problem from `state`, and notifies `observer` after every step.
@@ -122,6 +123,9 @@ fn integrate(
     let mut control = StepController::new(model, settings, state, &mut buffers)?;
     let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
     let start = state.time;
+    if !model.contact.obstacles.is_empty() && !state.contact.impacts.is_active() {
+        state.contact.impacts = Impacts::new(&state.velocity, model.components);
+    }
     while !stopped && state.time < end * (1.0 - 1e-12) {
         control.reevaluate(model, state, &mut buffers);
         let awaited = observer.awaited_time().filter(|time| *time > state.time);
@@ -145,5 +149,6 @@ fn integrate(
         internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
     control.record_jacobian(smallest_jacobian);
     check_divergence(model, state, &StepReport { smallest_jacobian, largest_increment: 0.0 })?;
-    Ok(control.summary(state, 1, stopped))
+    let contact_loss = ContactLoss::of(&state.contact.impacts);
+    Ok(Summary { contact_loss, ..control.summary(state, 1, stopped) })
 }

@@ -2,6 +2,7 @@
 
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
+use crate::model::contact::Moved;
 use crate::motion::internal_force::{SmallestJacobian, Workspace, internal_force};
 use crate::motion::state::State;
 use rayon::prelude::*;
@@ -106,6 +107,7 @@ pub fn step(
     if buffers.track_work {
         buffers.velocity_before.copy_from_slice(&state.velocity);
     }
+    state.contact.impacts.begin(&state.velocity);
     predict(model, scheme, state, buffers);
     state.force_factor = 1.0 / (scheme.time_step * scheme.push);
     let largest_increment = constrain(model, scheme, target_time, state);
@@ -193,6 +195,9 @@ fn constrain(model: &Model, scheme: &Scheme, t: f64, state: &mut State) -> f64 {
         velocity[i] += delta * rate;
     });
     contact.forces.iter_mut().for_each(|way| way.force *= mass[way.node as usize]);
+    let (time_step, keep) = (scheme.time_step, scheme.keep);
+    let moved = Moved { positions, mass, displacement, velocity, time_step, keep };
+    contact.impacts.settle(&model.contact, &contact.forces, moved);
     // What contact takes back is no movement: a node that is pressed against an obstacle
     // in equilibrium would seem to move for ever.
     largest_or_nan(velocity) * scheme.time_step

@@ -111,6 +111,7 @@ impl StepController {
                 newton_failed: None,
                 instability: None,
                 stability_products: 0,
+                contact_loss: None,
             },
             critical,
         })

@@ -4,6 +4,7 @@
 use crate::algebra::tensor::Vector3;
 use crate::error::Instability;
 use crate::model::Model;
+use crate::model::contact::Impacts;
 use crate::motion::internal_force::SmallestJacobian;
 
 /// Outcome and cost of a run.
@@ -35,6 +36,8 @@ pub struct Summary {
     pub stability_products: usize,
     /// Loss of stability on the way to a static solution.
     pub instability: Option<Instability>,
+    /// Energy of a motion that obstacles took for good, if it is notable.
+    pub contact_loss: Option<ContactLoss>,
 }
 
 /// J of a nearly incompressible point below which a finished run is in doubt \[–\].
@@ -69,7 +72,9 @@ impl Summary {
     /// Reasons to doubt a finished run.
     pub fn doubts(&self, model: &Model) -> Vec<String> {
         let collapsed = self.collapsed_point(model).map(|collapsed| collapsed.to_string());
-        collapsed.into_iter().chain(self.instability.iter().map(Instability::to_string)).collect()
+        let unstable = self.instability.iter().map(Instability::to_string);
+        let lost = self.contact_loss.iter().map(ContactLoss::to_string);
+        collapsed.into_iter().chain(unstable).chain(lost).collect()
     }
 
     /// The point that casts doubt on a finished run, if there is one.
@@ -82,6 +87,38 @@ impl Summary {
             position: model.point_positions[point],
             jacobian,
         })
+    }
+}
+
+/// Energy that obstacles took from a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactLoss {
+    /// \[J\]
+    pub lost: f64,
+    /// Over the largest kinetic energy of the body while it touched \[–\].
+    pub fraction: f64,
+}
+
+/// Least notable loss \[–\].
+const NOTABLE_LOSS: f64 = 0.01;
+
+impl ContactLoss {
+    /// What impacts have taken, where it is notable.
+    pub(crate) fn of(impacts: &Impacts) -> Option<ContactLoss> {
+        let fraction = impacts.lost / impacts.largest_kinetic.max(f64::MIN_POSITIVE);
+        (fraction.abs() > NOTABLE_LOSS).then_some(ContactLoss { lost: impacts.lost, fraction })
+    }
+}
+
+impl std::fmt::Display for ContactLoss {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let ContactLoss { lost, fraction } = self;
+        write!(
+            f,
+            "contact took {lost:.3e} J for good, {:.1} % of the largest kinetic energy of the body while it touched: \
+             nodes that stick lose their motion along the obstacle at once; a finer cloud takes less",
+            100.0 * fraction
+        )
     }
 }
 

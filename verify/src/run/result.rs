@@ -260,6 +260,8 @@ fn energies_json(record: &Recording) -> Value {
             "external_work_j": e.external_work,
             "constraint_work_j": e.constraint_work,
             "damping_loss_j": e.damping_loss,
+            "contact_energy_j": e.contact_energy,
+            "contact_loss_j": e.contact_loss,
         })
     })
 }

@@ -1,6 +1,7 @@
 //! Which nodes may touch the obstacles, and how they are kept out.
 #![allow(non_snake_case)]
 
+use super::impact::Impacts;
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::discretisation::Discretisation;
 use crate::error::Error;
@@ -43,6 +44,8 @@ pub struct ContactState {
     /// What obstacles exert, to be multiplied by the force factor of the state: the values
     /// are m Δu of the last step \[kg·m\], or of Newton's method forces \[N\].
     pub forces: Vec<ContactForce>,
+    /// What strikes have taken from nodes; only of motions.
+    pub impacts: Impacts,
 }
 
 /// What an obstacle exerts on a node.

@@ -135,6 +135,7 @@ impl Solver<'_> {
             stopped,
             instability,
             stability_products,
+            contact_loss: None,
         }
     }
 }

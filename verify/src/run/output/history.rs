@@ -17,6 +17,10 @@ pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) 
         ["kinetic_j", "strain_j", "external_work_j", "constraint_work_j", "damping_loss_j"]
             .map(String::from),
     );
+    let obstructed = !case.problem.obstacles.is_empty();
+    if obstructed {
+        header.extend(["contact_energy_j", "contact_loss_j"].map(String::from));
+    }
     for &probe in &single {
         header.extend(axes.map(|axis| format!("{}.u{axis}_m", case.probes[probe].name)));
     }
@@ -32,6 +36,9 @@ pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) 
         let mut row =
             vec![sample.step as f64, sample.time, sample.smallest_jacobian, sample.touching as f64];
         row.extend([e.kinetic, e.strain, e.external_work, e.constraint_work, e.damping_loss]);
+        if obstructed {
+            row.extend([e.contact_energy, e.contact_loss]);
+        }
         for &probe in &single {
             row.extend(sample.displacements[probe][0].iter());
         }

@@ -44,6 +44,7 @@ pub fn histories(case: &Case, record: &Recording) -> Vec<Figure> {
         curve("kinetic", &|sample: &Sample| sample.energies.kinetic),
         curve("external work", &|sample: &Sample| sample.energies.external_work),
         curve("work of conditions", &|sample: &Sample| sample.energies.constraint_work),
+        curve("kept in contact", &|sample: &Sample| sample.energies.contact_energy),
     ];
     let moves = |series: &Series| series.points.iter().any(|(_, y)| *y != 0.0);
     let plots = [
