@@ -171,10 +171,13 @@ impl<'a> Way<'a> {
         let (before, after) = ((-from.1).max(0.0), (-to.1).max(0.0));
         let span = to.0 - from.0;
         let margin = MARGIN * (self.thin - self.outside);
-        // Balls of material that overlap, or a way along the boundary.
-        let is_plain = before + after >= span || before + after <= ALONG * span;
-        if looks == 0 || is_plain || span <= 2.0 * margin {
+        // Balls of material that overlap.
+        if looks == 0 || before + after >= span || span <= 2.0 * margin {
             return false;
+        }
+        // Along the boundary, or from face to face.
+        if before + after <= ALONG * span {
+            return self.distance(0.5 * (from.0 + to.0)) > self.thin;
         }
         let even = from.0 + span * before / (before + after);
         let t = even.clamp(from.0 + margin, to.0 - margin);
