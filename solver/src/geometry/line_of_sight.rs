@@ -19,8 +19,22 @@ const FINE: f64 = 0.01;
 const STRAIGHT: f64 = 0.8;
 /// Looks for the outside between two places on its two sides.
 const LOOKS: usize = 2;
-/// Along the boundary, the sum of two depths is smaller than this part of the way between [–].
-const ALONG: f64 = 0.1;
+/// Looks beside a place on the boundary [way to the next place].
+const BESIDE: [f64; 3] = [0.1, 0.01, 0.001];
+/// Between two places on the two sides of a gap the distance rises above a line by more than
+/// this part of the sum of their depths.
+const BENT: f64 = 0.1;
+/// Steps along a way outside \[length\].
+const FINE: f64 = 0.01;
+/// Farther outside than this is straight between two faces \[half of the way across\].
+const STRAIGHT: f64 = 0.8;
+/// Looks for the outside between two places on its two sides.
+const LOOKS: usize = 2;
+/// Looks beside a place on the boundary [way to the next place].
+const BESIDE: [f64; 3] = [0.1, 0.01, 0.001];
+/// Between two places on the two sides of a gap the distance rises above a line by more than
+/// this part of the sum of their depths.
+const BENT: f64 = 0.1;
 /// Looks are at least so far from the places between which they are [THIN].
 const MARGIN: f64 = 10.0;
 
@@ -108,8 +122,6 @@ struct Way<'a> {
     total: f64,
     /// Outside by more, a way has left the body \[m\].
     allowed: f64,
-    /// How far outside the ends are \[m\].
-    outside: f64,
     /// Outside by less is inside \[m\].
     thin: f64,
     /// \[m\]
@@ -124,7 +136,7 @@ impl<'a> Way<'a> {
         let outside = a.distance.max(b.distance).max(0.0);
         let thin = outside + THIN * length;
         let (allowed, step) = (outside + GRAZING * length, STEP * length);
-        Way { body, ends: [*a, *b], along, total, allowed, outside, thin, step }
+        Way { body, ends: [*a, *b], along, total, allowed, thin, step }
     }
 
     fn at(&self, t: f64) -> Vector3 {
@@ -136,7 +148,10 @@ impl<'a> Way<'a> {
     }
 
     fn is_parted(&self) -> bool {
-        let end = self.total + self.ends[1].distance.min(0.0);
+        let end = match self.total <= self.step {
+            true => self.total,
+            false => self.total + self.ends[1].distance.min(0.0),
+        };
         // The last place inside, and whether the way is outside since.
         let (mut inside, mut is_out) = (0.0, false);
         let (mut t, mut distance) = (0.0, self.ends[0].distance);
@@ -166,25 +181,33 @@ impl<'a> Way<'a> {
         is_out && self.are_facing(inside, self.total)
     }
 
-    /// Whether the way is outside somewhere between two places inside, (t, distance).
+    /// Whether the way is outside somewhere between two places inside, (t, distance). Where one
+    /// is on the boundary, a narrow gap would be beside it; elsewhere it would be where the
+    /// distance vanished if it rose and fell evenly.
     fn leaves_between(&self, from: (f64, f64), to: (f64, f64), looks: usize) -> bool {
         let (before, after) = ((-from.1).max(0.0), (-to.1).max(0.0));
         let span = to.0 - from.0;
-        let margin = MARGIN * (self.thin - self.outside);
         // Balls of material that overlap.
-        if looks == 0 || before + after >= span || span <= 2.0 * margin {
+        if looks == 0 || before + after >= span {
             return false;
         }
-        // Along the boundary, or from face to face.
-        if before + after <= ALONG * span {
-            return self.distance(0.5 * (from.0 + to.0)) > self.thin;
+        let is_out = |part: f64| self.distance(from.0 + part * span) > self.thin;
+        match (before <= self.thin, after <= self.thin) {
+            (true, true) => is_out(0.5),
+            (true, false) => BESIDE.into_iter().any(is_out),
+            (false, true) => BESIDE.into_iter().any(|part| is_out(1.0 - part)),
+            (false, false) => {
+                let t = from.0 + span * before / (before + after);
+                let distance = self.distance(t);
+                let on_line = from.1 + (to.1 - from.1) * (t - from.0) / span;
+                let middle = (t, distance);
+                let is_bent = distance - on_line > BENT * (before + after);
+                distance > self.thin
+                    || is_bent
+                        && (self.leaves_between(from, middle, looks - 1)
+                            || self.leaves_between(middle, to, looks - 1))
+            }
         }
-        let even = from.0 + span * before / (before + after);
-        let t = even.clamp(from.0 + margin, to.0 - margin);
-        let distance = self.distance(t);
-        distance > self.thin
-            || self.leaves_between(from, (t, distance), looks - 1)
-            || self.leaves_between((t, distance), to, looks - 1)
     }
 
     /// Whether the faces through which the way leaves and comes back face each other.
@@ -219,7 +242,7 @@ mod tests {
     fn a_gap_parts_what_is_above_from_what_is_below_however_narrow_it_is() {
         for gap in [1e-3, 0.003, 0.01, 0.04, 0.3, 1.0] {
             let body = two_blocks(gap);
-            for below in [-0.5, -0.21, -0.004, 0.0] {
+            for below in [-0.5, -0.21, -0.05, 0.0] {
                 for above in [0.0, 0.003, 0.17, 0.4] {
                     for aside in [0.0, 0.05, 0.31, 0.9] {
                         let (a, b) = ([0.1, 0.0, below], [0.1 + aside, 0.02, gap + above]);
