@@ -19,24 +19,11 @@ const FINE: f64 = 0.01;
 const STRAIGHT: f64 = 0.8;
 /// Looks for the outside between two places on its two sides.
 const LOOKS: usize = 2;
-/// Looks beside a place on the boundary [way to the next place].
+/// Looks beside a place on the boundary \[way to the next place\].
 const BESIDE: [f64; 3] = [0.1, 0.01, 0.001];
 /// Between two places on the two sides of a gap the distance rises above a line by more than
 /// this part of the sum of their depths.
 const BENT: f64 = 0.1;
-/// Steps along a way outside \[length\].
-const FINE: f64 = 0.01;
-/// Farther outside than this is straight between two faces \[half of the way across\].
-const STRAIGHT: f64 = 0.8;
-/// Looks for the outside between two places on its two sides.
-const LOOKS: usize = 2;
-/// Looks beside a place on the boundary [way to the next place].
-const BESIDE: [f64; 3] = [0.1, 0.01, 0.001];
-/// Between two places on the two sides of a gap the distance rises above a line by more than
-/// this part of the sum of their depths.
-const BENT: f64 = 0.1;
-/// Looks are at least so far from the places between which they are [THIN].
-const MARGIN: f64 = 10.0;
 
 /// A place with its signed distance \[m\].
 #[derive(Debug, Clone, Copy)]
