@@ -11,6 +11,9 @@ const GRAZING: f64 = 0.02;
 const THIN: f64 = 1e-6;
 /// Shortest step along a way beside the boundary \[length\].
 const STEP: f64 = 0.1;
+/// Where a way leaves and comes back through normals with a smaller product, it has crossed a gap,
+/// at edges of it too, whose normals are between those of the faces.
+const TURNED: f64 = 0.4;
 /// Outward normals with a smaller product face each other across the outside.
 const FACING: f64 = -0.3;
 /// Steps along a way outside \[length\].
@@ -154,7 +157,7 @@ impl<'a> Way<'a> {
             let narrow = distance <= self.thin && there <= self.thin;
             is_out |= narrow && self.leaves_between((t, distance), (next, there), LOOKS);
             if is_out && there <= self.thin {
-                if self.are_facing(inside, next) {
+                if self.are_across(inside, next) {
                     return true;
                 }
                 is_out = false;
@@ -165,7 +168,7 @@ impl<'a> Way<'a> {
             }
             (t, distance) = (next, there);
         }
-        is_out && self.are_facing(inside, self.total)
+        is_out && self.are_across(inside, self.total)
     }
 
     /// Whether the way is outside somewhere between two places inside, (t, distance). Where one
@@ -197,10 +200,10 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// Whether the faces through which the way leaves and comes back face each other.
-    fn are_facing(&self, leaves: f64, returns: f64) -> bool {
+    /// Whether the way leaves and comes back through faces across from each other.
+    fn are_across(&self, leaves: f64, returns: f64) -> bool {
         let normal = |t: f64| self.body.gradient(&self.at(t));
-        normal(leaves).dot(&normal(returns)) < FACING
+        normal(leaves).dot(&normal(returns)) < TURNED
     }
 }
 
