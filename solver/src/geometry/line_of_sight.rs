@@ -11,6 +11,9 @@ const GRAZING: f64 = 0.02;
 const THIN: f64 = 1e-6;
 /// Shortest step along a way beside the boundary \[length\].
 const STEP: f64 = 0.1;
+/// Where a way leaves and comes back through normals with a smaller product, it has crossed a gap,
+/// at edges of it too, whose normals are between those of the faces.
+const TURNED: f64 = 0.4;
 /// Outward normals with a smaller product face each other across the outside.
 const FACING: f64 = -0.3;
 /// Steps along a way outside \[length\].
@@ -19,10 +22,11 @@ const FINE: f64 = 0.01;
 const STRAIGHT: f64 = 0.8;
 /// Looks for the outside between two places on its two sides.
 const LOOKS: usize = 2;
-/// Along the boundary, the sum of two depths is smaller than this part of the way between [–].
-const ALONG: f64 = 0.1;
-/// Looks are at least so far from the places between which they are [THIN].
-const MARGIN: f64 = 10.0;
+/// Looks beside a place on the boundary \[way to the next place\].
+const BESIDE: [f64; 3] = [0.1, 0.01, 0.001];
+/// Between two places on the two sides of a gap the distance rises above a line by more than
+/// this part of the sum of their depths.
+const BENT: f64 = 0.1;
 
 /// A place with its signed distance \[m\].
 #[derive(Debug, Clone, Copy)]
@@ -108,8 +112,6 @@ struct Way<'a> {
     total: f64,
     /// Outside by more, a way has left the body \[m\].
     allowed: f64,
-    /// How far outside the ends are \[m\].
-    outside: f64,
     /// Outside by less is inside \[m\].
     thin: f64,
     /// \[m\]
@@ -124,7 +126,7 @@ impl<'a> Way<'a> {
         let outside = a.distance.max(b.distance).max(0.0);
         let thin = outside + THIN * length;
         let (allowed, step) = (outside + GRAZING * length, STEP * length);
-        Way { body, ends: [*a, *b], along, total, allowed, outside, thin, step }
+        Way { body, ends: [*a, *b], along, total, allowed, thin, step }
     }
 
     fn at(&self, t: f64) -> Vector3 {
@@ -136,7 +138,10 @@ impl<'a> Way<'a> {
     }
 
     fn is_parted(&self) -> bool {
-        let end = self.total + self.ends[1].distance.min(0.0);
+        let end = match self.total <= self.step {
+            true => self.total,
+            false => self.total + self.ends[1].distance.min(0.0),
+        };
         // The last place inside, and whether the way is outside since.
         let (mut inside, mut is_out) = (0.0, false);
         let (mut t, mut distance) = (0.0, self.ends[0].distance);
@@ -152,7 +157,7 @@ impl<'a> Way<'a> {
             let narrow = distance <= self.thin && there <= self.thin;
             is_out |= narrow && self.leaves_between((t, distance), (next, there), LOOKS);
             if is_out && there <= self.thin {
-                if self.are_facing(inside, next) {
+                if self.are_across(inside, next) {
                     return true;
                 }
                 is_out = false;
@@ -163,31 +168,42 @@ impl<'a> Way<'a> {
             }
             (t, distance) = (next, there);
         }
-        is_out && self.are_facing(inside, self.total)
+        is_out && self.are_across(inside, self.total)
     }
 
-    /// Whether the way is outside somewhere between two places inside, (t, distance).
+    /// Whether the way is outside somewhere between two places inside, (t, distance). Where one
+    /// is on the boundary, a narrow gap would be beside it; elsewhere it would be where the
+    /// distance vanished if it rose and fell evenly.
     fn leaves_between(&self, from: (f64, f64), to: (f64, f64), looks: usize) -> bool {
         let (before, after) = ((-from.1).max(0.0), (-to.1).max(0.0));
         let span = to.0 - from.0;
-        let margin = MARGIN * (self.thin - self.outside);
-        // Balls of material that overlap, or a way along the boundary.
-        let is_plain = before + after >= span || before + after <= ALONG * span;
-        if looks == 0 || is_plain || span <= 2.0 * margin {
+        // Balls of material that overlap.
+        if looks == 0 || before + after >= span {
             return false;
         }
-        let even = from.0 + span * before / (before + after);
-        let t = even.clamp(from.0 + margin, to.0 - margin);
-        let distance = self.distance(t);
-        distance > self.thin
-            || self.leaves_between(from, (t, distance), looks - 1)
-            || self.leaves_between((t, distance), to, looks - 1)
+        let is_out = |part: f64| self.distance(from.0 + part * span) > self.thin;
+        match (before <= self.thin, after <= self.thin) {
+            (true, true) => is_out(0.5),
+            (true, false) => BESIDE.into_iter().any(is_out),
+            (false, true) => BESIDE.into_iter().any(|part| is_out(1.0 - part)),
+            (false, false) => {
+                let t = from.0 + span * before / (before + after);
+                let distance = self.distance(t);
+                let on_line = from.1 + (to.1 - from.1) * (t - from.0) / span;
+                let middle = (t, distance);
+                let is_bent = distance - on_line > BENT * (before + after);
+                distance > self.thin
+                    || is_bent
+                        && (self.leaves_between(from, middle, looks - 1)
+                            || self.leaves_between(middle, to, looks - 1))
+            }
+        }
     }
 
-    /// Whether the faces through which the way leaves and comes back face each other.
-    fn are_facing(&self, leaves: f64, returns: f64) -> bool {
+    /// Whether the way leaves and comes back through faces across from each other.
+    fn are_across(&self, leaves: f64, returns: f64) -> bool {
         let normal = |t: f64| self.body.gradient(&self.at(t));
-        normal(leaves).dot(&normal(returns)) < FACING
+        normal(leaves).dot(&normal(returns)) < TURNED
     }
 }
 
@@ -216,7 +232,7 @@ mod tests {
     fn a_gap_parts_what_is_above_from_what_is_below_however_narrow_it_is() {
         for gap in [1e-3, 0.003, 0.01, 0.04, 0.3, 1.0] {
             let body = two_blocks(gap);
-            for below in [-0.5, -0.21, -0.004, 0.0] {
+            for below in [-0.5, -0.21, -0.05, 0.0] {
                 for above in [0.0, 0.003, 0.17, 0.4] {
                     for aside in [0.0, 0.05, 0.31, 0.9] {
                         let (a, b) = ([0.1, 0.0, below], [0.1 + aside, 0.02, gap + above]);

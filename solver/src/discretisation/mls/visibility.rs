@@ -96,8 +96,13 @@ impl Visibility {
             return;
         }
         let point = self.body.place(X);
+        let guides = self.guides(&point, around);
         let is_barred = |&node: &u32| {
-            self.body.parts(&point, &self.nodes[node as usize], self.spacing[node as usize])
+            let mut opinions = guides.iter().map(|&guide| !self.see(guide, node));
+            match (opinions.next(), opinions.next()) {
+                (Some(one), Some(other)) if one == other => one,
+                _ => self.is_barred(&point, node),
+            }
         };
         let hidden: Vec<u32> = doubts.into_iter().filter(is_barred).collect();
         let seen = |node: &u32| hidden.binary_search(node).is_err();
@@ -112,6 +117,22 @@ impl Visibility {
         };
         let lost: Vec<u32> = hidden.iter().copied().filter(|node| !by_others(node)).collect();
         around.retain(|node| lost.binary_search(node).is_err());
+    }
+
+    /// The two nodes nearest to a point, of the four nearest, that it sees: where they agree
+    /// about a node farther away, it does.
+    fn guides(&self, point: &Place, around: &[u32]) -> Vec<u32> {
+        let distance = |node: u32| (self.nodes[node as usize].X - point.X).norm_squared();
+        let mut nearest: Vec<(f64, u32)> = around.iter().map(|&n| (distance(n), n)).collect();
+        nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let nearest = nearest.into_iter().take(4).map(|(_, node)| node);
+        nearest.filter(|&node| !self.is_barred(point, node)).take(2).collect()
+    }
+
+    /// Whether a gap bars the straight way from a point to a node.
+    fn is_barred(&self, point: &Place, node: u32) -> bool {
+        let (to, spacing) = (&self.nodes[node as usize], self.spacing[node as usize]);
+        self.body.parts(point, to, spacing)
     }
 
     /// Whether no gap bars the way between two nodes.
