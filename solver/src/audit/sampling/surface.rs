@@ -17,6 +17,33 @@ pub(crate) struct Facet {
     pub edge: bool,
 }
 
+impl Facet {
+    /// \[m\]
+    pub fn centre(&self) -> Vector3 {
+        middle(&self.corners)
+    }
+
+    /// \[m²\]
+    pub fn area(&self) -> f64 {
+        vector_area(&self.corners).norm()
+    }
+
+    /// Out of the body.
+    pub fn normal(&self) -> Vector3 {
+        vector_area(&self.corners).normalize()
+    }
+
+    /// Places spread evenly over it, `parts` along each side \[m\].
+    pub fn places(&self, parts: usize) -> impl Iterator<Item = Vector3> {
+        let [a, b, c] = self.corners;
+        let at = move |i: usize, j: usize| {
+            let [u, v] = [i, j].map(|n| (n as f64 + 1.0 / 3.0) / parts as f64);
+            a + u * (b - a) + v * (c - a)
+        };
+        (0..parts).flat_map(move |i| (0..parts - i).map(move |j| at(i, j)))
+    }
+}
+
 /// Edge of the smallest pieces at the rim of a selection, over the nodal spacing \[–\].
 const RIM: f64 = 1.0 / 64.0;
 
@@ -29,8 +56,6 @@ pub(crate) struct PartOfSurface {
     pub area: f64,
     /// Area that may be wrong \[m²\].
     pub doubt: f64,
-    /// Places at the rim \[m\].
-    pub rim: Vec<Vector3>,
 }
 
 /// The pieces of facets that a selection contains.
@@ -93,9 +118,6 @@ impl Search<'_> {
                 let area = vector_area(&corners);
                 part.area += area.norm();
                 part.pieces.push((self.at(centre), area));
-            }
-            if !decided {
-                part.rim.push(self.at(centre));
             }
             return;
         }
