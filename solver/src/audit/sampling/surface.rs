@@ -114,10 +114,10 @@ impl Search<'_> {
         let decided = level.is_uniform(reach)
             || (level.selects() && corners.iter().all(|X| self.level(X).selects()));
         if decided || reach <= self.smallest {
-            if level.selects() {
-                let area = vector_area(&corners);
-                part.area += area.norm();
-                part.pieces.push((self.at(centre), area));
+            match decided || !level.metric {
+                true if level.selects() => part.add(self.at(centre), vector_area(&corners)),
+                true => {}
+                false => self.clip(corners, part),
             }
             return;
         }
@@ -126,5 +126,31 @@ impl Search<'_> {
         let half = 0.5 * (a + b);
         self.visit([a, half, c], part);
         self.visit([half, b, c], part);
+    }
+
+    /// Adds what is selected of a small triangle in which the level is linear.
+    fn clip(&self, corners: Triangle, part: &mut PartOfSurface) {
+        let levels = corners.map(|X| self.level(&X).value);
+        let mut polygon: Vec<Vector3> = Vec::with_capacity(4);
+        for i in 0..3 {
+            let (j, own) = ((i + 1) % 3, levels[i]);
+            if own <= 0.0 {
+                polygon.push(corners[i]);
+            }
+            if (own <= 0.0) != (levels[j] <= 0.0) {
+                polygon.push(corners[i] + (corners[j] - corners[i]) * (own / (own - levels[j])));
+            }
+        }
+        for n in 2..polygon.len() {
+            let piece = [polygon[0], polygon[n - 1], polygon[n]];
+            part.add(self.at(middle(&piece)), vector_area(&piece));
+        }
+    }
+}
+
+impl PartOfSurface {
+    fn add(&mut self, centre: Vector3, area: Vector3) {
+        self.area += area.norm();
+        self.pieces.push((centre, area));
     }
 }
