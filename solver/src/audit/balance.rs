@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::{Kind, Row, Run};
+use crate::algebra::packed::largest;
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::motion::energy::energies;
 use crate::motion::step::{add_pressures, external_force};
@@ -9,6 +10,9 @@ use crate::motion::step::{add_pressures, external_force};
 /// Sum of all forces on a body at rest over the sum of their sizes \[–\]: the tolerance of usual
 /// relaxations is a tenth of it.
 const FORCES: f64 = 1e-3;
+/// The same over the sum of the stiffnesses times the largest displacement \[–\]: round-off of the
+/// forces of a body that has only shifted.
+const ROUND_OFF: f64 = 1e-12;
 /// Energy that is unaccounted for over the largest energy \[–\]: central differences keep it to
 /// second order of the step, a few thousandths near the critical one.
 const ENERGY: f64 = 0.01;
@@ -44,7 +48,8 @@ impl Run<'_> {
             moment += reaction.moment;
             sizes += reaction.force.norm().max(reaction.moment.norm() / self.extent());
         }
-        let limit = FORCES * sizes;
+        let stiffness: f64 = model.stiffness.iter().sum();
+        let limit = FORCES * sizes + ROUND_OFF * stiffness * largest(u);
         let zero = Vector3::zeros();
         vec![
             Row::vectors(Kind::Forces, "", zero, force, limit),

@@ -5,8 +5,10 @@
 //! quadrature points, the loads at nodes and the state at the end. The two meet here only.
 
 mod balance;
+mod inside;
 mod loads;
 mod masses;
+mod places;
 mod prescribed;
 mod row;
 mod sampling;
@@ -21,7 +23,7 @@ use crate::error::Error;
 use crate::geometry::Shape;
 use crate::model::Model;
 use crate::motion::state::State;
-use crate::problem::{Motion, Problem};
+use crate::problem::{Dimension, Motion, Problem};
 use sampling::{Divided, Sampled, sample};
 
 /// The table of a run.
@@ -98,6 +100,11 @@ pub fn audit(
     rows.extend(run.forces());
     rows.extend(run.masses());
     rows.extend(run.energy());
+    rows.extend(run.edges());
+    rows.extend(run.gaps()?);
+    rows.extend(run.layers());
+    rows.extend(run.depths()?);
+    rows.extend(run.patch_volumes());
     Ok(Audit { rows })
 }
 
@@ -105,6 +112,14 @@ impl Run<'_> {
     /// Whether the problem is one of motion.
     fn moves(&self) -> bool {
         matches!(self.problem.motion, Motion::Dynamic { .. })
+    }
+
+    /// The place at which shapes are asked: in a plane nothing depends on z.
+    fn at(&self, mut X: Vector3) -> Vector3 {
+        if let Dimension::PlaneStrain { z, .. } = self.problem.dimension {
+            X.z = z;
+        }
+        X
     }
 
     /// Size of the body \[m\].

@@ -119,19 +119,16 @@ kinds! {
     /// Depth of the boundary in an obstacle, between nodes too.
     Depth: "obstacle_depth", "depth in", "m",
         "the body has entered the obstacle between its nodes: use a finer cloud, at most as coarse as the obstacle is large";
-    /// Nodes along the edges of the body.
-    Edges: "edges", "distance of edges from nodes", "m",
+    /// Part of the edges of the body along which there are no nodes.
+    Edges: "edges", "edges without nodes", "1",
         "edges of the body run between nodes and are rounded off: use a finer cloud";
-    /// Nodes along the rims of a held face.
-    Rim: "held_rim", "distance of the rim from nodes of", "m",
-        "the part that is held ends between nodes, so that it is smaller or larger than stated: use a finer cloud at its rim";
-    /// Nodal spacings across a layer.
+    /// Nodal spacings across the thickest place of a region that is softer or harder than others.
     Layer: "layer", "spacings across", "1",
-        "a layer thinner than two supports carries load as if it were as hard as what is next to it: use a finer cloud, or sharp borders";
-    /// Nodes that are seen across a gap.
-    Gap: "gap", "nodes seen across gaps", "1",
+        "a layer of so few spacings carries load as if it were as hard as what is next to it: use a finer cloud";
+    /// Part of the boundary that is seen across a gap.
+    Gap: "gap", "boundary glued across gaps", "1",
         "supports reach across gaps of the body, whose sides are glued together: use a spacing of at most half the gap";
-    /// Smallest J of the patches on which J is projected.
-    PatchVolume: "patch_volume", "J of patches", "1",
+    /// J of the patch of quadrature points whose volume has changed most.
+    PatchVolume: "patch_volume", "J of the worst patch of", "1",
         "a nearly incompressible part has lost or gained volume: use a finer cloud, or a smaller load";
 }

@@ -16,7 +16,10 @@ const COARSEST: f64 = 2.0;
 /// Edge of the cells in which a boundary that is flat is cut, over the spacing \[–\].
 const FLAT_CELL: f64 = 1.0;
 /// The same of the smallest cells, at edges of the body and at rough boundaries \[–\].
-const FINEST: f64 = 1.0 / 64.0;
+const FINEST: f64 = 1.0 / 32.0;
+/// Edge of the largest cells of which corners and centre alone say that one part owns them,
+/// over the spacing, in space and in a plane \[–\]: labels have no distance.
+const SAMPLED_CELL: (f64, f64) = (0.5, 0.25);
 /// Deviation of the signed distance from a linear function over the edge of the cell \[–\]: with
 /// it a ball of radius R is cut in cells of 0.08 R and its volume is right to 0.1 %.
 const BEND: f64 = 0.01;
@@ -28,7 +31,7 @@ const OF_LABELS: usize = 4;
 const OF_TRIANGLES: usize = 40;
 /// Signed distances of a primitive that are spent in all: a few milliseconds, and per node, about
 /// as much as a step of the solution costs there.
-const BUDGET: (usize, usize) = (150_000, 100);
+const BUDGET: (usize, usize) = (20_000, 50);
 
 /// The body, and the parts that its volume is divided into.
 pub(crate) struct Divided<'a> {
@@ -200,6 +203,9 @@ impl Divided<'_> {
             return Some(0);
         }
         let X = self.at(cell.centre);
+        let (solid, flat) = SAMPLED_CELL;
+        let largest = if self.dimension.components() == 2 { flat } else { solid };
+        let is_small = cell.half.x <= 0.501 * largest * self.spacing;
         let mut signs_only = false;
         for (index, part) in self.parts.iter().enumerate() {
             let level = level(part, &X, None);
@@ -209,7 +215,7 @@ impl Divided<'_> {
             signs_only |= !level.metric;
             if level.selects() {
                 let alike = || (0..8).all(|n| self.owner(&cell.corner(n)) == Some(index));
-                return (!signs_only || alike()).then_some(index);
+                return (!signs_only || (is_small && alike())).then_some(index);
             }
         }
         None

@@ -7,4 +7,5 @@ mod simplex;
 mod surface;
 
 pub(crate) use cells::{Divided, Sampled, sample};
+pub(crate) use level::level;
 pub(crate) use surface::part_of_surface;

@@ -17,6 +17,33 @@ pub(crate) struct Facet {
     pub edge: bool,
 }
 
+impl Facet {
+    /// \[m\]
+    pub fn centre(&self) -> Vector3 {
+        middle(&self.corners)
+    }
+
+    /// \[m²\]
+    pub fn area(&self) -> f64 {
+        vector_area(&self.corners).norm()
+    }
+
+    /// Out of the body.
+    pub fn normal(&self) -> Vector3 {
+        vector_area(&self.corners).normalize()
+    }
+
+    /// Places spread evenly over it, `parts` along each side \[m\].
+    pub fn places(&self, parts: usize) -> impl Iterator<Item = Vector3> {
+        let [a, b, c] = self.corners;
+        let at = move |i: usize, j: usize| {
+            let [u, v] = [i, j].map(|n| (n as f64 + 1.0 / 3.0) / parts as f64);
+            a + u * (b - a) + v * (c - a)
+        };
+        (0..parts).flat_map(move |i| (0..parts - i).map(move |j| at(i, j)))
+    }
+}
+
 /// Edge of the smallest pieces at the rim of a selection, over the nodal spacing \[–\].
 const RIM: f64 = 1.0 / 64.0;
 
@@ -29,8 +56,6 @@ pub(crate) struct PartOfSurface {
     pub area: f64,
     /// Area that may be wrong \[m²\].
     pub doubt: f64,
-    /// Places at the rim \[m\].
-    pub rim: Vec<Vector3>,
 }
 
 /// The pieces of facets that a selection contains.
@@ -89,13 +114,10 @@ impl Search<'_> {
         let decided = level.is_uniform(reach)
             || (level.selects() && corners.iter().all(|X| self.level(X).selects()));
         if decided || reach <= self.smallest {
-            if level.selects() {
-                let area = vector_area(&corners);
-                part.area += area.norm();
-                part.pieces.push((self.at(centre), area));
-            }
-            if !decided {
-                part.rim.push(self.at(centre));
+            match decided || !level.metric {
+                true if level.selects() => part.add(self.at(centre), vector_area(&corners)),
+                true => {}
+                false => self.clip(corners, part),
             }
             return;
         }
@@ -104,5 +126,31 @@ impl Search<'_> {
         let half = 0.5 * (a + b);
         self.visit([a, half, c], part);
         self.visit([half, b, c], part);
+    }
+
+    /// Adds what is selected of a small triangle in which the level is linear.
+    fn clip(&self, corners: Triangle, part: &mut PartOfSurface) {
+        let levels = corners.map(|X| self.level(&X).value);
+        let mut polygon: Vec<Vector3> = Vec::with_capacity(4);
+        for i in 0..3 {
+            let (j, own) = ((i + 1) % 3, levels[i]);
+            if own <= 0.0 {
+                polygon.push(corners[i]);
+            }
+            if (own <= 0.0) != (levels[j] <= 0.0) {
+                polygon.push(corners[i] + (corners[j] - corners[i]) * (own / (own - levels[j])));
+            }
+        }
+        for n in 2..polygon.len() {
+            let piece = [polygon[0], polygon[n - 1], polygon[n]];
+            part.add(self.at(middle(&piece)), vector_area(&piece));
+        }
+    }
+}
+
+impl PartOfSurface {
+    fn add(&mut self, centre: Vector3, area: Vector3) {
+        self.area += area.norm();
+        self.pieces.push((centre, area));
     }
 }
