@@ -69,6 +69,7 @@ impl Discretisation {
         {
             place_nodes_on_borders(&mut cloud, &body, stiffness);
         }
+        flatten(&mut cloud.positions, &dimension);
         let prescribed = prescribed_nodes(problem, &cloud);
         let approximation =
             approximation_of(&cloud, recipe, stiffness, &dimension).within(&body, recipe.dilation);
@@ -81,6 +82,7 @@ impl Discretisation {
         } else {
             quadrature_of(problem, &body, &recipe.grid, &approximation, None)?
         };
+        flatten(&mut quadrature.positions, &dimension);
         let spacing: Vec<f64> = quadrature.positions.par_iter().map(spacing_at).collect();
         let (thickness, components) = (dimension.thickness(), dimension.components());
         let patches = sort_into_patches(&mut quadrature, &spacing, thickness, components);
@@ -192,6 +194,15 @@ impl Discretisation {
     /// Mean number of support nodes per quadrature point.
     pub fn mean_support(&self) -> f64 {
         self.supports.nodes.len() as f64 / self.supports.len() as f64
+    }
+}
+
+/// Puts places of a plane exactly there: to the correction of gradients a distance of
+/// round-off across it would be a third direction, along which next to nothing changes
+/// gradients as it likes.
+fn flatten(positions: &mut [Vector3], dimension: &Dimension) {
+    if let Dimension::PlaneStrain { z, .. } = dimension {
+        positions.iter_mut().for_each(|X| X.z = *z);
     }
 }
 

@@ -218,3 +218,17 @@ fn a_node_far_outside_is_named_before_its_neighbours_are_searched() {
         assert!(matches!(error, GeometryError::NodeFarOutside { node: 5, .. }), "{error}");
     }
 }
+
+#[test]
+fn a_graded_cloud_has_no_other_nodes_where_round_off_makes_the_body_larger() {
+    let cloud = |size: f64| {
+        let body = Shape::Box { min: Vector3::zeros(), max: Vector3::new(1.0, 0.6, 0.8) * size };
+        let refinements = Vec::new();
+        let graded = Cloud::Graded { spacing: 0.2 * size, refinements, growth: 0.25, seed: 0 };
+        node_cloud(&body, &graded, &Dimension::Three).unwrap()
+    };
+    let home = cloud(1.0);
+    for size in [1.0 + 1e-13, 1.0 - 1e-13, 0.7, 1.3] {
+        assert_eq!(home.positions.len(), cloud(size).positions.len(), "{size}");
+    }
+}

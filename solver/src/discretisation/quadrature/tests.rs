@@ -51,6 +51,25 @@ fn volume_fractions_measure_a_sphere_and_its_centroid() {
 }
 
 #[test]
+fn points_of_a_box_do_not_hang_on_where_it_lies() {
+    let points = |lower: Vector3| {
+        let body = Shape::Box { min: lower, max: lower + Vector3::new(0.8, 1.0, 0.61) };
+        let all = [region("all", Selector::All)];
+        let grid = BackgroundGrid::with_cell(0.17);
+        quadrature(&body, &all, &grid, &Dimension::Three).unwrap()
+    };
+    let home = points(Vector3::zeros());
+    for shift in [Vector3::new(3.1, -2.3, 1.7), Vector3::new(-0.77, 5.1, 0.013)] {
+        let there = points(shift);
+        assert_eq!(home.positions.len(), there.positions.len());
+        for (X, Y) in home.positions.iter().zip(&there.positions) {
+            // Along the edges two faces are equally near.
+            assert!((X + shift - Y).norm() < 1e-12, "{X} {Y}");
+        }
+    }
+}
+
+#[test]
 fn volume_fractions_are_exact_for_a_box_off_the_grid() {
     let min = Vector3::new(0.01, 0.02, 0.0);
     let max = Vector3::new(0.113, 0.087, 0.05);

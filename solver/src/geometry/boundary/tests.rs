@@ -126,3 +126,22 @@ fn sharp_edges_of_small_triangles_are_divided_as_one_curve() {
         assert_eq!(rim.len(), (TAU / spacing).round() as usize);
     }
 }
+
+#[test]
+fn panels_of_a_prism_do_not_hang_on_where_it_lies() {
+    let panels = |x: f64, y: f64| {
+        let corners = [[0.0, 0.0], [0.7, 0.0], [0.7, 0.35], [0.35, 0.35], [0.35, 0.7], [0.0, 0.7]];
+        let points = corners.map(|c| [c[0] + x, c[1] + y]).to_vec();
+        let prism = Shape::Polygon { points: points.into(), z: (0.0, 0.7) };
+        // Halves of the edges are just as long as this.
+        prism.boundary_panels(0.35 / 8.0, &Dimension::Three).unwrap()
+    };
+    let home = panels(0.0, 0.0);
+    for (x, y) in [(2.17, -1.61), (0.3, 0.1), (-1.1, 7.7)] {
+        let there = panels(x, y);
+        assert_eq!(home.len(), there.len(), "at {x}, {y}");
+        for (a, b) in home.iter().zip(&there) {
+            assert!((a.centre + Vector3::new(x, y, 0.0) - b.centre).norm() < 1e-12);
+        }
+    }
+}

@@ -42,17 +42,22 @@ fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
+/// Twice the area between an edge and a point on it, over that of the ear \[–\].
+const ON_EDGE: f64 = 1e-9;
+
 fn is_ear(points: &[[f64; 2]], i: usize) -> bool {
     let n = points.len();
     let (a, b, c) = (points[(i + n - 1) % n], points[i], points[(i + 1) % n]);
     if turn(a, b, c) < 0.0 {
         return false;
     }
+    // A corner on the edge that would be cut is inside, whatever its last digit.
+    let on_edge = -ON_EDGE * turn(a, b, c);
     let corner = |p: &[f64; 2]| *p == a || *p == b || *p == c;
     !points
         .iter()
         .filter(|p| !corner(p))
-        .any(|&p| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0)
+        .any(|&p| [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| turn(from, to, p) >= on_edge))
 }
 
 /// Splits a map from each item to the next one into closed chains.

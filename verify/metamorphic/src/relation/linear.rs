@@ -5,11 +5,12 @@ use crate::answer::{Answer, View, relative};
 use crate::build;
 use crate::scene::{Law, Place, Push, Scene};
 use mtled::Vector3;
+use mtled::problem::{Motion, Newton};
 
 const LINEAR: &str = "The discrete equations of the linear law are linear; Newton's method ends at \
                       1e-12 of the largest force, times a condition of up to 1e5";
 /// Factor by which loads are made small.
-const SMALL: f64 = 1e-5;
+const SMALL: f64 = 1e-4;
 
 pub const RELATIONS: &[Relation] = &[
     Relation {
@@ -61,7 +62,7 @@ pub const RELATIONS: &[Relation] = &[
             if !scene.is_static() || scene.obstacle.is_some() || turns {
                 return None;
             }
-            let [plus, minus] = [SMALL, -SMALL].map(|by| solved(&scaled(scene, by)));
+            let [plus, minus] = [SMALL, -SMALL].map(|by| solved_small(&scaled(scene, by)));
             let minus = minus?.displacements().iter().map(|u| -u).collect::<Vec<_>>();
             Some(Compared::Difference(relative(&plus?.displacements(), &minus, 0.0)))
         },
@@ -80,7 +81,7 @@ pub const RELATIONS: &[Relation] = &[
             }
             let small = scaled(scene, SMALL);
             let hooke = Scene { law: Law::Linear, ..small.clone() };
-            let (own, hooke) = (solved(&small)?, solved(&hooke)?);
+            let (own, hooke) = (solved_small(&small)?, solved_small(&hooke)?);
             let difference = relative(&own.displacements(), &hooke.displacements(), 0.0);
             (scene.law != Law::Linear).then_some(Compared::Difference(difference))
         },
@@ -129,6 +130,15 @@ fn solved(scene: &Scene) -> Option<Answer> {
     answer(build::problem(scene).ok()?).ok()
 }
 
+/// The answer to a scene of small loads, whose forces are no more than round-off of the
+/// stiffness to as many digits as loads are small.
+fn solved_small(scene: &Scene) -> Option<Answer> {
+    let mut problem = build::problem(scene).ok()?;
+    let tolerance = build::RESIDUAL / SMALL;
+    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance });
+    answer(problem).ok()
+}
+
 fn only_displacements(subject: &Subject, other: &Scene, view: &View) -> Option<Compared> {
     let (first, other) = (solved(&linear(&subject.scene)?)?, solved(other)?);
     let seen: Vec<Vector3> = other.displacements().iter().map(|u| u / view.length).collect();
@@ -145,13 +155,15 @@ fn reciprocal(subject: &Subject) -> Option<Compared> {
         solved(&Scene { pushes, ..scene.clone() })
     };
     let (first, second) = (only(0)?, only(1)?);
+    // What a load does on the other's displacements, and the sum of the sizes of its parts: on
+    // what is held they cancel.
     let work = |load: &Answer, on: &Answer| {
-        let force = load.simulation.model.loads.first()?;
-        let u = &on.simulation.state.displacement;
-        Some(force.force.iter().zip(u).map(|(f, u)| f * u).sum::<f64>())
+        let force = &load.simulation.model.loads.first()?.force;
+        let parts = force.iter().zip(&on.simulation.state.displacement).map(|(f, u)| f * u);
+        Some(parts.fold((0.0, 0.0), |(sum, sizes), part| (sum + part, sizes + part.abs())))
     };
-    let works = [work(&first, &second)?, work(&second, &first)?];
-    let own = [work(&first, &first)?, work(&second, &second)?];
-    let size = (own[0] * own[1]).sqrt();
-    (size > 0.0).then(|| Compared::Difference((works[0] - works[1]).abs() / size))
+    let (there, size) = work(&first, &second)?;
+    let (back, other_size) = work(&second, &first)?;
+    let size = f64::max(size, other_size);
+    (size > 0.0).then(|| Compared::Difference((there - back).abs() / size))
 }

@@ -13,8 +13,8 @@ mod space;
 use crate::answer::{Answer, View, answer, difference};
 use crate::build::{self, Frame};
 use crate::scene::Scene;
-use mtled::Vector3;
-use mtled::problem::{Cloud, Problem};
+use mtled::problem::{Cloud, Gradients, Loads, Problem};
+use mtled::{Discretisation, Vector3};
 use std::cell::OnceCell;
 
 /// Something that must hold of any scene of its kind.
@@ -70,6 +70,16 @@ impl Subject {
         Ok(Subject { scene: scene.clone(), base, given: OnceCell::new() })
     }
 
+    /// Nodes of the body without conditions: others lie on the edges of held parts, where
+    /// round-off would choose whether they are held.
+    fn free_nodes(&self) -> Option<Vec<Vector3>> {
+        let mut free = self.problem();
+        free.conditions.clear();
+        free.loads = Loads::default();
+        free.recipe.gradients = Gradients::Plain;
+        Some(Discretisation::new(&free).ok()?.cloud.positions)
+    }
+
     /// The problem of the scene.
     fn problem(&self) -> Problem {
         self.base.problem.clone()
@@ -78,7 +88,7 @@ impl Subject {
     /// The same with the nodes given one by one.
     fn given(&self) -> Option<&Answer> {
         let made = || {
-            let given = with_nodes(self.problem(), self.base.positions().to_vec());
+            let given = with_nodes(self.problem(), self.free_nodes()?);
             answer(given).ok().filter(|answer| !answer.is_doubtful())
         };
         self.given.get_or_init(made).as_ref()
@@ -102,7 +112,7 @@ impl Subject {
     fn in_frame(&self, frame: &Frame) -> Option<(Problem, View)> {
         let home = Frame::home(&self.scene);
         let moved = build::problem_in(&self.scene, frame).ok()?;
-        let nodes = self.base.positions().iter();
+        let nodes = self.given()?.positions().iter();
         let nodes: Vec<Vector3> = nodes.map(|X| frame.point(&home.home_of(X))).collect();
         let about = [home, *frame].map(|frame| frame.point(&frame.middle()));
         Some((with_nodes(moved, nodes), View { turn: frame.turn, about, ..View::default() }))

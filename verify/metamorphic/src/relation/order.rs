@@ -18,7 +18,7 @@ pub const RELATIONS: &[Relation] = &[
         bound: 1e-6,
         reason: SUMS,
         compare: |subject| {
-            let nodes = subject.base.positions();
+            let nodes = subject.given()?.positions();
             let order = shuffled(nodes.len());
             let mut place = vec![0; nodes.len()];
             order.iter().enumerate().for_each(|(new, &old)| place[old] = new);

@@ -73,7 +73,13 @@ pub const RELATIONS: &[Relation] = &[
         compare: |subject| {
             is_smooth(&subject.scene).then(|| {
                 let at_once = with_curve(subject.problem(), &Amplitude::Constant);
-                subject.with(at_once, &View::default())
+                // What is there from the start cannot be taken in parts.
+                Some(match subject.with(at_once, &View::default())? {
+                    Compared::Refused(why) if why.contains("no equilibrium") => {
+                        Compared::Undecided(why)
+                    }
+                    compared => compared,
+                })
             })?
         },
     },

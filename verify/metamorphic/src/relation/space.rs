@@ -40,17 +40,17 @@ pub const RELATIONS: &[Relation] = &[
     },
     Relation {
         name: "lengths_times_four",
-        claim: "In a unit of length a quarter as long the same bits result",
-        bound: 1e-13,
-        reason: "Powers of two are exact in binary numbers; only a length in metres in the program \
+        claim: "In a unit of length a quarter as long the same digits result",
+        bound: 1e-9,
+        reason: "Powers of two are exact in binary numbers, but for roots and sums of powers; only a length in metres in the program \
                  could tell them apart",
         compare: |subject| in_units(subject, [4.0, 1.0, 1.0]),
     },
     Relation {
         name: "forces_times_two",
-        claim: "In other units of force and mass the same bits result",
-        bound: 1e-13,
-        reason: "Powers of two are exact in binary numbers; only a stress or a density in the \
+        claim: "In other units of force and mass the same digits result",
+        bound: 1e-9,
+        reason: "Powers of two are exact in binary numbers, but for roots and sums of powers; only a stress or a density in the \
                  program could tell them apart",
         compare: |subject| in_units(subject, [1.0, 1024.0, 16.0]),
     },

@@ -143,7 +143,8 @@ impl Scene {
             1 => Part::Whole,
             _ => Part::End { axis, upper, depth: self.depth(rng) },
         };
-        let half = Part::End { axis, upper, depth: 0.5 };
+        // Not in the middle, where nodes and points lie and round-off would choose.
+        let half = Part::End { axis, upper, depth: 0.487 };
         match rng.usize(..6) {
             0 | 1 => Push::Gravity(vector(rng, d, 0.1)),
             2 => Push::Pull(half, vector(rng, d, 0.1)),
