@@ -1,11 +1,13 @@
 //! Quadrature points of the volume (method book, section 7).
 
+mod borders;
 mod cell;
 mod cut;
 mod gauss;
 mod grid;
 mod rule;
 mod second_order;
+mod simplex;
 mod subdivision;
 
 pub use grid::{quadrature, quadrature_following};
