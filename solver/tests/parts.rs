@@ -6,6 +6,10 @@ mod common;
 use common::*;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
+use mtled::material::*;
+use mtled::motion::observe::Unobserved;
+use mtled::motion::simulate::simulate;
+use mtled::motion::state::State;
 use mtled::problem::*;
 use std::f64::consts::PI;
 
@@ -303,4 +307,40 @@ fn a_quarter_of_a_tube_has_its_area_and_volume_where_panels_end_at_its_faces_too
         let volume = 0.5 * ends * length;
         assert!((flux / 3.0 / volume - 1.0).abs() < 1e-3, "{size}: {flux}");
     }
+}
+
+/// Half an ellipsoid, held on its flat side, under a pressure on the other.
+fn dome(spacing: f64, pressure: f64) -> Problem {
+    let body = Shape::Intersection(vec![
+        Shape::Ellipsoid { centre: Vector3::zeros(), radii: Vector3::new(0.06, 0.045, 0.05) },
+        Shape::HalfSpace { point: Vector3::zeros(), normal: -Vector3::z() },
+    ]);
+    let constants = ElasticConstants::from_young_poisson(3000.0, 0.45).unwrap();
+    let law = NeoHookeanIsochoric::new(constants, VolumetricTerm::Quadratic);
+    let law = material(Law::NeoHookeanIsochoric(law));
+    let mut problem = Problem::new(body, law, Recipe::with_spacing(spacing));
+    problem.conditions = vec![condition("base", face(2, 0.0), [Some(0.0); 3])];
+    problem.loads.pressures = vec![Pressure {
+        name: "dome".into(),
+        part: Selector::Not(Box::new(face(2, 0.0))),
+        pressure,
+        amplitude: Amplitude::Linear { duration: 1.0 },
+    }];
+    problem.motion = Motion::Equilibrium(Newton { tolerance: 1e-4, ..Newton::default() });
+    problem
+}
+
+#[test]
+fn a_pressure_that_dents_a_dome_stays_in_balance_with_its_base() {
+    let problem = dome(0.0125, 700.0);
+    let (_, model) = build(&problem);
+    let mut state = State::new(&model);
+    simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();
+    assert!(largest(&state.displacement) > 0.005, "{}", largest(&state.displacement));
+    let mut force = vec![0.0; model.size()];
+    model.pressures[0].add_force(1.0, &state.displacement, 3, &mut force);
+    // The rim does not move: the force is the pressure times the area of the base.
+    let expected = Vector3::z() * (-700.0 * PI * 0.06 * 0.045);
+    let error = (total(&force) - expected).norm() / expected.norm();
+    assert!(error < 5e-3, "{error}");
 }

@@ -8,7 +8,7 @@ use crate::geometry::boundary::patch::clip::{Cell, Clip, Level};
 
 /// Parts of a panel smaller than this fraction of it are dropped, beside the edge of another
 /// they are round-off \[–\].
-const NOTHING: f64 = 1e-9;
+const NOTHING: f64 = 1e-7;
 
 /// Which places of a chart belong to a panel.
 #[derive(Debug, Clone)]
