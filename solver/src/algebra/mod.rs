@@ -4,6 +4,7 @@ pub(crate) mod lanes;
 pub(crate) mod packed;
 pub mod random;
 pub mod real;
+pub(crate) mod sets;
 pub(crate) mod sparse;
 pub(crate) mod sparse_cholesky;
 pub mod spectral;

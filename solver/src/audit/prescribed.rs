@@ -49,11 +49,13 @@ impl AtEnd<'_> {
     /// The part of a displacement that the condition says something about, less what it says.
     fn difference(&self, u: &Vector3, X: &Vector3, components: usize) -> Vector3 {
         let asked = self.displacement(X);
-        let prescribed = |k: usize| k < components
-            && match &self.condition.prescribed {
-                Prescribed::Displacement(values) => values[k].is_some(),
-                Prescribed::Rotation { .. } | Prescribed::Field(_) => true,
-            };
+        let prescribed = |k: usize| {
+            k < components
+                && match &self.condition.prescribed {
+                    Prescribed::Displacement(values) => values[k].is_some(),
+                    Prescribed::Rotation { .. } | Prescribed::Field(_) => true,
+                }
+        };
         Vector3::from_fn(|k, _| if prescribed(k) { u[k] - asked[k] } else { 0.0 })
     }
 }

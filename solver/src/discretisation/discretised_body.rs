@@ -15,9 +15,10 @@ use crate::discretisation::quadrature::{Moves, NodalSpacing, Quadrature, quadrat
 use crate::discretisation::rows::{Evaluated, Requested, Rows};
 use crate::discretisation::surface_rule::SurfaceRule;
 use crate::error::Error;
-use crate::geometry::{Extent, GeometryError, Panel, Shape};
+use crate::geometry::{CoveredPanel, Extent, GeometryError, Panel, Shape};
 use crate::problem::{
-    BackgroundGrid, Cloud, Dimension, EssentialCondition, Gradients, Loads, Problem, Recipe, refuse,
+    BackgroundGrid, Cloud, Dimension, EssentialCondition, Gradients, Loads, Problem, Recipe,
+    Region, refuse,
 };
 use rayon::prelude::*;
 
@@ -74,13 +75,14 @@ impl Discretisation {
         let approximation =
             approximation_of(&cloud, recipe, stiffness, &dimension).within(&body, recipe.dilation);
         let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
+        let regions = &problem.regions;
         let mut quadrature = if recipe.gradients.is_second_order() {
             let held = held_nodes(&prescribed, &cloud);
             let stays = |X: &Vector3| is_within(&held, X, approximation.mean_radius(X));
             let moves = Moves { stays: &stays };
-            quadrature_of(problem, &body, &recipe.grid, &approximation, Some(&moves))?
+            quadrature_of(problem, regions, (&body, &recipe.grid), &approximation, Some(&moves))?
         } else {
-            quadrature_of(problem, &body, &recipe.grid, &approximation, None)?
+            quadrature_of(problem, regions, (&body, &recipe.grid), &approximation, None)?
         };
         flatten(&mut quadrature.positions, &dimension);
         let spacing: Vec<f64> = quadrature.positions.par_iter().map(spacing_at).collect();
@@ -149,7 +151,7 @@ impl Discretisation {
     /// body encloses.
     fn close(&self, bodies: &[u32]) -> (Vec<Vector3>, Vec<f64>) {
         let d = self.dimension.components();
-        let mut areas = self.surface.strengths(bodies.len(), |panel| panel.normal);
+        let mut areas = self.surface.strengths(bodies.len(), |_, panel| panel.mean_normal());
         let count = bodies.iter().max().map_or(0, |&last| last + 1);
         let mut close = |body: u32| {
             self.surface.close(&mut areas, d, |node: u32| bodies[node as usize] == body)
@@ -189,6 +191,18 @@ impl Discretisation {
         Rows::at(&self.approximation, positions, Requested::ValuesAndGradients)
             .map(|evaluated| evaluated.rows)
             .map_err(|(point, poor)| outside(positions[point], &poor))
+    }
+
+    /// The surface rule of covered panels, a part of the boundary.
+    pub(crate) fn surface_of_part(
+        &self,
+        problem: &Problem,
+        covered: &[CoveredPanel],
+    ) -> Result<SurfaceRule, Error> {
+        let panels = covered.iter().map(|covered| covered.panel).collect();
+        let prescribed = prescribed_nodes(problem, &self.cloud);
+        let panels = Some((panels, self.surface.panel_size));
+        surface_of(problem, panels, &self.cloud, &self.approximation, &prescribed)
     }
 
     /// Mean number of support nodes per quadrature point.
@@ -242,12 +256,12 @@ fn is_within(nodes: &Option<Neighbours>, X: &Vector3, reach: f64) -> bool {
     found
 }
 
-/// Quadrature points of the body, a section in a plane, on a grid that may follow the
-/// nodes.
+/// Quadrature points of the body, a section in a plane, divided into regions, on a grid that
+/// may follow the nodes.
 pub(crate) fn quadrature_of(
     problem: &Problem,
-    body: &Shape,
-    grid: &BackgroundGrid,
+    regions: &[Region],
+    (body, grid): (&Shape, &BackgroundGrid),
     approximation: &Approximation,
     moves: Option<&Moves>,
 ) -> Result<Quadrature, Error> {
@@ -257,7 +271,7 @@ pub(crate) fn quadrature_of(
     let largest = approximation.largest_radius() / dilation;
     let beside_gap = |X: &Vector3| approximation.is_beside_gap(X);
     let spacing = NodalSpacing { within: &within, largest, beside_gap: &beside_gap };
-    quadrature_following(body, &problem.regions, grid, &spacing, &problem.dimension, moves)
+    quadrature_following(body, regions, grid, &spacing, &problem.dimension, moves)
 }
 
 /// The boundary in panels, if consistent gradients, loads or held parts need it. Nodes
@@ -266,7 +280,7 @@ fn panels_of(
     problem: &Problem,
     body: &Shape,
     cloud: &mut NodeCloud,
-) -> Result<Option<Vec<Panel>>, Error> {
+) -> Result<Option<(Vec<Panel>, f64)>, Error> {
     let given = matches!(problem.recipe.cloud, Cloud::Given { .. });
     let held = !given && problem.conditions.iter().any(|c| c.extent == Extent::Surface);
     if !held && !needs_surface(problem) {
@@ -281,7 +295,7 @@ fn panels_of(
     if held {
         HeldParts::new(body, &problem.conditions, &panels, size).place_nodes(cloud);
     }
-    Ok(Some(panels))
+    Ok(Some((panels, size)))
 }
 
 fn needs_surface(problem: &Problem) -> bool {
@@ -292,7 +306,7 @@ fn needs_surface(problem: &Problem) -> bool {
 /// The surface rule, if consistent gradients or loads need it.
 fn surface_of(
     problem: &Problem,
-    panels: Option<Vec<Panel>>,
+    panels: Option<(Vec<Panel>, f64)>,
     cloud: &NodeCloud,
     approximation: &Approximation,
     prescribed: &[bool],

@@ -23,6 +23,11 @@ const NEXT_TO: f64 = 1e-4;
 /// Of cosines \[–\].
 const ROUND_OFF: f64 = 1e-9;
 
+/// Cosine of the largest angle at which one face lies along another \[–\].
+const ALONG: f64 = 0.9;
+/// A level beyond all others \[m\].
+const BEYOND: f64 = 1e300;
+
 /// Places next to X on both sides along every axis.
 fn around(X: &Vector3, distance: f64) -> impl Iterator<Item = Vector3> {
     (0..3).flat_map(move |axis| [-distance, distance].map(|way| X + Vector3::ith(axis, way)))
@@ -83,6 +88,55 @@ impl Selector {
     /// Whether a piece of the boundary is selected, by its centre and its normal.
     pub fn contains_panel(&self, panel: &Panel) -> bool {
         self.selects(&panel.centre, Some(&panel.normal))
+    }
+
+    /// At most 0 where X, on the boundary with its outward normal there, is selected \[m\].
+    /// Tolerances of at most `thin` \[m\] are there for round-off: faces that lie along one of
+    /// the selection count as on it, and outlines across faces, as borders within the body, are
+    /// where they would be without.
+    pub(crate) fn level(&self, X: &Vector3, normal: Option<&Vector3>, thin: f64) -> f64 {
+        let sign = |is_selected: bool| if is_selected { -1.0 } else { 1.0 };
+        let of = |part: &Selector| part.level(X, normal, thin);
+        // Of a distance from a face, which has the gradient there.
+        let beside = |distance: f64, tolerance: f64, gradient: &dyn Fn() -> Vector3| match normal {
+            _ if tolerance > thin => distance - tolerance,
+            Some(normal) if distance.abs() <= tolerance && gradient().dot(normal).abs() > ALONG => {
+                -tolerance
+            }
+            _ => distance,
+        };
+        match (self, normal) {
+            (Selector::All, _) => -BEYOND,
+            (Selector::Plane { point, normal, tolerance }, _) => {
+                beside((X - point).dot(normal).abs(), *tolerance, &|| *normal)
+            }
+            (Selector::Inside { shape, tolerance }, _) => {
+                beside(shape.signed_distance(X), *tolerance, &|| shape.gradient(X))
+            }
+            (Selector::Label { map, label }, _) => sign(map.label_at(X) == *label),
+            (Selector::Facing { direction, angle, .. }, Some(normal)) => {
+                angle.cos() - ROUND_OFF - normal.dot(direction)
+            }
+            (Selector::Facing { .. }, None) => sign(self.contains(X)),
+            (Selector::Union(parts), _) => parts.iter().map(of).fold(BEYOND, f64::min),
+            (Selector::Intersection(parts), _) => parts.iter().map(of).fold(-BEYOND, f64::max),
+            (Selector::Not(part), _) => -of(part),
+        }
+    }
+
+    /// The most that [`Self::level`] changes over a length; infinite for labels, and for
+    /// directions unless they are those of a flat surface \[–\].
+    pub(crate) fn steepness(&self, is_flat: bool) -> f64 {
+        match self {
+            Selector::Facing { .. } if is_flat => 1.0,
+            Selector::Label { .. } | Selector::Facing { .. } => f64::INFINITY,
+            Selector::Inside { shape, .. } => shape.steepness(),
+            Selector::All | Selector::Plane { .. } => 1.0,
+            Selector::Union(parts) | Selector::Intersection(parts) => {
+                parts.iter().map(|part| part.steepness(is_flat)).fold(1.0, f64::max)
+            }
+            Selector::Not(part) => part.steepness(is_flat),
+        }
     }
 
     fn selects(&self, X: &Vector3, normal: Option<&Vector3>) -> bool {

@@ -140,6 +140,19 @@ impl Shape {
         }
     }
 
+    /// The most that the signed distance changes over a length \[–\].
+    pub(crate) fn steepness(&self) -> f64 {
+        match self {
+            Shape::Union(members) | Shape::Intersection(members) => {
+                members.iter().map(Shape::steepness).fold(1.0, f64::max)
+            }
+            Shape::Difference(body, hole) => body.steepness().max(hole.steepness()),
+            // Distances of neighbouring voxels differ by little more than theirs.
+            Shape::Labels(_) => 2.0,
+            _ => 1.0,
+        }
+    }
+
     fn gradient_by_differences(&self, X: &Vector3, step: f64) -> Vector3 {
         // On a medial axis the differences cancel; beside it they do not.
         for offset in [Vector3::zeros(), Vector3::new(1.3, 2.1, 3.7) * step] {

@@ -2,10 +2,12 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
-use crate::discretisation::{Discretisation, Warning};
+use crate::discretisation::{Discretisation, Rows, Warning};
 use crate::error::Error;
-use crate::geometry::{Panel, Selector};
+use crate::geometry::Selector;
 use crate::model::essential::Constraints;
+use crate::model::loaded_part::LoadedPart;
+use crate::model::loaded_volume::LoadedVolume;
 use crate::problem::{Amplitude, Loads, Motion, Problem, Traction};
 
 /// A nodal force pattern with the amplitude that scales it.
@@ -28,24 +30,27 @@ pub fn load_patterns(
     let d = problem.dimension.components();
     let size = d * discretisation.cloud.positions.len();
     let mut patterns = Vec::new();
+    let quadrature = &discretisation.quadrature;
+    let masses: Vec<f64> =
+        density.iter().zip(&quadrature.weights).map(|(density, weight)| density * weight).collect();
     for (index, body_force) in problem.loads.body_forces.iter().enumerate() {
-        let mut acts = false;
         let mut force = vec![0.0; size];
-        let supports = &discretisation.supports;
-        let weights = &discretisation.quadrature.weights;
-        for (point, (density, weight)) in density.iter().zip(weights).enumerate() {
-            let position = &discretisation.quadrature.positions[point];
-            if !body_force.part.contains(position) {
-                continue;
+        let mut add_points = |positions: &[Vector3], masses: &[f64], rows: &Rows| {
+            for (point, (X, mass)) in positions.iter().zip(masses).enumerate() {
+                let acceleration = body_force.acceleration.at(X);
+                for entry in rows.row(point) {
+                    let nodal_mass = mass * rows.phi[entry];
+                    add(&mut force, d, rows.nodes[entry], &(acceleration * nodal_mass));
+                }
             }
-            acts = true;
-            let acceleration = body_force.acceleration.at(position);
-            let mass = density * weight;
-            for entry in supports.row(point) {
-                let nodal_mass = mass * supports.phi[entry];
-                add(&mut force, d, supports.nodes[entry], &(acceleration * nodal_mass));
-            }
-        }
+            !positions.is_empty()
+        };
+        let acts = if let Selector::All = body_force.part {
+            add_points(&quadrature.positions, &masses, &discretisation.supports)
+        } else {
+            let part = LoadedVolume::new(problem, discretisation, &body_force.part)?;
+            add_points(&part.positions, &part.masses, &part.rows)
+        };
         if !acts {
             return Err(Error::EmptyBodyForce { index });
         }
@@ -65,17 +70,12 @@ fn traction_force(
 ) -> Result<Vec<f64>, Error> {
     let d = problem.dimension.components();
     let nodes = discretisation.cloud.positions.len();
-    let surface = &discretisation.surface;
-    let chosen = |panel: &Panel| traction.part.contains_panel(panel);
-    if !surface.panels.iter().any(chosen) {
+    let Some(part) = LoadedPart::new(problem, discretisation, &traction.part)? else {
         return Err(Error::EmptyTraction { name: traction.name.clone() });
-    }
-    let density = |panel: &Panel| match chosen(panel) {
-        true => traction.traction.at(&panel.centre),
-        false => Vector3::zeros(),
     };
     let mut force = vec![0.0; d * nodes];
-    let forces = surface.scatter(nodes, &surface.strengths(nodes, density));
+    let strengths = part.strengths(nodes, |panel| traction.traction.at(&panel.centre));
+    let forces = part.rule().scatter(nodes, &strengths);
     for (node, nodal_force) in forces.iter().enumerate() {
         add(&mut force, d, node as u32, nodal_force);
     }

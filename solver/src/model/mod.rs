@@ -5,6 +5,8 @@ pub(crate) mod blocks;
 pub mod contact;
 pub mod essential;
 mod load;
+mod loaded_part;
+mod loaded_volume;
 mod mass;
 mod pressure;
 pub(crate) mod projection;

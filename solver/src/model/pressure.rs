@@ -6,6 +6,7 @@ use crate::algebra::tensor::{Matrix3, Vector3, cofactor, map, tensor_cofactor};
 use crate::discretisation::{Discretisation, Rows};
 use crate::error::Error;
 use crate::geometry::Panel;
+use crate::model::loaded_part::LoadedPart;
 use crate::problem::{Amplitude, Pressure, Problem};
 
 /// A pressure that acts along the inward normal of the deformed surface.
@@ -26,36 +27,37 @@ pub fn pressure_loads(
     problem: &Problem,
     discretisation: &Discretisation,
 ) -> Result<Vec<PressureLoad>, Error> {
-    let load = |pressure: &Pressure| PressureLoad::new(pressure, discretisation);
+    let load = |pressure: &Pressure| PressureLoad::new(pressure, problem, discretisation);
     problem.loads.pressures.iter().map(load).collect()
 }
 
 impl PressureLoad {
-    fn new(pressure: &Pressure, discretisation: &Discretisation) -> Result<PressureLoad, Error> {
-        let surface = &discretisation.surface;
-        let chosen = |panel: &Panel| pressure.part.contains_panel(panel);
-        if !surface.panels.iter().any(chosen) {
+    fn new(
+        pressure: &Pressure,
+        problem: &Problem,
+        discretisation: &Discretisation,
+    ) -> Result<PressureLoad, Error> {
+        let Some(loaded) = LoadedPart::new(problem, discretisation, &pressure.part)? else {
             return Err(Error::EmptyPressure { name: pressure.name.clone() });
-        }
+        };
         let nodes = discretisation.cloud.positions.len();
-        let all = surface.strengths(nodes, |panel| panel.normal);
+        let all = discretisation.surface.strengths(nodes, |_, panel| panel.mean_normal());
         let closed = discretisation.closed_areas();
-        let part = surface.strengths(nodes, |panel| match chosen(panel) {
-            true => panel.normal,
-            false => Vector3::zeros(),
-        });
+        let part = loaded.strengths(nodes, Panel::mean_normal);
         // What closes the whole boundary belongs to the part as far as the point does.
         let area = |point: usize| {
-            let fraction = part[point].dot(&all[point]) / all[point].norm_squared();
+            let Some((whole, fraction)) = loaded.point_of_whole(point) else { return part[point] };
+            let fraction = fraction
+                .unwrap_or_else(|| part[point].dot(&all[whole]) / all[whole].norm_squared());
             match fraction.is_finite() {
-                true => part[point] + fraction * (closed[point] - all[point]),
+                true => part[point] + fraction * (closed[whole] - all[whole]),
                 false => part[point],
             }
         };
         let points = (0..part.len()).filter(|&point| part[point] != Vector3::zeros());
         let points: Vec<usize> = points.collect();
-        let positions: Vec<Vector3> =
-            points.iter().map(|&point| surface.positions()[point]).collect();
+        let positions = loaded.rule().positions();
+        let positions: Vec<Vector3> = points.iter().map(|&point| positions[point]).collect();
         Ok(PressureLoad {
             pressure: pressure.pressure,
             amplitude: pressure.amplitude.clone(),

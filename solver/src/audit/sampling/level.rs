@@ -36,7 +36,7 @@ pub(crate) fn level(selector: &Selector, X: &Vector3, normal: Option<&Vector3>) 
         Selector::Inside { shape, tolerance } => known(shape.signed_distance(X) - tolerance),
         Selector::Label { .. } | Selector::Facing { .. } => {
             let selected = match normal {
-                Some(&normal) => selector.contains_panel(&Panel { centre: *X, area: 0.0, normal }),
+                Some(&normal) => selector.contains_panel(&Panel::flat(*X, 0.0, normal)),
                 None => selector.contains(X),
             };
             // All of a flat piece of the boundary faces the same way.

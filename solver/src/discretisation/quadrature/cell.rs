@@ -26,6 +26,12 @@ impl Cell {
         self.divide(2, components)
     }
 
+    /// Bit n of the number of a corner is axis n.
+    pub fn corners(self, components: usize) -> impl Iterator<Item = Vector3> {
+        let twice = Cell { centre: self.centre, edge: 2.0 * self.edge };
+        twice.children(components).map(|child| child.centre)
+    }
+
     /// Centre and corners, the corners moved inwards slightly so that neighbours
     /// along a shared face do not claim each other's region.
     pub fn samples(self, components: usize) -> impl Iterator<Item = Vector3> {

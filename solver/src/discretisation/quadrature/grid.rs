@@ -2,12 +2,14 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::{Matrix3, Vector3};
+use crate::discretisation::quadrature::borders::Borders;
 use crate::discretisation::quadrature::cell::Cell;
 use crate::discretisation::quadrature::cut::{cut, spread};
 use crate::discretisation::quadrature::gauss::gauss_legendre;
 use crate::discretisation::quadrature::pieces::{Leaf, Moments, pieces};
 use crate::discretisation::quadrature::rule::Quadrature;
 use crate::discretisation::quadrature::second_order::{Moves, Piece};
+use crate::discretisation::quadrature::simplex::Simplex;
 use crate::discretisation::quadrature::subdivision::{NodalSpacing, Subdivision};
 use crate::error::Error;
 use crate::geometry::{POINTS, Shape, indices};
@@ -114,7 +116,7 @@ pub fn quadrature_following(
         (0..size[1] * size[2]).into_par_iter().map(row_of_cells).collect();
     let (parts, pieces): (Vec<Quadrature>, Vec<Vec<Piece>>) =
         rows.into_iter().collect::<Result<_, _>>()?;
-    let mut all = join(parts);
+    let mut all = Quadrature::joined(parts);
     if all.positions.is_empty() {
         return Err(Error::NoQuadraturePoints);
     }
@@ -122,19 +124,6 @@ pub fn quadrature_following(
         moves.apply(&pieces.concat(), body, regions, &mut all);
     }
     Ok(all)
-}
-
-/// All parts in their order.
-fn join(parts: Vec<Quadrature>) -> Quadrature {
-    let mut all = Quadrature::default();
-    for part in parts {
-        all.positions.extend(part.positions);
-        all.weights.extend(part.weights);
-        all.regions.extend(part.regions);
-        all.cells += part.cells;
-        all.cut_cells += part.cut_cells;
-    }
-    all
 }
 
 impl PointCollector<'_> {
@@ -157,7 +146,7 @@ impl PointCollector<'_> {
 
     fn leaf(&mut self, cell: Cell, meets_boundary: bool) -> Result<(), Error> {
         POINTS.check(self.out.positions.len() as f64)?;
-        let mixed = self.regions.len() > 1 && self.is_mixed(&cell);
+        let mut mixed = self.may_be_mixed(&cell);
         let before = self.out.positions.len();
         match self.grid.inside {
             InsideRule::Centre => {
@@ -166,7 +155,15 @@ impl PointCollector<'_> {
                 }
                 self.whole(&cell)?;
             }
-            InsideRule::VolumeFraction if meets_boundary || mixed => self.parts(&cell)?,
+            InsideRule::VolumeFraction if meets_boundary => self.parts(&cell)?,
+            InsideRule::VolumeFraction if mixed => {
+                self.parts(&cell)?;
+                mixed = self.out.regions[before..].windows(2).any(|pair| pair[0] != pair[1]);
+                if !mixed {
+                    self.drop_from(before);
+                    self.whole(&cell)?;
+                }
+            }
             InsideRule::VolumeFraction => self.whole(&cell)?,
         }
         if self.out.positions.len() > before {
@@ -236,7 +233,12 @@ impl PointCollector<'_> {
             return Ok(());
         }
         let is_cut = distance > -reach;
-        let mixed = depth > 0 && self.regions.len() > 1 && self.is_mixed(cell);
+        let mixed = self.may_be_mixed(cell);
+        if mixed && let Some(parts) = self.borders().split(cell, is_cut, depth == 0) {
+            self.keep_parts(cell, &parts, keep);
+            return Ok(());
+        }
+        let mixed = mixed && depth > 0;
         let one_plane = match (is_cut, mixed) {
             (false, false) => Some((1.0, Vector3::zeros(), self.spread(cell))),
             (true, false) if depth > 0 => self.flat_cut(cell, distance),
@@ -258,6 +260,17 @@ impl PointCollector<'_> {
             keep(Leaf { cell: *cell, region, centroid, volume, spread });
         }
         Ok(())
+    }
+
+    /// Visits the parts of a cell by region.
+    fn keep_parts(&self, cell: &Cell, parts: &[Vec<Simplex>], keep: &mut impl FnMut(Leaf)) {
+        for (region, parts) in parts.iter().enumerate() {
+            for part in parts {
+                let (centroid, spread) = part.moments();
+                let volume = part.size() * self.thickness;
+                keep(Leaf { cell: *cell, region, centroid, volume, spread });
+            }
+        }
     }
 
     /// Inside fraction of a cell, the shift of its centroid and its spread where the
@@ -350,6 +363,14 @@ impl PointCollector<'_> {
         }
     }
 
+    /// Takes points back.
+    fn drop_from(&mut self, first: usize) {
+        self.out.truncate(first);
+        if let Some(pieces) = &mut self.pieces {
+            pieces.truncate(first);
+        }
+    }
+
     fn push(&mut self, X: Vector3, weight: f64, region: u16) {
         self.out.positions.push(X);
         self.out.weights.push(weight);
@@ -361,11 +382,14 @@ impl PointCollector<'_> {
         found.map(|index| index as u16).ok_or(Error::PointWithoutRegion { position: *X })
     }
 
-    /// Whether the sample points of a cell belong to more than one region.
-    fn is_mixed(&self, cell: &Cell) -> bool {
-        let owner = |X: &Vector3| self.regions.iter().position(|region| region.part.contains(X));
-        let at_centre = owner(&cell.centre);
-        cell.samples(self.components).any(|X| owner(&X) != at_centre)
+    /// Whether a border between regions may pass a cell.
+    fn may_be_mixed(&self, cell: &Cell) -> bool {
+        self.regions.len() > 1 && self.borders().may_pass(cell)
+    }
+
+    fn borders(&self) -> Borders<'_> {
+        let edge = self.subdivision.largest_edge();
+        Borders::new(self.body, self.regions, self.components, edge)
     }
 
     fn volume(&self, cell: &Cell) -> f64 {

@@ -1,5 +1,6 @@
 //! Quadrature points of the volume (method book, section 7).
 
+mod borders;
 mod cell;
 mod cut;
 mod gauss;
@@ -7,6 +8,7 @@ mod grid;
 mod pieces;
 mod rule;
 mod second_order;
+mod simplex;
 mod subdivision;
 
 pub use grid::{quadrature, quadrature_following};

@@ -1,11 +1,12 @@
 //! The pieces into which gaps of the body divide a cell (method book, section 7).
 #![allow(non_snake_case)]
 
+use crate::algebra::sets::Sets;
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::quadrature::cell::Cell;
-use crate::geometry::{Place, Sets, Shape, indices};
+use crate::geometry::{Place, Shape, indices};
 
-/// A sub-cell, or the part of it that is inside.
+/// A sub-cell, or a part of it that is inside.
 pub(super) struct Leaf {
     pub cell: Cell,
     pub region: usize,
@@ -78,13 +79,14 @@ pub(super) fn pieces(
     renumbered(all.map(|leaf| sets.first(leaf) as usize).collect(), leaves.len())
 }
 
-/// Pairs of sub-cells that share a face, some more than once.
+/// Pairs of parts of sub-cells that share a face or are in the same one, some more than once.
 fn touching(cell: &Cell, leaves: &[Leaf], finest: usize, components: usize) -> Vec<(u32, u32)> {
     const NONE: u32 = u32::MAX;
     let size = [finest, finest, if components == 3 { finest } else { 1 }];
     let step = cell.edge / finest as f64;
     let mut owner = vec![NONE; size.iter().product()];
     let index = |[i, j, k]: [usize; 3]| (k * size[1] + j) * size[0] + i;
+    let mut pairs = Vec::new();
     for (leaf, number) in leaves.iter().zip(0..) {
         let count = (leaf.cell.edge / step).round().max(1.0) as usize;
         let corner =
@@ -94,10 +96,13 @@ fn touching(cell: &Cell, leaves: &[Leaf], finest: usize, components: usize) -> V
             most => ((corner[axis] / step).round().max(0.0) as usize).min(most - count),
         });
         for at in indices([0, 1, 2].map(|axis| count.min(size[axis]))) {
-            owner[index([0, 1, 2].map(|axis| first[axis] + at[axis]))] = number;
+            let owner = &mut owner[index([0, 1, 2].map(|axis| first[axis] + at[axis]))];
+            if *owner != NONE && pairs.last() != Some(&(*owner, number)) {
+                pairs.push((*owner, number));
+            }
+            *owner = number;
         }
     }
-    let mut pairs = Vec::new();
     for at in indices(size) {
         for axis in (0..components).filter(|&axis| at[axis] + 1 < size[axis]) {
             let mut next = at;

@@ -23,6 +23,8 @@ use rayon::prelude::*;
 pub struct SurfaceRule {
     /// The pieces of the boundary.
     pub panels: Vec<Panel>,
+    /// Their longest edge \[m\].
+    pub panel_size: f64,
     /// φ at the centre of each panel.
     panel_rows: Rows,
     /// Points and fractions of panel p: `starts[p]..starts[p + 1]`.
@@ -50,7 +52,7 @@ const SWEEPS: usize = 3;
 impl SurfaceRule {
     /// The points of a boundary; nodes with `prescribed` have a prescribed displacement.
     pub fn new(
-        panels: Vec<Panel>,
+        (panels, panel_size): (Vec<Panel>, f64),
         cloud: &NodeCloud,
         approximation: &Approximation,
         prescribed: &[bool],
@@ -80,6 +82,7 @@ impl SurfaceRule {
         let divided: Vec<_> = panels.par_iter().map(divide).collect();
         let mut rule = SurfaceRule {
             panels,
+            panel_size,
             panel_rows,
             starts: vec![0],
             positions,
@@ -115,6 +118,16 @@ impl SurfaceRule {
         &self.positions
     }
 
+    /// How many of them are prescribed nodes.
+    pub fn prescribed_count(&self) -> usize {
+        self.prescribed.len()
+    }
+
+    /// The panels that are points, after the prescribed nodes.
+    pub fn free_panels(&self) -> &[u32] {
+        &self.free
+    }
+
     /// φ at a point: the rows and which of them.
     fn row(&self, point: usize) -> (&Rows, usize) {
         match point.checked_sub(self.prescribed.len()) {
@@ -123,15 +136,15 @@ impl SurfaceRule {
         }
     }
 
-    /// Strengths g_i of a density g on the panels, with its resultant and first
+    /// Strengths g_i of a density g on the panels, each with its number, with its resultant and first
     /// moments, linear in g (method book, eq. 8.3).
-    pub fn strengths(&self, nodes: usize, g: impl Fn(&Panel) -> Vector3) -> Vec<Vector3> {
+    pub fn strengths(&self, nodes: usize, g: impl Fn(usize, &Panel) -> Vector3) -> Vec<Vector3> {
         let mut strengths = vec![Vector3::zeros(); self.positions.len()];
         let count = self.prescribed.len();
         let mut sizes = vec![0.0; count];
         let mut target = vec![Vector3::zeros(); nodes];
         for (p, panel) in self.panels.iter().enumerate() {
-            let strength = panel.area * g(panel);
+            let strength = panel.area * g(p, panel);
             let entries = self.starts[p]..self.starts[p + 1];
             let divided = (self.points[entries.start] as usize) < count;
             for entry in entries {

@@ -1,10 +1,13 @@
 //! Panels of unions, intersections and differences from those of their members.
+#![allow(non_snake_case)]
 
-use crate::geometry::boundary::panel::Panel;
+use crate::algebra::tensor::Vector3;
+use crate::geometry::boundary::patch::{Level, Patch};
 use crate::geometry::error::GeometryError;
 use crate::geometry::shape::Shape;
+use rayon::prelude::*;
 
-type PanelsOf<'a> = &'a dyn Fn(&Shape) -> Result<Vec<Panel>, GeometryError>;
+type PatchesOf<'a> = &'a dyn Fn(&Shape) -> Result<Vec<Patch>, GeometryError>;
 
 /// Which panels of one member remain, depending on where they lie on another.
 #[derive(Clone, Copy, PartialEq)]
@@ -19,47 +22,48 @@ enum Keep {
     Inside,
 }
 
-/// The fraction of a panel of given `width` \[m\] that remains: all, nothing, or,
-/// where the other member cuts it, clamp(½ + d/(b g), 0, 1) (method book, eq. 4.5).
-fn fraction_kept(panel: &Panel, width: f64, other: &Shape, keep: Keep, tolerance: f64) -> f64 {
-    let inside = matches!(keep, Keep::Inside | Keep::InsideOrAlong);
-    let sign = if inside { -1.0 } else { 1.0 };
-    let distance = sign * other.signed_distance(&panel.centre);
-    if distance.abs() > width {
-        return if distance > 0.0 { 1.0 } else { 0.0 };
+/// Normals of which the cosine is larger than this are those of one face \[–\].
+const SAME_FACE: f64 = 0.999;
+/// Halvings of a panel that another member cuts.
+const DEEPEST: usize = 6;
+
+impl Keep {
+    /// At most 0 where a place on one member, with its normal there, remains in view of the
+    /// other \[m\].
+    fn level(self, X: &Vector3, normal: &Vector3, other: &Shape, tolerance: f64) -> f64 {
+        let distance = other.signed_distance(X);
+        if distance.abs() <= tolerance {
+            let along = other.gradient(X).dot(normal);
+            if along.abs() > SAME_FACE {
+                let remains = match self {
+                    Keep::OutsideOrAlong | Keep::InsideOrAlong => along > 0.0,
+                    Keep::OutsideOrAgainst => along < 0.0,
+                    Keep::Outside | Keep::Inside => false,
+                };
+                return if remains { -tolerance } else { tolerance };
+            }
+        }
+        match self {
+            Keep::Inside | Keep::InsideOrAlong => distance,
+            _ => -distance,
+        }
     }
-    let gradient = other.gradient(&panel.centre);
-    let along = gradient.dot(&panel.normal);
-    let steepness = (gradient - along * panel.normal).norm();
-    if steepness > 1e-3 {
-        return (0.5 + distance / (width * steepness)).clamp(0.0, 1.0);
-    }
-    let remains = match keep {
-        _ if distance.abs() > tolerance => distance > 0.0,
-        Keep::OutsideOrAlong | Keep::InsideOrAlong => along > 0.0,
-        Keep::OutsideOrAgainst => along < 0.0,
-        Keep::Outside | Keep::Inside => false,
-    };
-    if remains { 1.0 } else { 0.0 }
 }
 
-/// Panels of the members that lie on the boundary of the composite, cut in
-/// proportion where members meet. Of coinciding faces at most one remains.
-/// `width` gives the edge of a panel \[m\].
-pub(super) fn composite_panels(
-    shape: &Shape,
-    width: impl Fn(&Panel) -> f64,
-    of: PanelsOf,
-) -> Result<Vec<Panel>, GeometryError> {
+/// Panels of the members that lie on the boundary of the composite and end where members
+/// meet. Of coinciding faces at most one remains.
+pub(super) fn composite_patches(shape: &Shape, of: PatchesOf) -> Result<Vec<Patch>, GeometryError> {
     let tolerance = 1e-9 * shape.size();
     let mut kept = Vec::new();
-    let mut cut = |panel: Panel, others: &mut dyn Iterator<Item = (&Shape, Keep)>, flip: f64| {
-        let fraction: f64 = others
-            .map(|(other, keep)| fraction_kept(&panel, width(&panel), other, keep, tolerance))
-            .product();
-        if fraction > 1e-6 {
-            kept.push(Panel { area: fraction * panel.area, normal: flip * panel.normal, ..panel });
-        }
+    let cut = |patches: Vec<Patch>, others: &[(&Shape, Keep)]| -> Vec<Patch> {
+        let steepness = others.iter().map(|(other, _)| other.steepness()).fold(1.0, f64::max);
+        let at = |X: &Vector3, normal: &Vector3| {
+            let levels = others.iter().map(|(other, keep)| keep.level(X, normal, other, tolerance));
+            levels.fold(f64::NEG_INFINITY, f64::max)
+        };
+        let level = Level { at: &at, steepness };
+        let remaining = |patch: &Patch| patch.cut(&level, DEEPEST).map(|(kept, _)| kept.exact());
+        patches.par_iter().filter_map(remaining).collect()
     };
     match shape {
         Shape::Union(members) | Shape::Intersection(members) => {
@@ -68,20 +72,16 @@ pub(super) fn composite_panels(
                 _ => [Keep::InsideOrAlong, Keep::Inside],
             };
             for (n, member) in members.iter().enumerate() {
-                for panel in of(member)? {
-                    let others = members.iter().enumerate().filter(|(other, _)| *other != n);
-                    let rule = |other| if n < other { first } else { later };
-                    cut(panel, &mut others.map(|(other, shape)| (shape, rule(other))), 1.0);
-                }
+                let rule = |other| if n < other { first } else { later };
+                let others = members.iter().enumerate().filter(|(other, _)| *other != n);
+                let others: Vec<_> = others.map(|(other, shape)| (shape, rule(other))).collect();
+                kept.extend(cut(of(member)?, &others));
             }
         }
         Shape::Difference(body, hole) => {
-            for panel in of(body)? {
-                cut(panel, &mut std::iter::once((&**hole, Keep::OutsideOrAgainst)), 1.0);
-            }
-            for panel in of(hole)? {
-                cut(panel, &mut std::iter::once((&**body, Keep::Inside)), -1.0);
-            }
+            kept = cut(of(body)?, &[(&**hole, Keep::OutsideOrAgainst)]);
+            let walls = cut(of(hole)?, &[(&**body, Keep::Inside)]);
+            kept.extend(walls.into_iter().map(Patch::flipped));
         }
         _ => {}
     }

@@ -7,11 +7,13 @@ mod features;
 mod marching;
 mod panel;
 mod panels;
+mod patch;
 mod points;
 mod solid_panels;
 mod target_spacing;
 
 pub use panel::Panel;
+pub(crate) use patch::{Level, Patch};
 pub(crate) use points::{BoundaryPoints, boundary_points, project};
 pub(crate) use target_spacing::{TargetSpacing, lattice_cells};
 

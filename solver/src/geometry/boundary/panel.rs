@@ -12,6 +12,21 @@ pub struct Panel {
     pub area: f64,
     /// Unit vector out of the solid.
     pub normal: Vector3,
+    /// Length of the mean of the normals that `area` × `normal` stands for: 1 where the panel
+    /// is flat or belongs to the rule of a whole solid, less where it is curved \[–\].
+    pub flatness: f64,
+}
+
+impl Panel {
+    /// Of a flat panel.
+    pub(crate) fn flat(centre: Vector3, area: f64, normal: Vector3) -> Panel {
+        Panel { centre, area, normal, flatness: 1.0 }
+    }
+
+    /// ∫ N dA over the area \[–\].
+    pub fn mean_normal(&self) -> Vector3 {
+        self.flatness * self.normal
+    }
 }
 
 /// Number of pieces of at most `size` in `length`.

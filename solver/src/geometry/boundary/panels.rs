@@ -1,12 +1,13 @@
 //! The boundary as small panels, for surface integrals.
 
 use crate::algebra::tensor::Vector3;
-use crate::geometry::boundary::composite::composite_panels;
-use crate::geometry::boundary::curve_panels::{ellipse_panels, line_panels, segment_panels};
+use crate::geometry::boundary::composite::composite_patches;
+use crate::geometry::boundary::curve_panels::{ellipse_patches, line_patches, segment_patches};
 use crate::geometry::boundary::marching;
 use crate::geometry::boundary::panel::{Panel, pieces_of_box};
+use crate::geometry::boundary::patch::Patch;
 use crate::geometry::boundary::solid_panels::{
-    box_panels, cylinder_panels, ellipsoid_panels, prism_panels, rectangle, triangle_panels,
+    box_patches, cylinder_patches, ellipsoid_patches, prism_patches, rectangle, triangle_patches,
 };
 use crate::geometry::dimension::Dimension;
 use crate::geometry::error::{GeometryError, positive};
@@ -21,23 +22,42 @@ const FILLED: f64 = 1.0 / 3.0;
 
 impl Shape {
     /// Panels with edges of at most `size` \[m\] that cover the boundary, in
-    /// a plane that of the cross-section without its ends. Areas and normals
-    /// are exact for flat faces, cylinders and spheres. Where members of a
-    /// composite meet, areas are reduced in proportion and centres stay.
+    /// a plane that of the cross-section without its ends. Areas are exact for flat faces,
+    /// cylinders and spheres, and panels end where members of a composite meet.
     pub fn boundary_panels(
         &self,
         size: f64,
         dimension: &Dimension,
     ) -> Result<Vec<Panel>, GeometryError> {
+        let mut panels: Vec<Panel> = self.boundary_pieces(size, dimension)?;
+        if let Dimension::PlaneStrain { thickness, .. } = dimension {
+            panels.iter_mut().for_each(|panel| panel.area *= thickness);
+        }
+        Ok(panels)
+    }
+
+    /// The same with their geometry, in the same order, in a plane of thickness 1.
+    pub(crate) fn boundary_patches(
+        &self,
+        size: f64,
+        dimension: &Dimension,
+    ) -> Result<Vec<Patch>, GeometryError> {
+        self.boundary_pieces(size, dimension)
+    }
+
+    fn boundary_pieces<T: From<Patch> + Send>(
+        &self,
+        size: f64,
+        dimension: &Dimension,
+    ) -> Result<Vec<T>, GeometryError> {
         positive("the panel size", size)?;
         match dimension {
-            Dimension::Three => surface_panels(self, size, self.finite_bounds(dimension)?),
-            Dimension::PlaneStrain { thickness, z } => {
+            Dimension::Three => surface_pieces(self, size, self.finite_bounds(dimension)?),
+            Dimension::PlaneStrain { z, .. } => {
                 let section = self.section_at(*z)?;
                 let around = section.finite_bounds(dimension)?;
-                let mut panels = curve_panels(&section, size, *z, around)?;
-                panels.iter_mut().for_each(|panel| panel.area *= thickness);
-                Ok(panels)
+                let patches = curve_patches(&section, size, *z, around)?;
+                Ok(patches.into_iter().map(T::from).collect())
             }
         }
     }
@@ -64,81 +84,92 @@ fn refuse_too_many(shape: &Shape, size: f64, dimension: &Dimension) -> Result<()
 }
 
 /// Panels whose area is a length, of a section.
-fn curve_panels(
+fn curve_patches(
     shape: &Shape,
     size: f64,
     z: f64,
     around: Bounds,
-) -> Result<Vec<Panel>, GeometryError> {
+) -> Result<Vec<Patch>, GeometryError> {
     let flat = Dimension::PlaneStrain { thickness: 1.0, z };
     refuse_too_many(shape, size, &flat)?;
     match shape {
-        Shape::Polygon { points, .. } => Ok(line_panels(&anticlockwise(points), size, z)),
-        Shape::Ellipsoid { centre, radii } => Ok(ellipse_panels(centre, radii, size, z)),
+        Shape::Polygon { points, .. } => Ok(line_patches(&anticlockwise(points), size, z)),
+        Shape::Ellipsoid { centre, radii } => Ok(ellipse_patches(centre, radii, size, z)),
         Shape::HalfSpace { point, normal } => {
             let (middle, reach) = patch(point, normal, around);
             let along = reach * Vector3::new(-normal.y, normal.x, 0.0);
             let (a, b) = (middle - along, middle + along);
-            Ok(segment_panels([a.x, a.y], [b.x, b.y], size, z).collect())
+            Ok(segment_patches([a.x, a.y], [b.x, b.y], size, z).collect())
         }
         Shape::Labels(field) => {
             let curves = marching::contours(shape, z, (0.7 * size).min(field.voxel()))?;
-            Ok(curves.iter().flat_map(|curve| line_panels(curve, size, z)).collect())
+            Ok(curves.iter().flat_map(|curve| line_patches(curve, size, z)).collect())
         }
         Shape::Function(_) => {
             let curves = marching::contours(shape, z, 0.7 * size)?;
-            Ok(curves.iter().flat_map(|curve| line_panels(curve, size, z)).collect())
+            Ok(curves.iter().flat_map(|curve| line_patches(curve, size, z)).collect())
         }
         Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(..) => {
-            composite_panels(shape, |panel| panel.area, &|member| {
-                curve_panels(member, size, z, around)
-            })
+            composite_patches(shape, &|member| curve_patches(member, size, z, around))
         }
         _ => Err(GeometryError::Unbounded { shape: shape.name() }),
     }
 }
 
-fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>, GeometryError> {
+fn surface_pieces<T: From<Patch> + Send>(
+    shape: &Shape,
+    size: f64,
+    around: Bounds,
+) -> Result<Vec<T>, GeometryError> {
     refuse_too_many(shape, size, &Dimension::Three)?;
+    let pieces: Vec<T> = match shape {
+        Shape::Labels(field) => {
+            isosurface_pieces(shape, (size / 3_f64.sqrt()).min(field.voxel()), size)?
+        }
+        Shape::Function(_) => isosurface_pieces(shape, size / 3_f64.sqrt(), size)?,
+        Shape::Surface(surface) => triangle_patches(surface.corners(), size),
+        _ => solid_patches(shape, size, around)?.into_iter().map(T::from).collect(),
+    };
+    PANELS.check(pieces.len() as f64).map(|()| pieces)
+}
+
+/// Of a shape that is stated by a few numbers, and of composites.
+fn solid_patches(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Patch>, GeometryError> {
     match shape {
-        Shape::Box { min, max } => Ok(box_panels(min, max, size)),
+        Shape::Box { min, max } => Ok(box_patches(min, max, size)),
         Shape::Cylinder { base, axis, radius, height } => {
-            Ok(cylinder_panels(base, axis, *radius, *height, size))
+            Ok(cylinder_patches(base, axis, *radius, *height, size))
         }
         Shape::Sphere { centre, radius } => {
-            Ok(ellipsoid_panels(centre, &Vector3::repeat(*radius), size))
+            Ok(ellipsoid_patches(centre, &Vector3::repeat(*radius), size))
         }
         Shape::Ellipsoid { centre, radii } if radii.z.is_finite() => {
-            Ok(ellipsoid_panels(centre, radii, size))
+            Ok(ellipsoid_patches(centre, radii, size))
         }
         Shape::Polygon { points, z } if (z.1 - z.0).is_finite() => {
-            Ok(prism_panels(points, *z, size))
+            Ok(prism_patches(points, *z, size))
         }
         Shape::HalfSpace { point, normal } => {
             let (middle, reach) = patch(point, normal, around);
             let (u, v) = perpendicular(normal);
-            let mut panels = Vec::new();
+            let mut patches = Vec::new();
             let corner = middle - reach * (u + v);
-            rectangle(corner, 2.0 * reach * u, 2.0 * reach * v, size, &mut panels);
-            Ok(panels)
+            rectangle(corner, 2.0 * reach * u, 2.0 * reach * v, size, &mut patches);
+            Ok(patches)
         }
-        Shape::Labels(field) => {
-            isosurface_panels(shape, (size / 3_f64.sqrt()).min(field.voxel()), size)
-        }
-        Shape::Function(_) => isosurface_panels(shape, size / 3_f64.sqrt(), size),
-        Shape::Surface(surface) => Ok(triangle_panels(surface.corners(), size)),
         Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(..) => {
-            composite_panels(shape, |panel| panel.area.sqrt(), &|member| {
-                surface_panels(member, size, around)
-            })
+            composite_patches(shape, &|member| surface_pieces(member, size, around))
         }
         _ => Err(GeometryError::Unbounded { shape: shape.name() }),
     }
-    .and_then(|panels: Vec<Panel>| PANELS.check(panels.len() as f64).map(|()| panels))
 }
 
 /// Panels of edge `size` \[m\] on triangles from cubes of `step` \[m\].
-fn isosurface_panels(shape: &Shape, step: f64, size: f64) -> Result<Vec<Panel>, GeometryError> {
+fn isosurface_pieces<T: From<Patch> + Send>(
+    shape: &Shape,
+    step: f64,
+    size: f64,
+) -> Result<Vec<T>, GeometryError> {
     let layers = marching::isosurface(shape, step)?.into_par_iter();
-    Ok(layers.flat_map_iter(|layer| triangle_panels(layer.into_iter(), size)).collect())
+    Ok(layers.flat_map_iter(|layer| triangle_patches(layer.into_iter(), size)).collect())
 }

@@ -5,10 +5,10 @@ mod shells;
 #[cfg(test)]
 mod tests;
 
+use crate::algebra::sets::Sets;
 use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::{closed_chains, polygon_area};
-use crate::geometry::sets::Sets;
 use crate::geometry::triangles::{Triangle, area_vector, enclosed_volume, merged, parry};
 use parry3d_f64::query::PointQueryWithLocation;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};

@@ -1,9 +1,9 @@
 //! The closed shells that a surface consists of, and how they may lie to each other.
 #![allow(non_snake_case)]
 
+use crate::algebra::sets::Sets;
 use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::geometry::error::GeometryError;
-use crate::geometry::sets::Sets;
 use crate::geometry::triangles::{Triangle, area_vector, enclosed_volume, parry};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::query::PointQueryWithLocation;

@@ -166,7 +166,8 @@ fn finer_rule(
         grid.cells_per_spacing = Some(cells.max(asked));
     }
     let body = problem.body.section(&problem.dimension)?;
-    let rule = quadrature_of(problem, &body, &grid, &discretisation.approximation, None)?;
+    let approximation = &discretisation.approximation;
+    let rule = quadrature_of(problem, &problem.regions, (&body, &grid), approximation, None)?;
     Ok((discretisation.rows_at(&rule.positions)?, rule.weights))
 }
 

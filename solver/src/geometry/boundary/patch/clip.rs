@@ -1,0 +1,200 @@
+//! The part of a piece of the boundary where a level is not positive.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::geometry::boundary::patch::chart::{Chart, Place};
+
+/// What remains of a surface: where `at`, of a position and the outward normal there, is at
+/// most 0.
+pub struct Level<'a> {
+    pub at: &'a (dyn Fn(&Vector3, &Vector3) -> f64 + Sync),
+    /// The most that it changes over a length; infinite if that is not known \[–\].
+    pub steepness: f64,
+}
+
+/// A level that differs by less than this fraction of the size of a triangle from a linear one
+/// is linear \[–\].
+const LINEAR: f64 = 1e-4;
+/// A border that bends by less than this fraction of the height of a triangle is straight \[–\].
+const STRAIGHT: f64 = 5e-3;
+/// Halvings before something is believed of a level whose steepness is not known.
+const LEAST: usize = 3;
+/// Steps to where a level changes its sign.
+const CROSSING_STEPS: usize = 30;
+
+/// Triangles of places, or intervals of a curve in their first two corners.
+pub type Cell = [Place; 3];
+
+pub fn middle(a: Place, b: Place) -> Place {
+    weighted(a, b, 0.5)
+}
+
+fn weighted(a: Place, b: Place, s: f64) -> Place {
+    [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]
+}
+
+/// Cells of a chart as they are cut.
+pub struct Clip<'a> {
+    pub chart: &'a Chart,
+    /// 1, or −1 where the normal of the chart points into the solid.
+    pub side: f64,
+    pub level: &'a Level<'a>,
+    /// Halvings of a cell.
+    pub deepest: usize,
+    pub kept: Vec<Cell>,
+}
+
+impl Clip<'_> {
+    /// Adds what remains of a cell.
+    pub fn cut(&mut self, cell: Cell) {
+        if self.chart.is_curve() {
+            let ends = [self.value(cell[0]), self.value(cell[1])];
+            self.interval([cell[0], cell[1]], ends, 0);
+        } else {
+            let corners = cell.map(|place| self.value(place));
+            self.triangle(cell, corners, 0);
+        }
+    }
+
+    fn value(&self, place: Place) -> f64 {
+        (self.level.at)(&self.chart.at(place), &(self.side * self.chart.normal(place)))
+    }
+
+    /// Largest distance of the corners of a cell from a place \[m\], a little more on a curve.
+    fn reach(&self, corners: &[Place], from: Place) -> f64 {
+        let X = self.chart.at(from);
+        let most = corners.iter().map(|c| (self.chart.at(*c) - X).norm()).fold(0.0, f64::max);
+        if self.chart.is_flat() { most } else { 1.05 * most }
+    }
+
+    fn interval(&mut self, ends: [Place; 2], values: [f64; 2], depth: usize) {
+        let half = middle(ends[0], ends[1]);
+        let (value, reach) = (self.value(half), self.reach(&ends, half));
+        if value.abs() > self.level.steepness * reach {
+            if value <= 0.0 {
+                self.kept.push([ends[0], ends[1], ends[1]]);
+            }
+            return;
+        }
+        let bend = (value - 0.5 * (values[0] + values[1])).abs();
+        let linear = depth >= self.least() && bend <= LINEAR * reach;
+        if !linear && depth < self.deepest {
+            self.interval([ends[0], half], [values[0], value], depth + 1);
+            self.interval([half, ends[1]], [value, values[1]], depth + 1);
+            return;
+        }
+        let [mut from, mut to] = ends;
+        match values.map(|value| value <= 0.0) {
+            [false, false] => return,
+            [true, true] => {}
+            [true, false] => to = self.crossing(ends, values),
+            [false, true] => from = self.crossing(ends, values),
+        }
+        self.kept.push([from, to, to]);
+    }
+
+    fn least(&self) -> usize {
+        if self.level.steepness.is_finite() { 0 } else { LEAST }
+    }
+
+    fn triangle(&mut self, cell: Cell, values: [f64; 3], depth: usize) {
+        let third = |k: usize| (cell[0][k] + cell[1][k] + cell[2][k]) / 3.0;
+        let centre = [third(0), third(1)];
+        let (value, reach) = (self.value(centre), self.reach(&cell, centre));
+        if value.abs() > self.level.steepness * reach {
+            if value <= 0.0 {
+                self.kept.push(cell);
+            }
+            return;
+        }
+        let middles = [0, 1, 2].map(|k| middle(cell[k], cell[(k + 1) % 3]));
+        let halves = middles.map(|place| self.value(place));
+        if depth >= self.least() {
+            let off = |k: usize| halves[k] - 0.5 * (values[k] + values[(k + 1) % 3]);
+            let bend = (value - values.iter().sum::<f64>() / 3.0).abs();
+            let bend = (0..3).map(|k| off(k).abs()).fold(bend, f64::max);
+            let straight = bend <= LINEAR * reach || self.is_straight(cell, values, halves);
+            if straight || depth >= self.deepest {
+                self.split(cell, values);
+                return;
+            }
+        }
+        for k in 0..3 {
+            let before = (k + 2) % 3;
+            let corner = [cell[k], middles[k], middles[before]];
+            self.triangle(corner, [values[k], halves[k], halves[before]], depth + 1);
+        }
+        self.triangle(middles, halves, depth + 1);
+    }
+
+    /// The corner on one side of the border, if the others are on the other.
+    fn apart(values: [f64; 3]) -> Option<usize> {
+        let keeps = values.map(|value| value <= 0.0);
+        let apart = |k: &usize| {
+            let (b, c) = ((k + 1) % 3, (k + 2) % 3);
+            keeps[*k] != keeps[b] && keeps[b] == keeps[c]
+        };
+        (0..3).find(apart)
+    }
+
+    /// Whether one straight border passes a triangle with values at the middles of its sides.
+    fn is_straight(&self, cell: Cell, values: [f64; 3], halves: [f64; 3]) -> bool {
+        let Some(k) = Self::apart(values) else { return false };
+        let (b, c) = ((k + 1) % 3, (k + 2) % 3);
+        let keeps = |value: f64| value <= 0.0;
+        if keeps(halves[b]) != keeps(values[b]) {
+            return false;
+        }
+        let P = self.crossing([cell[k], cell[b]], [values[k], values[b]]);
+        let Q = self.crossing([cell[k], cell[c]], [values[k], values[c]]);
+        [0.25, 0.5, 0.75].into_iter().all(|s| {
+            let on = weighted(P, Q, s);
+            let foot = weighted(cell[b], cell[c], s);
+            let way = [foot[0] - cell[k][0], foot[1] - cell[k][1]];
+            let at = |e: f64| self.value([on[0] + e * way[0], on[1] + e * way[1]]);
+            keeps(at(-STRAIGHT)) == keeps(values[k]) && keeps(at(STRAIGHT)) == keeps(values[b])
+        })
+    }
+
+    /// Adds what remains of a triangle that a straight border passes.
+    fn split(&mut self, cell: Cell, values: [f64; 3]) {
+        let Some(k) = Self::apart(values) else {
+            if values[0] <= 0.0 {
+                self.kept.push(cell);
+            }
+            return;
+        };
+        let (b, c) = ((k + 1) % 3, (k + 2) % 3);
+        let P = self.crossing([cell[k], cell[b]], [values[k], values[b]]);
+        let Q = self.crossing([cell[k], cell[c]], [values[k], values[c]]);
+        if values[k] <= 0.0 {
+            self.kept.push([cell[k], P, Q]);
+        } else {
+            self.kept.push([P, cell[b], cell[c]]);
+            self.kept.push([P, cell[c], Q]);
+        }
+    }
+
+    /// Where the level changes its sign between two places, by false position with halved
+    /// ends (Dowell & Jarratt 1971).
+    fn crossing(&self, ends: [Place; 2], values: [f64; 2]) -> Place {
+        let ([mut from, mut to], [mut low, mut high]) = ([0.0, 1.0], values);
+        let (keeps, nothing) = (low <= 0.0, 1e-9 * (low.abs() + high.abs()));
+        for _ in 0..CROSSING_STEPS {
+            let s = match low - high {
+                0.0 => 0.5 * (from + to),
+                rise => (from + (to - from) * low / rise).clamp(from, to),
+            };
+            let value = self.value(weighted(ends[0], ends[1], s));
+            if value.abs() <= nothing || to - from < 1e-6 {
+                return weighted(ends[0], ends[1], s);
+            }
+            if (value <= 0.0) == keeps {
+                (from, low, high) = (s, value, 0.5 * high);
+            } else {
+                (to, high, low) = (s, value, 0.5 * low);
+            }
+        }
+        weighted(ends[0], ends[1], 0.5 * (from + to))
+    }
+}
