@@ -11,8 +11,8 @@ const GRAZING: f64 = 0.02;
 const THIN: f64 = 1e-6;
 /// Shortest step along a way beside the boundary \[length\].
 const STEP: f64 = 0.1;
-/// Where a way leaves and comes back through normals with a smaller product, it has crossed a gap,
-/// at edges of it too, whose normals are between those of the faces.
+/// Where the normals outside of the places at which a way leaves and comes back have a smaller
+/// product, it has crossed a gap.
 const TURNED: f64 = 0.4;
 /// Outward normals with a smaller product face each other across the outside.
 const FACING: f64 = -0.3;
@@ -22,8 +22,12 @@ const FINE: f64 = 0.01;
 const STRAIGHT: f64 = 0.8;
 /// Looks for the outside between two places on its two sides.
 const LOOKS: usize = 2;
+/// Looks along the boundary \[way to the next place\].
+const ALONG: [f64; 3] = [0.5, 0.25, 0.75];
 /// Looks beside a place on the boundary \[way to the next place\].
 const BESIDE: [f64; 3] = [0.1, 0.01, 0.001];
+/// Halvings towards the places where a way leaves and comes back.
+const HALVINGS: usize = 8;
 /// Between two places on the two sides of a gap the distance rises above a line by more than
 /// this part of the sum of their depths.
 const BENT: f64 = 0.1;
@@ -142,8 +146,8 @@ impl<'a> Way<'a> {
             true => self.total,
             false => self.total + self.ends[1].distance.min(0.0),
         };
-        // The last place inside, and whether the way is outside since.
-        let (mut inside, mut is_out) = (0.0, false);
+        // The last place inside, and one outside since.
+        let (mut inside, mut outside) = (0.0, None);
         let (mut t, mut distance) = (0.0, self.ends[0].distance);
         while t < end {
             let next = (t + distance.abs().max(self.step)).min(end);
@@ -155,55 +159,69 @@ impl<'a> Way<'a> {
                 return true;
             }
             let narrow = distance <= self.thin && there <= self.thin;
-            is_out |= narrow && self.leaves_between((t, distance), (next, there), LOOKS);
-            if is_out && there <= self.thin {
-                if self.are_across(inside, next) {
-                    return true;
-                }
-                is_out = false;
+            if narrow {
+                outside = self.outside_between((t, distance), (next, there), LOOKS);
             }
             match there > self.thin {
-                true => is_out = true,
-                false => inside = next,
+                true => outside = outside.or(Some(next)),
+                false if outside.is_some_and(|out| self.is_crossed(inside, out, next)) => {
+                    return true;
+                }
+                false => (inside, outside) = (next, None),
             }
             (t, distance) = (next, there);
         }
-        is_out && self.are_across(inside, self.total)
+        outside.is_some_and(|out| self.is_crossed(inside, out, self.total))
     }
 
-    /// Whether the way is outside somewhere between two places inside, (t, distance). Where one
-    /// is on the boundary, a narrow gap would be beside it; elsewhere it would be where the
-    /// distance vanished if it rose and fell evenly.
-    fn leaves_between(&self, from: (f64, f64), to: (f64, f64), looks: usize) -> bool {
+    /// A place outside between two inside, (t, distance), if one shows. Where one of these is on
+    /// the boundary, a narrow gap would be beside it; elsewhere it would be where the distance
+    /// vanished if it rose and fell evenly.
+    fn outside_between(&self, from: (f64, f64), to: (f64, f64), looks: usize) -> Option<f64> {
         let (before, after) = ((-from.1).max(0.0), (-to.1).max(0.0));
         let span = to.0 - from.0;
         // Balls of material that overlap.
         if looks == 0 || before + after >= span {
-            return false;
+            return None;
         }
-        let is_out = |part: f64| self.distance(from.0 + part * span) > self.thin;
+        let at = |part: f64| from.0 + part * span;
+        let is_out = |t: &f64| self.distance(*t) > self.thin;
         match (before <= self.thin, after <= self.thin) {
-            (true, true) => is_out(0.5),
-            (true, false) => BESIDE.into_iter().any(is_out),
-            (false, true) => BESIDE.into_iter().any(|part| is_out(1.0 - part)),
+            (true, true) => ALONG.into_iter().map(at).find(is_out),
+            (true, false) => BESIDE.into_iter().map(at).find(is_out),
+            (false, true) => BESIDE.into_iter().map(|part| at(1.0 - part)).find(is_out),
             (false, false) => {
-                let t = from.0 + span * before / (before + after);
+                let t = at(before / (before + after));
                 let distance = self.distance(t);
+                if distance > self.thin {
+                    return Some(t);
+                }
                 let on_line = from.1 + (to.1 - from.1) * (t - from.0) / span;
-                let middle = (t, distance);
-                let is_bent = distance - on_line > BENT * (before + after);
-                distance > self.thin
-                    || is_bent
-                        && (self.leaves_between(from, middle, looks - 1)
-                            || self.leaves_between(middle, to, looks - 1))
+                if distance - on_line <= BENT * (before + after) {
+                    return None;
+                }
+                let first = self.outside_between(from, (t, distance), looks - 1);
+                first.or_else(|| self.outside_between((t, distance), to, looks - 1))
             }
         }
     }
 
-    /// Whether the way leaves and comes back through faces across from each other.
-    fn are_across(&self, leaves: f64, returns: f64) -> bool {
-        let normal = |t: f64| self.body.gradient(&self.at(t));
-        normal(leaves).dot(&normal(returns)) < TURNED
+    /// Whether a way that leaves the body after one place, is outside at another and inside
+    /// again at a third has crossed a gap: outside, the directions away from the body where it
+    /// leaves and comes back differ.
+    fn is_crossed(&self, inside: f64, outside: f64, returns: f64) -> bool {
+        let just_outside = |mut inside: f64| {
+            let mut out = outside;
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (inside + out);
+                match self.distance(middle) > self.thin {
+                    true => out = middle,
+                    false => inside = middle,
+                }
+            }
+            self.body.gradient(&self.at(out))
+        };
+        just_outside(inside).dot(&just_outside(returns)) < TURNED
     }
 }
 
