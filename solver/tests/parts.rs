@@ -100,7 +100,7 @@ fn surfaces_of_random_bodies_are_closed_and_enclose_their_volume() {
     let mut bodies = 0;
     while bodies < 50 {
         let body = numbers.body();
-        let expected = volume(&body, 0.03);
+        let expected = volume(&body, 0.016);
         if expected < 0.03 {
             continue;
         }
@@ -111,7 +111,7 @@ fn surfaces_of_random_bodies_are_closed_and_enclose_their_volume() {
         assert!(total.norm() < 5e-4 * area, "∮ N dA = {} of {area}: {body:?}", total.norm());
         let flux: f64 = panels.iter().map(|p| p.area * p.centre.dot(&p.mean_normal())).sum();
         let error = (flux / 3.0 - expected).abs();
-        // The cubes know the volume to a thousandth of a layer of them along the surface.
+        // Of a cube on an edge the lesser of two fractions counts, a twelfth of it too much.
         assert!(error < 1e-3 * expected + 3e-4 * area, "{} of {expected}: {body:?}", flux / 3.0);
     }
 }
