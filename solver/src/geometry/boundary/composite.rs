@@ -25,7 +25,7 @@ enum Keep {
 /// Slope of a distance along the normal of a face that is a face of the other too \[–\].
 const SAME_FACE: f64 = 0.999;
 /// Less than this fraction of a panel beside the edge of another member is round-off \[–\].
-const NOTHING: f64 = 1e-6;
+const NOTHING: f64 = 1e-5;
 /// Halvings of a panel that another member cuts.
 const DEEPEST: usize = 6;
 

@@ -21,7 +21,7 @@ const STRAIGHT: f64 = 5e-3;
 /// Halvings before something is believed of a level whose steepness is not known.
 const LEAST: usize = 3;
 /// Steps to where a level changes its sign.
-const CROSSING_STEPS: usize = 30;
+const CROSSING_STEPS: usize = 50;
 
 /// Triangles of places, or intervals of a curve in their first two corners.
 pub type Cell = [Place; 3];
@@ -185,7 +185,7 @@ impl Clip<'_> {
                 rise => (from + (to - from) * low / rise).clamp(from, to),
             };
             let value = self.value(weighted(ends[0], ends[1], s));
-            if value.abs() <= nothing || to - from < 1e-6 {
+            if value.abs() <= nothing || to - from < 1e-10 {
                 return weighted(ends[0], ends[1], s);
             }
             if (value <= 0.0) == keeps {
