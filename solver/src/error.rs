@@ -139,6 +139,11 @@ pub enum Error {
              change it, or use smaller cells there"
     )]
     EmptyBodyForce { index: usize },
+    #[error(
+        "body force {index} acts on a part of {volume:e} m³, too small for its volume to be known; the least \
+             is {smallest:e} m³, a fifth of a spacing wide: choose a larger part, or a smaller spacing"
+    )]
+    SmallBodyForce { index: usize, volume: f64, smallest: f64 },
     #[error("pressure \"{name}\" selects no part of the boundary")]
     EmptyPressure { name: String },
     #[error(

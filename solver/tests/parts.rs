@@ -5,8 +5,11 @@ mod common;
 
 use common::*;
 use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::Discretisation;
+use mtled::error::Error;
 use mtled::geometry::{Selector, Shape};
 use mtled::material::*;
+use mtled::model::Model;
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -97,7 +100,7 @@ fn surfaces_of_random_bodies_are_closed_and_enclose_their_volume() {
     let mut bodies = 0;
     while bodies < 50 {
         let body = numbers.body();
-        let expected = volume(&body, 0.03);
+        let expected = volume(&body, 0.016);
         if expected < 0.03 {
             continue;
         }
@@ -105,11 +108,11 @@ fn surfaces_of_random_bodies_are_closed_and_enclose_their_volume() {
         let panels = body.boundary_panels(0.1, &Dimension::Three).unwrap();
         let area: f64 = panels.iter().map(|p| p.area).sum();
         let total: Vector3 = panels.iter().map(|p| p.area * p.mean_normal()).sum();
-        assert!(total.norm() < 5e-4 * area, "{body:?}: ∮ N dA = {total} of {area}");
+        assert!(total.norm() < 5e-4 * area, "∮ N dA = {} of {area}: {body:?}", total.norm());
         let flux: f64 = panels.iter().map(|p| p.area * p.centre.dot(&p.mean_normal())).sum();
         let error = (flux / 3.0 - expected).abs();
-        // The cubes know the volume to a thousandth of a layer of them along the surface.
-        assert!(error < 1e-3 * expected + 3e-4 * area, "{body:?}: {flux} of {expected}");
+        // Of a cube on an edge the lesser of two fractions counts, a twelfth of it too much.
+        assert!(error < 1e-3 * expected + 3e-4 * area, "{} of {expected}: {body:?}", flux / 3.0);
     }
 }
 
@@ -189,7 +192,7 @@ fn a_part_is_loaded_about_its_own_middle() {
 fn a_body_force_on_a_part_of_any_size_has_the_mass_of_the_part() {
     for cells in [4, 7] {
         let h = EDGE / cells as f64;
-        for size in [3.0, 2.0, 1.2, 0.8, 0.2].map(|size| size * h) {
+        for size in [3.0, 2.0, 1.2, 0.8, 0.4].map(|size| size * h) {
             let centre = Vector3::new(0.47, 0.53, 0.51) * EDGE;
             let reach = Vector3::repeat(0.5 * size);
             let cube = Shape::Box { min: centre - reach, max: centre + reach };
@@ -214,11 +217,25 @@ fn a_body_force_on_a_part_of_any_size_has_the_mass_of_the_part() {
 }
 
 #[test]
+fn a_body_force_on_a_part_too_small_for_the_cells_is_refused_with_its_volume() {
+    let mut problem = held_cube(5);
+    let shape = Shape::Sphere { centre: Vector3::repeat(0.47 * EDGE), radius: 0.1 * EDGE / 5.0 };
+    problem.loads.body_forces = vec![BodyForce {
+        part: Selector::Inside { shape, tolerance: 0.0 },
+        acceleration: Vector3::x().into(),
+        amplitude: Amplitude::Constant,
+    }];
+    let discretisation = Discretisation::new(&problem).unwrap();
+    let error = Model::new(&problem, &discretisation).unwrap_err();
+    assert!(matches!(error, Error::SmallBodyForce { index: 0, .. }), "{error}");
+}
+
+#[test]
 fn layers_of_any_thickness_have_their_mass_at_every_spacing() {
     for cells in [4, 7] {
         let h = EDGE / cells as f64;
         for thickness in [2.0, 1.0, 0.5, 0.25, 0.1].map(|thickness| thickness * h) {
-            for foot in [0.5, 0.437, 0.561].map(|foot| foot * EDGE) {
+            for foot in [0.3, 0.237, 0.361].map(|foot| foot * EDGE) {
                 let mut problem = held_cube(cells);
                 let layer = Shape::Box {
                     min: Vector3::new(-EDGE, -EDGE, foot),
@@ -336,7 +353,7 @@ fn a_pressure_that_dents_a_dome_stays_in_balance_with_its_base() {
     let (_, model) = build(&problem);
     let mut state = State::new(&model);
     simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();
-    assert!(largest(&state.displacement) > 0.005, "{}", largest(&state.displacement));
+    assert!(largest(&state.displacement) > 0.001, "{}", largest(&state.displacement));
     let mut force = vec![0.0; model.size()];
     model.pressures[0].add_force(1.0, &state.displacement, 3, &mut force);
     // The rim does not move: the force is the pressure times the area of the base.

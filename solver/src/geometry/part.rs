@@ -27,6 +27,8 @@ const MORE: usize = 4;
 const DEEPEST: usize = 15;
 /// The smallest pieces, at corners of an outline, are at most this fraction of a part \[–\].
 const RESOLVED: f64 = 5e-4;
+/// A smaller fraction of a panel is not covered \[–\].
+const NOTHING: f64 = 1e-9;
 /// Tolerances up to this fraction of a panel are there for round-off \[–\].
 const THIN: f64 = 0.01;
 
@@ -45,7 +47,7 @@ impl Shape {
             let cover = |(index, patch): (usize, &Patch)| {
                 let at = |X: &Vector3, normal: &Vector3| part.level(X, Some(normal), THIN * size);
                 let level = Level { at: &at, steepness: part.steepness(patch.is_flat()) };
-                let (piece, fraction) = patch.cut(&level, halvings)?;
+                let (piece, fraction) = patch.cut(&level, halvings, NOTHING)?;
                 let panel = piece.exact().panel;
                 let panel = Panel { area: panel.area * thickness, ..panel };
                 Some(CoveredPanel { index, fraction, panel })
@@ -157,7 +159,7 @@ mod tests {
             centre: Vector3::zeros(),
             radii: Vector3::new(1.0, 1.0, f64::INFINITY),
         };
-        for x in [-0.9, 0.0, 0.37, 0.999] {
+        for x in [-0.9, 0.0, 0.37, 0.99] {
             let side = Shape::HalfSpace { point: Vector3::x() * x, normal: -Vector3::x() };
             let covered = disc.covered_panels(&inside(side), 0.2, &plane).unwrap();
             assert_close(area(&covered), f64::acos(x), 1e-3, "arc");

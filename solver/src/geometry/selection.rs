@@ -24,7 +24,7 @@ const NEXT_TO: f64 = 1e-4;
 const ROUND_OFF: f64 = 1e-9;
 
 /// Cosine of the largest angle at which one face lies along another \[–\].
-const ALONG: f64 = 0.9;
+const ALONG: f64 = 0.999;
 /// A level beyond all others \[m\].
 const BEYOND: f64 = 1e300;
 

@@ -48,7 +48,7 @@ pub fn load_patterns(
         let acts = if let Selector::All = body_force.part {
             add_points(&quadrature.positions, &masses, &discretisation.supports)
         } else {
-            let part = LoadedVolume::new(problem, discretisation, &body_force.part)?;
+            let part = LoadedVolume::new(problem, discretisation, (index, &body_force.part))?;
             add_points(&part.positions, &part.masses, &part.rows)
         };
         if !acts {

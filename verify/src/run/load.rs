@@ -60,7 +60,9 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         Error::EmptyInitialVelocity { index } => &format!("initial_velocity[{index}]"),
         Error::EmptyRegion { .. } => "probe",
         Error::EmptyTraction { name } => &format!("traction.{name}.where"),
-        Error::EmptyBodyForce { index } => &format!("body_force[{index}].where"),
+        Error::EmptyBodyForce { index } | Error::SmallBodyForce { index, .. } => {
+            &format!("body_force[{index}].where")
+        }
         Error::EmptyPressure { name } => &format!("pressure.{name}.where"),
         Error::DependentConstraints { .. } => "discretisation.enforcement",
         Error::NoQuadraturePoints

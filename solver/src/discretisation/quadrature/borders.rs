@@ -11,6 +11,8 @@ use crate::problem::Region;
 /// as if they were linear \[–\].
 const NEARLY_LINEAR: f64 = 0.004;
 
+/// In the smallest cells levels that differ by less than this are smooth, others have a kink.
+const SMOOTH: f64 = 0.1;
 /// Tolerances up to this fraction of the largest cells are there for round-off \[–\].
 const THIN: f64 = 0.01;
 
@@ -52,6 +54,10 @@ impl Fit {
 
     fn is_linear(&self) -> bool {
         self.bend <= NEARLY_LINEAR
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.bend <= SMOOTH
     }
 
     fn at(&self, X: &Vector3) -> f64 {
@@ -232,7 +238,7 @@ impl Cutter<'_> {
         let mut halves = Halves::default();
         for part in parts {
             let Halves { low, high } = &mut halves;
-            match fit.is_linear() {
+            match fit.is_linear() || self.smallest && fit.is_smooth() {
                 true => part.split(&|X: &Vector3| fit.at(X), low, high),
                 false if self.smallest => part.split(level, low, high),
                 false => return None,

@@ -22,8 +22,10 @@ enum Keep {
     Inside,
 }
 
-/// Normals of which the cosine is larger than this are those of one face \[–\].
+/// Slope of a distance along the normal of a face that is a face of the other too \[–\].
 const SAME_FACE: f64 = 0.999;
+/// Less than this fraction of a panel beside the edge of another member is round-off \[–\].
+const NOTHING: f64 = 1e-5;
 /// Halvings of a panel that another member cuts.
 const DEEPEST: usize = 6;
 
@@ -33,7 +35,9 @@ impl Keep {
     fn level(self, X: &Vector3, normal: &Vector3, other: &Shape, tolerance: f64) -> f64 {
         let distance = other.signed_distance(X);
         if distance.abs() <= tolerance {
-            let along = other.gradient(X).dot(normal);
+            let beside = |way: f64| other.signed_distance(&(X + way * normal));
+            let step = 10.0 * tolerance;
+            let along = (beside(step) - beside(-step)) / (2.0 * step);
             if along.abs() > SAME_FACE {
                 let remains = match self {
                     Keep::OutsideOrAlong | Keep::InsideOrAlong => along > 0.0,
@@ -62,7 +66,8 @@ pub(super) fn composite_patches(shape: &Shape, of: PatchesOf) -> Result<Vec<Patc
             levels.fold(f64::NEG_INFINITY, f64::max)
         };
         let level = Level { at: &at, steepness };
-        let remaining = |patch: &Patch| patch.cut(&level, DEEPEST).map(|(kept, _)| kept.exact());
+        let remaining =
+            |patch: &Patch| patch.cut(&level, DEEPEST, NOTHING).map(|(kept, _)| kept.exact());
         patches.par_iter().filter_map(remaining).collect()
     };
     match shape {

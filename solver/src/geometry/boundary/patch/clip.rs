@@ -15,12 +15,13 @@ pub struct Level<'a> {
 /// A level that differs by less than this fraction of the size of a triangle from a linear one
 /// is linear \[–\].
 const LINEAR: f64 = 1e-4;
-/// A border that bends by less than this fraction of the height of a triangle is straight \[–\].
+/// A border that bends by less than this fraction of the height of the corner that it cuts off
+/// is straight \[–\].
 const STRAIGHT: f64 = 5e-3;
 /// Halvings before something is believed of a level whose steepness is not known.
 const LEAST: usize = 3;
 /// Steps to where a level changes its sign.
-const CROSSING_STEPS: usize = 30;
+const CROSSING_STEPS: usize = 50;
 
 /// Triangles of places, or intervals of a curve in their first two corners.
 pub type Cell = [Place; 3];
@@ -149,9 +150,7 @@ impl Clip<'_> {
         let Q = self.crossing([cell[k], cell[c]], [values[k], values[c]]);
         [0.25, 0.5, 0.75].into_iter().all(|s| {
             let on = weighted(P, Q, s);
-            let foot = weighted(cell[b], cell[c], s);
-            let way = [foot[0] - cell[k][0], foot[1] - cell[k][1]];
-            let at = |e: f64| self.value([on[0] + e * way[0], on[1] + e * way[1]]);
+            let at = |e: f64| self.value(weighted(cell[k], on, 1.0 + e));
             keeps(at(-STRAIGHT)) == keeps(values[k]) && keeps(at(STRAIGHT)) == keeps(values[b])
         })
     }
@@ -186,7 +185,7 @@ impl Clip<'_> {
                 rise => (from + (to - from) * low / rise).clamp(from, to),
             };
             let value = self.value(weighted(ends[0], ends[1], s));
-            if value.abs() <= nothing || to - from < 1e-6 {
+            if value.abs() <= nothing || to - from < 1e-10 {
                 return weighted(ends[0], ends[1], s);
             }
             if (value <= 0.0) == keeps {

@@ -6,10 +6,6 @@ use crate::geometry::boundary::panel::Panel;
 use crate::geometry::boundary::patch::chart::{Chart, Place};
 use crate::geometry::boundary::patch::clip::{Cell, Clip, Level};
 
-/// Parts of a panel smaller than this fraction of it are dropped, beside the edge of another
-/// they are round-off \[–\].
-const NOTHING: f64 = 1e-7;
-
 /// Which places of a chart belong to a panel.
 #[derive(Debug, Clone)]
 enum Cells {
@@ -73,8 +69,8 @@ impl Patch {
     }
 
     /// What remains of it by a level, with at most `deepest` halvings, and its fraction of the
-    /// places.
-    pub fn cut(&self, level: &Level, deepest: usize) -> Option<(Patch, f64)> {
+    /// places; fractions less than `nothing` off 0 or 1 are 0 or 1.
+    pub fn cut(&self, level: &Level, deepest: usize, nothing: f64) -> Option<(Patch, f64)> {
         let value = (level.at)(&self.panel.centre, &self.panel.normal);
         if level.steepness.is_finite() && value.abs() > level.steepness * self.reach() {
             return (value <= 0.0).then(|| (self.clone(), 1.0));
@@ -85,11 +81,11 @@ impl Patch {
         cells.iter().for_each(|cell| clip.cut(*cell));
         let sizes = |cells: &[Cell]| cells.iter().map(|cell| self.size(cell)).sum::<f64>();
         let fraction = sizes(&clip.kept) / sizes(&cells);
-        if fraction > 1.0 - NOTHING {
+        if fraction > 1.0 - nothing {
             return Some((self.clone(), 1.0));
         }
         let kept = Patch { cells: Cells::Cut(clip.kept), ..*self };
-        (fraction > NOTHING).then(|| (kept.integrated(), fraction))
+        (fraction > nothing).then(|| (kept.integrated(), fraction))
     }
 
     /// Largest distance of a place from the centre \[m\], a little more on a curve.
