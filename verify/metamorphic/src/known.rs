@@ -2,7 +2,7 @@
 //! is not counted as a finding again, and is shown in every report.
 
 use crate::relation::Relation;
-use crate::scene::Scene;
+use crate::scene::{Form, Scene};
 
 /// A fault that is known.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +20,25 @@ pub struct Known {
 }
 
 /// Every known fault.
-pub const KNOWN: &[Known] = &[];
+pub const KNOWN: &[Known] = &[
+    Known {
+        relation: "order_of_triangles",
+        scenes: "surfaces",
+        has: |scene| scene.form == Form::Wedge,
+        figure: "another number of nodes",
+        reason: "the points on edges and faces follow the numbers of vertices and triangles \
+                 (`geometry::boundary::features`)",
+    },
+    Known {
+        relation: "united_with_itself",
+        scenes: "label maps, and unions and intersections with curved members",
+        has: |scene| matches!(scene.form, Form::Voxels | Form::Dome | Form::Rounded),
+        figure: "0.8",
+        reason: "of coinciding faces that are not flat each member keeps about a half, by a distance \
+                 that is round-off or that of marching cubes (`geometry::boundary::composite`, \
+                 `fraction_kept`)",
+    },
+];
 
 /// The known fault by which a relation fails for a scene.
 pub fn known(relation: &Relation, scene: &Scene) -> Option<&'static Known> {

@@ -2,7 +2,6 @@
 
 use super::frame::Frame;
 use super::shape::part;
-use super::wave_time;
 use crate::scene::{Place, Push, Scene, Wall, Way};
 use mtled::Vector3;
 use mtled::geometry::{Extent, Field, Shape};
@@ -15,14 +14,14 @@ use mtled::problem::{
 fn ramp(scene: &Scene) -> Amplitude {
     match scene.way {
         Way::Newton => Amplitude::Smooth { duration: 1.0 },
-        Way::Motion { end, .. } => Amplitude::Smooth { duration: 0.5 * end * wave_time(scene) },
+        Way::Motion { end, .. } => Amplitude::Smooth { duration: 0.5 * end * scene.wave_time() },
     }
 }
 
 pub fn conditions(scene: &Scene, frame: &Frame) -> Vec<EssentialCondition> {
     let end = match scene.way {
         Way::Newton => 1.0,
-        Way::Motion { end, .. } => end * wave_time(scene),
+        Way::Motion { end, .. } => end * scene.wave_time(),
     };
     let condition = |(n, hold): (usize, &crate::scene::Hold)| EssentialCondition {
         name: format!("hold {n}"),
@@ -89,7 +88,7 @@ pub fn load(scene: &Scene, frame: &Frame, loads: &mut Loads) {
                 amplitude,
             }),
             Push::Throw(on, v) => {
-                let velocity = scene.size / wave_time(scene) * frame.direction(&(*v).into());
+                let velocity = scene.size / scene.wave_time() * frame.direction(&(*v).into());
                 loads.initial_velocities.push((part(frame, on), velocity));
             }
         }

@@ -52,16 +52,11 @@ pub fn problem_in(scene: &Scene, frame: &Frame) -> Result<Problem> {
     Ok(problem)
 }
 
-/// Time that a wave takes along the size \[s\].
-pub fn wave_time(scene: &Scene) -> f64 {
-    scene.size / (scene.young_modulus / scene.density).sqrt()
-}
-
 fn motion(scene: &Scene) -> Motion {
     match scene.way {
         Way::Newton => Motion::Equilibrium(Newton { load_end: 1.0, tolerance: RESIDUAL }),
         Way::Motion { end, damping } => {
-            Motion::dynamic(end * wave_time(scene), damping / wave_time(scene))
+            Motion::dynamic(end * scene.wave_time(), damping / scene.wave_time())
         }
     }
 }

@@ -2,7 +2,7 @@
 //! motion conserves.
 #![allow(non_snake_case)]
 
-use super::{Compared, Relation, Subject};
+use super::subject::{Compared, Relation, Subject};
 use crate::answer::{finished, force_scale, relative, sum};
 use crate::build;
 use crate::scene::{Form, Gradients, Law, Part, Push, Scene, Way};
@@ -227,7 +227,7 @@ fn free_motion(subject: &Subject) -> Option<Conserved> {
         return None;
     }
     let after = Motion::of(&end.simulation, 1.0);
-    let speed = free.size / build::wave_time(&free);
+    let speed = free.size / free.wave_time();
     let momentum = speed * end.simulation.model.lumped_mass.iter().sum::<f64>() * 0.1;
     let arm = end.simulation.model.extent;
     Some(Conserved {

@@ -1,6 +1,6 @@
 //! The same body in other words.
 
-use super::{Compared, Relation, Subject, against, with_nodes};
+use super::subject::{Compared, Relation, Subject, against, with_nodes};
 use crate::answer::{View, answer};
 use crate::build::{self, Frame};
 use crate::scene::{Form, Part, Push};

@@ -1,7 +1,7 @@
 //! The linear law, and small loads under any law.
 
-use super::{Compared, Relation, Subject, answer};
-use crate::answer::{Answer, View, relative};
+use super::subject::{Compared, Relation, Subject};
+use crate::answer::{Answer, View, answer, relative};
 use crate::build;
 use crate::scene::{Law, Place, Push, Scene};
 use mtled::Vector3;

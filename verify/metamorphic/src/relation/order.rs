@@ -1,7 +1,7 @@
 //! The order in which things are stated.
 
 use super::sameness::changed;
-use super::{Relation, Subject, with_nodes};
+use super::subject::{Relation, Subject, with_nodes};
 use crate::answer::View;
 use crate::scene::Form;
 use mtled::Vector3;
@@ -127,7 +127,7 @@ fn shuffled(count: usize) -> Vec<usize> {
 }
 
 /// Every load in two parts.
-fn in_two_parts(subject: &Subject) -> Option<super::Compared> {
+fn in_two_parts(subject: &Subject) -> Option<super::subject::Compared> {
     let mut other = subject.problem();
     let loads = &mut other.loads;
     let scaled = |field: &mtled::problem::Field, factor: f64| {

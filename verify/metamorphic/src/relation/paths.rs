@@ -1,6 +1,6 @@
 //! Other ways to the same equilibrium.
 
-use super::{Compared, Relation, Subject};
+use super::subject::{Compared, Relation, Subject};
 use crate::answer::View;
 use crate::scene::{Place, Scene};
 use mtled::problem::{

@@ -1,7 +1,7 @@
 //! Rigid motions on top of a solution.
 #![allow(non_snake_case)]
 
-use super::{Compared, Relation, Subject};
+use super::subject::{Compared, Relation, Subject};
 use crate::answer::{View, answer, reaction_difference, relative};
 use crate::scene::{Law, Place, Push};
 use mtled::Vector3;

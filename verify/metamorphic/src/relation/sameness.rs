@@ -1,6 +1,6 @@
 //! What must not change anything.
 
-use super::{Compared, Relation, Subject};
+use super::subject::{Compared, Relation, Subject};
 use crate::answer::{Answer, View, answer, observed};
 use crate::build::solid;
 use mtled::motion::observe;

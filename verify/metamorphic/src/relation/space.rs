@@ -1,7 +1,7 @@
 //! Place, direction and units.
 #![allow(non_snake_case)]
 
-use super::{Compared, Relation, Subject, with_nodes};
+use super::subject::{Compared, Relation, Subject, with_nodes};
 use crate::answer::{View, relative};
 use crate::build::{self, Frame};
 use crate::scene::{Form, Gradients, Push, Scene};

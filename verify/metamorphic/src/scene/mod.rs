@@ -247,6 +247,11 @@ impl Scene {
         if self.thickness.is_some() { 2 } else { 3 }
     }
 
+    /// Time that a wave takes along the size \[s\].
+    pub fn wave_time(&self) -> f64 {
+        self.size / (self.young_modulus / self.density).sqrt()
+    }
+
     /// Whether it is a static problem.
     pub fn is_static(&self) -> bool {
         self.way == Way::Newton
