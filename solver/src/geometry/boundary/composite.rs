@@ -22,8 +22,9 @@ enum Keep {
     Inside,
 }
 
-/// Slope of a distance along the normal of a face that is a face of the other too \[–\].
-const SAME_FACE: f64 = 0.999;
+/// Slope of a distance along the normal of a face that is a face of the other too; it is 1, and
+/// a half on its edge \[–\].
+const SAME_FACE: f64 = 0.25;
 /// Less than this fraction of a panel beside the edge of another member is round-off \[–\].
 const NOTHING: f64 = 1e-5;
 /// Halvings of a panel that another member cuts.

@@ -116,7 +116,7 @@ impl Clip<'_> {
             let bend = (0..3).map(|k| off(k).abs()).fold(bend, f64::max);
             let straight = bend <= LINEAR * reach || self.is_straight(cell, values, halves);
             if straight || depth >= self.deepest {
-                self.split(cell, values);
+                self.split(cell, values, value);
                 return;
             }
         }
@@ -155,10 +155,11 @@ impl Clip<'_> {
         })
     }
 
-    /// Adds what remains of a triangle that a straight border passes.
-    fn split(&mut self, cell: Cell, values: [f64; 3]) {
+    /// Adds what remains of a triangle, with a value in its middle, that a straight border passes.
+    fn split(&mut self, cell: Cell, values: [f64; 3], middle: f64) {
         let Some(k) = Self::apart(values) else {
-            if values[0] <= 0.0 {
+            // Corners may lie on edges, of either side.
+            if middle <= 0.0 {
                 self.kept.push(cell);
             }
             return;
