@@ -4,6 +4,8 @@
 //! distance, its selections, amplitudes and values. What was done comes from the nodes, the
 //! quadrature points, the loads at nodes and the state at the end. The two meet here only.
 
+#![allow(non_snake_case)]
+
 mod balance;
 mod inside;
 mod loads;
