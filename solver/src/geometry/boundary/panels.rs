@@ -8,6 +8,7 @@ use crate::geometry::boundary::panel::{Panel, pieces_of_box};
 use crate::geometry::boundary::solid_panels::{
     box_panels, cylinder_panels, ellipsoid_panels, prism_panels, rectangle, triangle_panels,
 };
+use crate::geometry::boundary::voxel_panels::{merges_voxels, voxel_panels};
 use crate::geometry::dimension::Dimension;
 use crate::geometry::error::{GeometryError, positive};
 use crate::geometry::polygon::anticlockwise;
@@ -122,10 +123,10 @@ fn surface_panels(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Panel>
             rectangle(corner, 2.0 * reach * u, 2.0 * reach * v, size, &mut panels);
             Ok(panels)
         }
-        Shape::Labels(field) => {
-            isosurface_panels(shape, (size / 3_f64.sqrt()).min(field.voxel()), size)
+        Shape::Labels(field) if merges_voxels(field, size) => voxel_panels(shape, field, size),
+        Shape::Labels(_) | Shape::Function(_) => {
+            isosurface_panels(shape, size / 3_f64.sqrt(), size)
         }
-        Shape::Function(_) => isosurface_panels(shape, size / 3_f64.sqrt(), size),
         Shape::Surface(surface) => Ok(triangle_panels(surface.corners(), size)),
         Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(..) => {
             composite_panels(shape, |panel| panel.area.sqrt(), &|member| {

@@ -21,6 +21,8 @@ pub(crate) struct BoundaryPoints {
 
 /// Candidates that are looked at side by side.
 const BATCH: usize = 512;
+/// Points at just the distance asked for are not too close, whatever the round-off \[–\].
+const ROUND_OFF: f64 = 1e-9;
 /// Closest that points of different origin may be \[spacing\].
 const CLOSEST: f64 = 0.6;
 /// Farther than this from every point, the boundary gets another \[spacing\].
@@ -119,12 +121,13 @@ impl Chosen<'_> {
     /// Whether a point is so near that none is possible about here.
     fn is_crowded(&self, candidate: &Vector3, apart: f64) -> bool {
         // First without the local spacing, which costs more.
-        let near = |size: f64| self.hash.any_within(candidate, 0.7 * apart * size);
+        let near =
+            |size: f64| self.hash.any_within(candidate, 0.7 * apart * size * (1.0 - ROUND_OFF));
         near(self.target.smallest) || near((self.target.at)(candidate))
     }
 
     fn has_near(&self, X: &Vector3, apart: f64) -> bool {
-        self.hash.any_within(X, apart * (self.target.at)(X))
+        self.hash.any_within(X, apart * (self.target.at)(X) * (1.0 - ROUND_OFF))
     }
 }
 
