@@ -1,30 +1,37 @@
-//! NIfTI-1 label maps, `.nii` and `.nii.gz` (nifti.nimh.nih.gov/nifti-1).
+//! NIfTI label maps, versions 1 and 2: `.nii`, and pairs of `.hdr` and `.img`, compressed or not
+//! (nifti.nimh.nih.gov/nifti-1, nifti-2).
+
+mod frame;
+mod second;
 
 use super::bytes::{ByteOrder, Scalar, at_most, open, skip, start_of, voxel_bytes};
 use super::error::{FileError, Mistake};
 use super::unit::LengthUnit;
-use super::voxels;
+use super::voxels::{self, LabelMapFile};
 use flate2::bufread::MultiGzDecoder;
+use frame::{doubts, finite, frame};
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::LabelMap;
 use nifti::{Endianness, NiftiHeader, NiftiType};
 use std::io::{BufRead, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Length of a NIfTI-1 header \[byte\].
+/// Length of a header of version 1 \[byte\].
 const HEADER: usize = 348;
 
 /// Reads a label map; NIfTI is RAS already. `unit` overrides the file's.
-pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMap, FileError> {
+pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileError> {
     let voxels = read_voxels(path)?;
-    voxels.labels(unit).map_err(|mistake| mistake.of(path))
+    let files = voxels.files.clone();
+    let (map, notes) = voxels.labels(unit).map_err(|mistake| mistake.of(path))?;
+    Ok(LabelMapFile { map, files, notes })
 }
 
 /// An image as it stands in its file.
-pub(super) struct Voxels {
+pub(in crate::files) struct Voxels {
     pub header: NiftiHeader,
-    /// The bytes that the header was read from.
-    pub header_bytes: Vec<u8>,
+    /// The bytes of a header of version 1 in one piece with its voxels.
+    pub header_bytes: Option<Vec<u8>>,
     pub size: [usize; 3],
     pub scalar: Scalar,
     pub order: ByteOrder,
@@ -32,33 +39,90 @@ pub(super) struct Voxels {
     pub scaling: (f64, f64),
     /// Stored values, first index fastest.
     pub stored: Vec<u8>,
+    /// The file that was named, then the other of a pair.
+    pub files: Vec<PathBuf>,
+    /// Reasons to doubt where the voxels lie.
+    pub notes: Vec<String>,
+}
+
+/// A header, and where it came from.
+struct Start {
+    header: NiftiHeader,
+    bytes: Vec<u8>,
+    /// Whether the voxels are in a file of their own.
+    in_pair: bool,
 }
 
 /// Reads an image of one value per voxel, compressed or not.
-pub(super) fn read_voxels(path: &Path) -> Result<Voxels, FileError> {
-    let (mut file, _) = open(path)?;
-    let start = file.fill_buf().map_err(|error| Mistake::Unreadable(error).of(path))?;
-    match start.starts_with(&[0x1f, 0x8b]) {
-        true => parse_voxels(MultiGzDecoder::new(file)),
-        false => parse_voxels(file),
+pub(in crate::files) fn read_voxels(path: &Path) -> Result<Voxels, FileError> {
+    let Some((header_file, voxel_file)) = pair(path) else {
+        let voxels = parse_voxels(decompressed(path)?).map_err(|mistake| mistake.of(path))?;
+        return Ok(Voxels { files: vec![path.to_path_buf()], ..voxels });
+    };
+    let start = read_header(&mut decompressed(&header_file)?);
+    let start = start.map_err(|mistake| mistake.of(&header_file))?;
+    if !start.in_pair {
+        let expected = "`ni1` or `ni2` beside an .img file; name it .nii";
+        return Err(Mistake::bad_field("magic", "n+1", expected).of(&header_file));
     }
-    .map_err(|mistake| mistake.of(path))
+    let voxels = parse_behind(start, decompressed(&voxel_file)?, 0);
+    let other = if path == header_file { voxel_file.clone() } else { header_file };
+    let voxels = voxels.map_err(|mistake| mistake.of(&voxel_file))?;
+    Ok(Voxels { files: vec![path.to_path_buf(), other], ..voxels })
 }
 
-pub(super) fn parse_voxels(mut stream: impl Read) -> Result<Voxels, Mistake> {
-    let header_bytes = at_most(&mut stream, HEADER as u64)?;
-    let header = header(&header_bytes)?;
+/// The files of header and voxels, if the name is that of one of such a pair.
+fn pair(path: &Path) -> Option<(PathBuf, PathBuf)> {
+    let name = path.to_string_lossy();
+    let is_end = |at: usize, ending: &str| {
+        name.get(at..at + ending.len()).is_some_and(|end| end.eq_ignore_ascii_case(ending))
+    };
+    let zip = name.len().checked_sub(3).filter(|&at| is_end(at, ".gz")).unwrap_or(name.len());
+    let stem = zip.checked_sub(4)?;
+    let with = |ending: &str| PathBuf::from(format!("{}{ending}{}", &name[..stem], &name[zip..]));
+    match (is_end(stem, ".hdr"), is_end(stem, ".img")) {
+        (true, _) => Some((path.to_path_buf(), with(".img"))),
+        (_, true) => Some((with(".hdr"), path.to_path_buf())),
+        _ => None,
+    }
+}
+
+fn decompressed(path: &Path) -> Result<Box<dyn Read>, FileError> {
+    let (mut file, _) = open(path)?;
+    let start = file.fill_buf().map_err(|error| Mistake::Unreadable(error).of(path))?;
+    Ok(match start.starts_with(&[0x1f, 0x8b]) {
+        true => Box::new(MultiGzDecoder::new(file)),
+        false => Box::new(file),
+    })
+}
+
+pub(in crate::files) fn parse_voxels(mut stream: impl Read) -> Result<Voxels, Mistake> {
+    let start = read_header(&mut stream)?;
+    if start.in_pair {
+        let expected = "`n+1`; name the .hdr file of a pair, with its .img file beside it";
+        return Err(Mistake::bad_field("magic", "ni1", expected));
+    }
+    let before = start.bytes.len() as u64;
+    parse_behind(start, stream, before)
+}
+
+/// The voxels in a stream of which the first bytes `before` have been read.
+fn parse_behind(start: Start, mut stream: impl Read, before: u64) -> Result<Voxels, Mistake> {
+    let Start { header, bytes, in_pair } = start;
     let size = size(&header)?;
     frame(&header)?;
+    let notes = doubts(&header, size)?;
     let order = match header.endianness {
         Endianness::Little => ByteOrder::Little,
         Endianness::Big => ByteOrder::Big,
     };
     let (scalar, count) = (scalar(&header)?, voxels::voxel_count(&size)?);
     let scaling = scaling(&header)?;
-    skip(&mut stream, offset(&header)?.saturating_sub(HEADER as u64))?;
+    skip(&mut stream, offset(&header)?.saturating_sub(before))?;
     let (stored, _) = voxel_bytes(stream, count * scalar.size())?;
-    Ok(Voxels { header, header_bytes, size, scalar, order, scaling, stored })
+    let header_bytes = (!in_pair && bytes.len() == HEADER).then_some(bytes);
+    let files = Vec::new();
+    Ok(Voxels { header, header_bytes, size, scalar, order, scaling, stored, files, notes })
 }
 
 impl Voxels {
@@ -72,32 +136,36 @@ impl Voxels {
         Ok((origin * metres, directions * metres))
     }
 
-    fn labels(&self, unit: Option<LengthUnit>) -> Result<LabelMap, Mistake> {
+    fn labels(mut self, unit: Option<LengthUnit>) -> Result<(LabelMap, Vec<String>), Mistake> {
         let (origin, directions) = self.frame(unit)?;
         let labels = voxels::labels(&self.stored, self.scalar, self.order, self.scaling)?;
-        voxels::label_map(self.size, origin, directions, labels)
+        let map = voxels::label_map(self.size, origin, directions, labels, &mut self.notes)?;
+        Ok((map, self.notes))
     }
 }
 
-fn header(bytes: &[u8]) -> Result<NiftiHeader, Mistake> {
-    let format = "a NIfTI-1 file in one piece (.nii or .nii.gz)";
+fn read_header(stream: &mut impl Read) -> Result<Start, Mistake> {
+    let mut bytes = at_most(&mut *stream, HEADER as u64)?;
+    if second::is_start(&bytes) {
+        bytes.extend(at_most(stream, (second::HEADER - HEADER) as u64)?);
+        let (header, in_pair) = second::header(&bytes)?;
+        return Ok(Start { header, bytes, in_pair });
+    }
+    let format = "a NIfTI file (.nii or .nii.gz, or .hdr beside .img)";
     if bytes.len() < HEADER {
         return match bytes.starts_with(&348i32.to_le_bytes()) {
             true => Err(Mistake::TruncatedHeader { found: bytes.len() }),
-            false => Err(Mistake::WrongFormat { format, start: start_of(bytes) }),
+            false => Err(Mistake::WrongFormat { format, start: start_of(&bytes) }),
         };
     }
-    let magic = &bytes[HEADER - 4..HEADER];
-    if magic == b"ni1\0" {
-        let expected = "`n+1`; convert the .hdr/.img pair to one .nii";
-        return Err(Mistake::bad_field("magic", "ni1", expected));
-    }
-    let header = NiftiHeader::from_reader(bytes)
+    let magic = &bytes[HEADER - 4..];
+    let header = NiftiHeader::from_reader(&bytes[..])
         .map_err(|_| Mistake::WrongFormat { format, start: start_of(magic) })?;
     if header.sizeof_hdr != HEADER as i32 {
-        return Err(Mistake::WrongFormat { format, start: start_of(bytes) });
+        return Err(Mistake::WrongFormat { format, start: start_of(&bytes) });
     }
-    Ok(header)
+    let in_pair = magic == b"ni1\0";
+    Ok(Start { header, bytes, in_pair })
 }
 
 /// Voxels along the three axes; further axes must have one entry.
@@ -151,14 +219,6 @@ fn scaling(header: &NiftiHeader) -> Result<(f64, f64), Mistake> {
     }
 }
 
-/// Refuses a field with a number that is not finite.
-fn finite(field: &'static str, values: &[f32]) -> Result<(), Mistake> {
-    match values.iter().all(|value| value.is_finite()) {
-        true => Ok(()),
-        false => Err(Mistake::bad_field(field, &format!("{values:?}"), "finite numbers")),
-    }
-}
-
 fn stated_unit(header: &NiftiHeader) -> Result<LengthUnit, Mistake> {
     match header.xyzt_units & 7 {
         0 | 2 => Ok(LengthUnit::Millimetre),
@@ -169,49 +229,4 @@ fn stated_unit(header: &NiftiHeader) -> Result<LengthUnit, Mistake> {
             Err(Mistake::bad_field("xyzt_units", &other.to_string(), expected))
         }
     }
-}
-
-/// Centre of the first voxel and steps along the indices: sform, else qform,
-/// else pixdim alone.
-fn frame(header: &NiftiHeader) -> Result<(Vector3, Matrix3), Mistake> {
-    let wide = |row: &[f32; 4]| row.map(f64::from);
-    if header.sform_code > 0 {
-        finite("srow_x", &header.srow_x)?;
-        finite("srow_y", &header.srow_y)?;
-        finite("srow_z", &header.srow_z)?;
-        let rows = [wide(&header.srow_x), wide(&header.srow_y), wide(&header.srow_z)];
-        let origin = Vector3::from_fn(|row, _| rows[row][3]);
-        let directions = Matrix3::from_fn(|row, column| rows[row][column]);
-        if voxels::are_singular(&directions) {
-            let expected = "three rows whose directions span a volume";
-            return Err(Mistake::bad_field(
-                "srow_x, srow_y, srow_z",
-                &format!("{rows:?}"),
-                expected,
-            ));
-        }
-        return Ok((origin, directions));
-    }
-    let step = header.pixdim.map(f64::from);
-    if !step[1..4].iter().all(|step| *step > 0.0 && step.is_finite()) {
-        let value = format!("{:?}", &step[1..4]);
-        return Err(Mistake::bad_field("pixdim", &value, "three positive voxel sizes"));
-    }
-    if header.qform_code > 0 {
-        finite("qoffset", &[header.quatern_x, header.quatern_y, header.quatern_z])?;
-        finite("quatern", &[header.quatern_b, header.quatern_c, header.quatern_d])?;
-        let hand = if step[0] < 0.0 { -1.0 } else { 1.0 };
-        let scale = Matrix3::from_diagonal(&Vector3::new(step[1], step[2], hand * step[3]));
-        let origin = [header.quatern_x, header.quatern_y, header.quatern_z].map(f64::from);
-        return Ok((Vector3::from(origin), quaternion_rotation(header) * scale));
-    }
-    Ok((Vector3::zeros(), Matrix3::from_diagonal(&Vector3::new(step[1], step[2], step[3]))))
-}
-
-/// Rotation of the unit quaternion a + bi + cj + dk with a ≥ 0.
-fn quaternion_rotation(header: &NiftiHeader) -> Matrix3 {
-    let [b, c, d] = [header.quatern_b, header.quatern_c, header.quatern_d].map(f64::from);
-    let a = (1.0 - b * b - c * c - d * d).max(0.0).sqrt();
-    let quaternion = nalgebra::Quaternion::new(a, b, c, d);
-    *nalgebra::UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix().matrix()
 }
