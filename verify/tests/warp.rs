@@ -181,6 +181,18 @@ fn outside_of_the_body_the_displacement_goes_on_and_decays_to_zero() {
 }
 
 #[test]
+fn where_the_field_ends_at_the_boundary_what_moved_out_of_the_body_is_seen() {
+    // The block moves by 20 mm along x, past its old face at x = 100 mm.
+    let field = field(|_| Vector3::new(0.02, 0.0, 0.0), Some(0.0));
+    for (x, source) in [(0.11, 0.09), (0.119, 0.099), (0.05, 0.03), (0.13, 0.13)] {
+        let place = Vector3::new(x, 0.05, 0.05);
+        let found = source_of(&field, &place, &Vector3::zeros(), Matrix3::identity());
+        assert!(found.residual <= TOLERANCE, "{x}: {}", found.residual);
+        assert!((found.vector.x - (source - x)).abs() < 1e-6, "{x}: {}", found.vector.x);
+    }
+}
+
+#[test]
 fn an_image_has_the_same_voxels_in_the_same_places_in_nifti_and_nrrd() {
     let first = read(&nifti(&around(1e3 * MIDDLE), Kind::I16, noise), "image.nii");
     let to = |image: &Image, format, name| {

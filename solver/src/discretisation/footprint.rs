@@ -8,7 +8,7 @@ use crate::discretisation::discretised_body::PANEL;
 use crate::discretisation::nodes::{RequestedSizes, SizeField};
 use crate::discretisation::quadrature::followed_edge;
 use crate::discretisation::shape_memory::ShapeMemory;
-use crate::geometry::{GeometryError, POINTS, Selector, Shape};
+use crate::geometry::{GeometryError, POINTS, Selector, Shape, merges_voxels};
 use crate::problem::{Cloud, Dimension, InsideRule, Problem, Refinement};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -240,6 +240,13 @@ impl SamplePoints {
         let d = problem.dimension.components() as i32;
         let area = self.near_boundary(d).count() as f64 * self.volume / (2.0 * self.near(d));
         let size = PANEL * smallest;
+        if let (Shape::Labels(field), 3) = (&problem.body, d)
+            && merges_voxels(field, size)
+        {
+            // They cost little: the set-up makes them of the same pieces.
+            let panels = problem.body.boundary_panels(size, &problem.dimension);
+            return panels.map_or(0.0, |panels| panels.len() as f64);
+        }
         let (size, crowding, triangles) = match &problem.body {
             Shape::Labels(field) => {
                 ((size / 3f64.sqrt()).min(field.voxel()), PANELS_PER_AREA[1], 0.0)

@@ -54,7 +54,8 @@ impl Parts {
                 let voxels = field.map().labels.len() as f64;
                 self.add(field.map(), PER_LABEL * voxels, PER_LABEL * voxels);
                 let samples = field.samples() as f64;
-                self.add(field, PER_DISTANCE * samples, PER_VOXEL_READING * samples);
+                let kept = PER_DISTANCE * samples + field.surface_bytes();
+                self.add(field, kept, PER_VOXEL_READING * samples);
             }
             Shape::Surface(surface) => {
                 let triangles = surface.triangle_count() as f64;

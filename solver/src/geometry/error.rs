@@ -31,6 +31,14 @@ pub enum GeometryError {
 
     #[error("the label map of {size:?} voxels holds {count} labels; it needs {expected}")]
     LabelCount { size: [usize; 3], count: usize, expected: usize },
+    #[error(
+        "the voxels of the label map are {edge:e} m long along index {axis}; from 1e-9 to 1000 m are possible: check the steps and the unit of the file"
+    )]
+    VoxelEdge { axis: usize, edge: f64 },
+    #[error(
+        "the label map begins {distance:e} m from the origin of its coordinates; {farthest:e} m are possible: check the origin and the unit of the file"
+    )]
+    FarOrigin { distance: f64, farthest: f64 },
     #[error("the label map directions have determinant {determinant} m³")]
     SingularDirections { determinant: f64 },
     #[error("label map directions {first} and {second} enclose a cosine of {cosine}, not 0")]

@@ -21,7 +21,9 @@ mod validate;
 mod voxels;
 
 pub use boundary::Panel;
-pub(crate) use boundary::{BoundaryPoints, TargetSpacing, boundary_points, lattice_cells, project};
+pub(crate) use boundary::{
+    BoundaryPoints, TargetSpacing, boundary_points, lattice_cells, merges_voxels, project,
+};
 pub use dimension::Dimension;
 pub use distance_function::DistanceFunction;
 pub use error::GeometryError;

@@ -130,7 +130,7 @@ fn check(files: &[PathBuf], overrides: &[Override], common: &Common) -> Result<u
 /// show only then.
 fn examine<'a>(file: &'a Path, overrides: &[Override]) -> Result<Checked<'a>> {
     let warnings = load(file, overrides).and_then(|case| match prepare_to_run(&case.problem) {
-        Ok(prepared) => Ok(prepared.doubts(&case.problem)),
+        Ok(prepared) => Ok([case.notes.clone(), prepared.doubts(&case.problem)].concat()),
         Err(error) => Err(located(&case, &error)),
     });
     match warnings {

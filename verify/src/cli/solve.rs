@@ -47,7 +47,7 @@ fn solve_to(
     common: &Common,
 ) -> Result<anyhow::Result<u8>, Error> {
     let prepared = prepare_to_run(&case.problem)?;
-    for doubt in prepared.doubts(&case.problem) {
+    for doubt in case.notes.iter().cloned().chain(prepared.doubts(&case.problem)) {
         common.warn(doubt);
     }
     let bar = progress_bar(common);

@@ -52,16 +52,12 @@ pub enum Mistake {
     BadSizes { sizes: Vec<usize>, most: usize },
     #[error("the header has no end in its first {longest} bytes")]
     LongHeader { longest: u64 },
-    #[error("voxel {voxel} is {value}; labels must be whole numbers from 0 to 65535")]
+    #[error("voxel {voxel} is {value}; labels must be whole numbers from 0 to 4294967295")]
     NotALabel { voxel: usize, value: f64 },
     #[error(
         "voxel {voxel} is {value}, larger than any label; the byte order of the header ({order} endian) is wrong, or this is not a label map"
     )]
     LabelTooLarge { voxel: usize, value: f64, order: &'static str },
-    #[error(
-        "every label is a multiple of 256 (the smallest is {smallest}); the byte order of the header ({order} endian) is wrong"
-    )]
-    ByteSwapped { smallest: u32, order: &'static str },
     #[error("{0}")]
     Geometry(GeometryError),
     #[error("line {line} is `{text}`; expected {expected}")]

@@ -9,6 +9,7 @@ pub mod nifti;
 pub mod nrrd;
 mod nrrd_header;
 pub mod points;
+mod shear;
 pub mod stl;
 mod stl_space;
 mod stl_text;
@@ -28,11 +29,14 @@ pub fn read_label_map(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapF
     let name = path.to_string_lossy().to_lowercase();
     if name.ends_with(".nrrd") || name.ends_with(".nhdr") {
         nrrd::read(path, unit)
-    } else if name.ends_with(".nii") || name.ends_with(".nii.gz") {
-        let map = nifti::read(path, unit)?;
-        Ok(LabelMapFile { map, files: vec![path.to_path_buf()] })
+    } else if [".nii", ".hdr", ".img"]
+        .iter()
+        .any(|ending| name.strip_suffix(".gz").unwrap_or(&name).ends_with(ending))
+    {
+        nifti::read(path, unit)
     } else {
-        Err(Mistake::UnknownExtension { known: ".nrrd, .nhdr, .nii, .nii.gz" }.of(path))
+        let known = ".nrrd, .nhdr, .nii, .nii.gz, .hdr, .img, .hdr.gz, .img.gz";
+        Err(Mistake::UnknownExtension { known }.of(path))
     }
 }
 

@@ -1,11 +1,11 @@
 //! NRRD label maps, versions 1 to 5, attached or detached; raw, gzip or text
 //! (format: teem.sourceforge.net/nrrd/format.html).
 
-use super::bytes::{ByteOrder, LONGEST, Scalar, at_most, open, skip, voxel_bytes};
+use super::bytes::{LONGEST, at_most, open, skip, voxel_bytes};
 use super::error::{FileError, Mistake};
 use super::nrrd_header::{Encoding, Header};
 use super::unit::LengthUnit;
-use super::voxels::{self, LabelMapFile};
+use super::voxels::{self, LabelMapFile, Labels};
 use flate2::bufread::MultiGzDecoder;
 use mtled::geometry::LabelMap;
 use std::io::{BufRead, Cursor, Read};
@@ -57,8 +57,9 @@ pub(super) fn open_image(path: &Path) -> Result<Opened, FileError> {
 /// Reads a label map into RAS metres; `unit` overrides the file's.
 pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileError> {
     let Opened { header, data, length, files, .. } = open_image(path)?;
-    let map = map(&header, data, length, unit).map_err(|mistake| mistake.of(path))?;
-    Ok(LabelMapFile { map, files })
+    let mut notes = header.doubts();
+    let map = map(&header, data, length, unit, &mut notes).map_err(|mistake| mistake.of(path))?;
+    Ok(LabelMapFile { map, files, notes })
 }
 
 /// The image whose voxels are in `length` bytes of data.
@@ -67,6 +68,7 @@ fn map(
     data: impl BufRead,
     length: u64,
     unit: Option<LengthUnit>,
+    notes: &mut Vec<String>,
 ) -> Result<LabelMap, Mistake> {
     let (size, scalar, encoding) = (header.sizes()?, header.scalar()?, header.encoding()?);
     let order = header.byte_order(scalar, encoding)?;
@@ -77,13 +79,15 @@ fn map(
     };
     let count = voxels::voxel_count(&size)?;
     let labels = match encoding {
-        Encoding::Text => text_labels(behind_lines(header, data)?.0, count, scalar)?,
+        Encoding::Text => {
+            Labels::of(text_labels(behind_lines(header, data)?.0, count)?, scalar, order)?
+        }
         Encoding::Raw | Encoding::Gzip => {
             let bytes = stored(header, data, length, count * scalar.size())?;
             voxels::labels(&bytes, scalar, order, (1.0, 0.0))?
         }
     };
-    voxels::label_map(size, origin * metres, directions * metres, labels)
+    voxels::label_map(size, origin * metres, directions * metres, labels, notes)
 }
 
 /// The data behind the lines that are to be skipped, and how many bytes these have.
@@ -140,7 +144,7 @@ fn exactly(data: impl Read, expected: usize) -> Result<Vec<u8>, Mistake> {
     }
 }
 
-fn text_labels(data: impl Read, count: usize, scalar: Scalar) -> Result<Vec<u32>, Mistake> {
+fn text_labels(data: impl Read, count: usize) -> Result<Vec<f64>, Mistake> {
     let text = at_most(data, LONGEST)?;
     let text = String::from_utf8_lossy(&text);
     let words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
@@ -153,7 +157,7 @@ fn text_labels(data: impl Read, count: usize, scalar: Scalar) -> Result<Vec<u32>
             let reason = format!("`{}` is not a number", word.chars().take(20).collect::<String>());
             Mistake::Undecodable { encoding: "text", reason }
         })?;
-        labels.push(voxels::label(voxel, value, scalar, ByteOrder::Little)?);
+        labels.push(value);
     }
     if labels.len() < count {
         return Err(Mistake::Truncated { expected: count, found: labels.len() });

@@ -207,6 +207,13 @@ impl Header {
         Ok((flip * origin, flip * directions))
     }
 
+    /// Reasons to doubt where the voxels lie.
+    pub fn doubts(&self) -> Vec<String> {
+        let none = "the header has no `space`, so that the file does not say which way its voxels \
+                    run: x is taken as R, y as A, z as S; other programs may mirror such an image";
+        if self.get("space").is_some() { Vec::new() } else { vec![none.to_string()] }
+    }
+
     /// Unit of length, millimetres if absent.
     pub fn unit(&self) -> Result<LengthUnit, Mistake> {
         let Some(text) = self.get("spaceunits").or(self.get("units")) else {

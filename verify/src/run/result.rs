@@ -34,7 +34,8 @@ pub fn result_json(
     contacts: &[ContactResult],
     bars: Option<&Estimated>,
 ) -> Value {
-    let mut warnings = solved.prepared.doubts(&case.problem);
+    let mut warnings = case.notes.clone();
+    warnings.extend(solved.prepared.doubts(&case.problem));
     warnings.extend(solved.doubts());
     let mut result = recorded_json(case, &solved.prepared, record);
     result["warnings"] = json!(warnings);
@@ -55,7 +56,7 @@ pub fn result_json(
 /// `result.json` of a run that ended with an error: what it had reached, marked as such.
 pub fn failed_json(case: &Case, prepared: &Prepared, record: &Recording, error: &Error) -> Value {
     let mut result = recorded_json(case, prepared, record);
-    result["warnings"] = json!(prepared.doubts(&case.problem));
+    result["warnings"] = json!([case.notes.clone(), prepared.doubts(&case.problem)].concat());
     result["motion"] = json!({
         "method": method(case),
         "outcome": outcome_of(error),

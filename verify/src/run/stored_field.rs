@@ -16,6 +16,9 @@ pub const FIELD_FILE: &str = "displacement_field.json";
 /// Version of the layout of the file.
 const SCHEMA_VERSION: u32 = 1;
 
+/// Lengths of a field are smaller: those of no body are as large.
+const LARGEST_M: f64 = 1e12;
+
 /// Nodes, influence radii and nodal parameters at the end of a run. With the basis, the weight
 /// function and the dimension of its case they are the displacement field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -64,7 +67,7 @@ pub enum FieldError {
     #[error("{}: has the layout {found}, this program reads {SCHEMA_VERSION}; solve the case again", path.display())]
     OtherVersion { path: PathBuf, found: u32 },
     #[error(
-        "{}: {nodes} nodes need as many radii and {components} parameters each, all finite, and there are {radii} \
+        "{}: {nodes} nodes need as many radii and {components} parameters each, all less than {LARGEST_M:e} m, and there are {radii} \
          and {parameters}; the file is damaged, solve the case again", path.display()
     )]
     Damaged { path: PathBuf, nodes: usize, components: usize, radii: usize, parameters: usize },
@@ -142,7 +145,7 @@ impl StoredField {
         let (nodes, radii) = (self.nodes_m.len(), self.influence_radius_m.len());
         let parameters = self.nodal_parameters_m.len();
         let numbers = self.nodes_m.iter().flatten().chain(&self.nodal_parameters_m);
-        let sound = numbers.chain(&self.influence_radius_m).all(|number| number.is_finite())
+        let sound = numbers.chain(&self.influence_radius_m).all(|number| number.abs() < LARGEST_M)
             && self.influence_radius_m.iter().all(|radius| *radius > 0.0);
         match nodes > 0 && radii == nodes && parameters == components * nodes && sound {
             true => Ok(()),

@@ -24,6 +24,8 @@ pub struct Case {
     pub probes: Vec<Probe>,
     /// What is written.
     pub outputs: Outputs,
+    /// What should be known about the files that it names, such as an image without a place.
+    pub notes: Vec<String>,
     /// SHA-256 of the file and of every file it refers to, in hexadecimal.
     pub hash: String,
     /// Fingerprint of what is solved, whatever the recipe

@@ -124,6 +124,17 @@ impl DisplacementField {
         self.near(&self.nearest_in_body(X)) * (1.0 - t * t * (3.0 - 2.0 * t))
     }
 
+    /// u at the nearest point of the body \[m\]: the displacement without its decay.
+    pub(super) fn at_nearest(&self, X: &Vector3) -> Vector3 {
+        self.near(&self.nearest_in_body(X))
+    }
+
+    /// Whether a place may have two sources, in the body and outside of it: the steepest slope
+    /// of the decay is 3/2 over its distance.
+    pub(super) fn may_fold(&self) -> bool {
+        self.decay < 1.5 * self.largest_displacement()
+    }
+
     /// The nearest point of the body \[m\].
     fn nearest_in_body(&self, X: &Vector3) -> Vector3 {
         let mut nearest = *X;

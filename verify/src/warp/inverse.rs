@@ -37,15 +37,35 @@ pub struct Source {
 /// X − x = `start` and an estimate `inverse` of ∂X/∂x; where it fails, such as near folds, from
 /// its best iterate by the fixed point of X = x − u(X), with shorter steps where the residual
 /// grows. Where that does not converge either, this is the iterate with the smallest residual.
+/// Where the field decays so fast that a place may have a second source, one in the body counts.
 pub fn source_of(
     field: &DisplacementField,
     x: &Vector3,
     start: &Vector3,
     inverse: Matrix3,
 ) -> Source {
-    let gap = |vector: &Vector3| field.at(&(x + vector)) + vector;
-    let best = by_secants(&gap, start, inverse);
-    if best.residual <= TOLERANCE { best } else { by_fixed_point(&gap, best) }
+    let found = solve(&|vector| field.at(&(x + vector)) + vector, start, inverse);
+    if field.may_fold() && field.distance_outside(&(x + found.vector)) > 0.0 {
+        return in_body(field, x).unwrap_or(found);
+    }
+    found
+}
+
+/// The source in the body, if there is one: what has moved to a place has driven out what was
+/// there.
+fn in_body(field: &DisplacementField, x: &Vector3) -> Option<Source> {
+    if field.distance_outside(x) > field.largest_displacement() {
+        return None;
+    }
+    let gap = |vector: &Vector3| field.at_nearest(&(x + vector)) + vector;
+    let found = solve(&gap, &-field.at_nearest(x), Matrix3::identity());
+    let is_inside = field.distance_outside(&(x + found.vector)) <= TOLERANCE;
+    (found.residual <= TOLERANCE && is_inside).then_some(found)
+}
+
+fn solve(gap: &impl Fn(&Vector3) -> Vector3, start: &Vector3, inverse: Matrix3) -> Source {
+    let best = by_secants(gap, start, inverse);
+    if best.residual <= TOLERANCE { best } else { by_fixed_point(gap, best) }
 }
 
 fn by_secants(gap: &impl Fn(&Vector3) -> Vector3, start: &Vector3, mut inverse: Matrix3) -> Source {

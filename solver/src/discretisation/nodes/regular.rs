@@ -10,8 +10,9 @@ use crate::geometry::{
 };
 use crate::problem::Dimension;
 
-/// Lattice nodes keep this distance from the boundary \[spacing\].
-const CLEARANCE: f64 = 0.5;
+/// Lattice nodes keep more than this distance from the boundary \[spacing\]; a little more, so
+/// that round-off does not decide about those at just that distance.
+const CLEARANCE: f64 = 0.5 + 1e-9;
 /// Smallest distance of jittered nodes from the boundary \[spacing\].
 const JITTER_CLEARANCE: f64 = 0.25;
 

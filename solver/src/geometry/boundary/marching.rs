@@ -7,7 +7,7 @@ use crate::geometry::polygon::closed_chains;
 use crate::geometry::shape::Shape;
 use crate::geometry::size_limit::DISTANCE_SAMPLES;
 use crate::geometry::triangles::{Triangle, area_vector, merged};
-use crate::geometry::voxels::ScalarGrid;
+use crate::geometry::voxels::{ScalarGrid, indices};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -111,23 +111,32 @@ fn cross_square(grid: &ScalarGrid, i: usize, j: usize, next: &mut BTreeMap<GridE
 /// Triangles around the zero level from cubes of `step` \[m\] cut into six
 /// tetrahedra each (marching tetrahedra), anticlockwise seen from outside, by layers of cubes.
 pub(super) fn isosurface(shape: &Shape, step: f64) -> Result<Vec<Vec<Triangle>>, GeometryError> {
+    isosurface_by_cubes(shape, step, |_, triangles, out| out.append(triangles))
+}
+
+/// What `see` makes of the triangles of [`isosurface`] in each cube that has some, by layers.
+/// It gets the indices of the cube, whose first one begins about a step outside the bounding box.
+pub(super) fn isosurface_by_cubes<T: Send>(
+    shape: &Shape,
+    step: f64,
+    see: impl Fn([usize; 3], &mut Vec<Triangle>, &mut Vec<T>) + Sync,
+) -> Result<Vec<Vec<T>>, GeometryError> {
     let Some((lower, upper)) = shape.bounding_box() else {
         return Err(GeometryError::Unbounded { shape: shape.name() });
     };
     let (grid, corner) = samples(shape, lower, upper, step)?;
-    let layers = (0..grid.size[2] - 1)
-        .into_par_iter()
-        .map(|k| {
-            let mut triangles = Vec::new();
-            for j in 0..grid.size[1] - 1 {
-                for i in 0..grid.size[0] - 1 {
-                    cross_cube(&grid, &corner, [i, j, k], &mut triangles);
-                }
+    let layer = |k: usize| {
+        let (mut triangles, mut seen) = (Vec::new(), Vec::new());
+        for [i, j, _] in indices([grid.size[0] - 1, grid.size[1] - 1, 1]) {
+            cross_cube(&grid, &corner, [i, j, k], &mut triangles);
+            if !triangles.is_empty() {
+                see([i, j, k], &mut triangles, &mut seen);
+                triangles.clear();
             }
-            triangles
-        })
-        .collect();
-    Ok(layers)
+        }
+        seen
+    };
+    Ok((0..grid.size[2] - 1).into_par_iter().map(layer).collect())
 }
 
 /// Paths from corner 0 to corner 7 of a cube; bit n of a corner is axis n.

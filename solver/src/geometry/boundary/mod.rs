@@ -11,11 +11,13 @@ mod patch;
 mod points;
 mod solid_panels;
 mod target_spacing;
+mod voxel_panels;
 
 pub use panel::Panel;
 pub(crate) use patch::{Level, Patch};
 pub(crate) use points::{BoundaryPoints, boundary_points, project};
 pub(crate) use target_spacing::{TargetSpacing, lattice_cells};
+pub(crate) use voxel_panels::merges_voxels;
 
 #[cfg(test)]
 mod tests;

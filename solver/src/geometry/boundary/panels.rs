@@ -9,6 +9,7 @@ use crate::geometry::boundary::patch::Patch;
 use crate::geometry::boundary::solid_panels::{
     box_patches, cylinder_patches, ellipsoid_patches, prism_patches, rectangle, triangle_patches,
 };
+use crate::geometry::boundary::voxel_panels::{merges_voxels, voxel_patches};
 use crate::geometry::dimension::Dimension;
 use crate::geometry::error::{GeometryError, positive};
 use crate::geometry::polygon::anticlockwise;
@@ -123,10 +124,12 @@ fn surface_pieces<T: From<Patch> + Send>(
 ) -> Result<Vec<T>, GeometryError> {
     refuse_too_many(shape, size, &Dimension::Three)?;
     let pieces: Vec<T> = match shape {
-        Shape::Labels(field) => {
-            isosurface_pieces(shape, (size / 3_f64.sqrt()).min(field.voxel()), size)?
+        Shape::Labels(field) if merges_voxels(field, size) => {
+            voxel_patches(shape, field, size)?.into_iter().map(T::from).collect()
         }
-        Shape::Function(_) => isosurface_pieces(shape, size / 3_f64.sqrt(), size)?,
+        Shape::Labels(_) | Shape::Function(_) => {
+            isosurface_pieces(shape, size / 3_f64.sqrt(), size)?
+        }
         Shape::Surface(surface) => triangle_patches(surface.corners(), size),
         _ => solid_patches(shape, size, around)?.into_iter().map(T::from).collect(),
     };

@@ -16,7 +16,8 @@ impl TargetSpacing<'_> {
     }
 }
 
-/// Number of cells of about `spacing` in a length, at least one.
+/// Number of cells of about `spacing` in a length, at least one; the larger one of two that fit
+/// equally well but for round-off.
 pub(crate) fn lattice_cells(length: f64, spacing: f64) -> usize {
-    (length / spacing).round().max(1.0) as usize
+    (length / spacing + 1e-9).round().max(1.0) as usize
 }

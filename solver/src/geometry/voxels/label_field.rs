@@ -5,8 +5,9 @@ use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::error::GeometryError;
 use crate::geometry::voxels::grid::{ScalarGrid, indices};
 use crate::geometry::voxels::label_map::LabelMap;
+use crate::geometry::voxels::surface_piece::SurfacePiece;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Voxels of empty space around the image, which may be filled to its edge.
 const MARGIN: usize = 3;
@@ -32,6 +33,8 @@ pub struct LabelField {
     /// Rows: unit vectors along the indices.
     frame: Matrix3,
     bounds: (Vector3, Vector3),
+    /// The surface within each voxel, once it has been cut.
+    surface: OnceLock<Arc<Vec<SurfacePiece>>>,
 }
 
 fn check(map: &LabelMap, labels: &[u32], smoothing: f64) -> Result<(), GeometryError> {
@@ -123,7 +126,9 @@ impl LabelField {
         let corner = map.origin - map.directions * first;
         let frame = Matrix3::from_fn(|k, c| map.directions[(c, k)] / step[k]);
         let bounds = bounds(&distance, &corner, &frame);
-        LabelField { map, labels: labels.to_vec(), smoothing, distance, corner, frame, bounds }
+        let labels = labels.to_vec();
+        let surface = OnceLock::new();
+        LabelField { map, labels, smoothing, distance, corner, frame, bounds, surface }
     }
 
     /// Signed distance \[m\], negative inside.
@@ -154,6 +159,17 @@ impl LabelField {
     /// Smallest edge of a voxel \[m\].
     pub fn voxel(&self) -> f64 {
         self.distance.step.min()
+    }
+
+    /// What the surface within each voxel is kept in: it is the same for all spacings.
+    pub(crate) fn surface(&self) -> &OnceLock<Arc<Vec<SurfacePiece>>> {
+        &self.surface
+    }
+
+    /// Memory of that surface \[bytes\].
+    pub(crate) fn surface_bytes(&self) -> f64 {
+        let pieces = self.surface.get().map_or(0, |pieces| pieces.len());
+        (pieces * size_of::<SurfacePiece>()) as f64
     }
 
     /// Around all samples within a voxel of the solid; infinite along the
@@ -200,19 +216,31 @@ fn smooth_along(image: &mut ScalarGrid, axis: usize, deviation: f64) {
     let stride: usize = image.size[..axis].iter().product();
     let n = image.size[axis];
     let old = image.values.clone();
-    image.values.par_iter_mut().enumerate().for_each(|(at, value)| {
-        let position = at / stride % n;
-        let mut total = kernel[0] * old[at];
-        for (reach, factor) in kernel.iter().enumerate().skip(1) {
+    // Along the first axis a whole row at once, along others a layer across them.
+    let (length, count) = if axis == 0 { (n, 1) } else { (stride, n) };
+    image.values.par_chunks_mut(length).enumerate().for_each(|(chunk, values)| {
+        let (start, position) = (chunk * length, chunk % count);
+        let at = |from: usize| &old[from..from + length];
+        values.iter_mut().for_each(|value| *value *= kernel[0]);
+        for (reach, factor) in kernel.iter().enumerate().skip(1).filter(|(reach, _)| *reach < n) {
+            if axis == 0 {
+                add(&mut values[reach..], *factor, &old[start..start + n - reach]);
+                add(&mut values[..n - reach], *factor, &old[start + reach..start + n]);
+                continue;
+            }
             if position >= reach {
-                total += factor * old[at - reach * stride];
+                add(values, *factor, at(start - reach * stride));
             }
             if position + reach < n {
-                total += factor * old[at + reach * stride];
+                add(values, *factor, at(start + reach * stride));
             }
         }
-        *value = total / sum;
+        values.iter_mut().for_each(|value| *value /= sum);
     });
+}
+
+fn add(values: &mut [f64], factor: f64, others: &[f64]) {
+    values.iter_mut().zip(others).for_each(|(value, other)| *value += factor * other);
 }
 
 /// Shifts the distance until as many voxels are enclosed as before smoothing,

@@ -3,6 +3,12 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::error::GeometryError;
+use std::ops::RangeInclusive;
+
+/// Edges that voxels may have \[m\]: those of microscopes and of landscapes.
+const POSSIBLE_EDGES: RangeInclusive<f64> = 1e-9..=1e3;
+/// How far from the origin an image may begin \[m\].
+const FARTHEST: f64 = 1e7;
 
 /// A segmented image: one label per voxel, label 0 is outside.
 #[derive(Debug, Clone)]
@@ -33,6 +39,15 @@ impl LabelMap {
         }
         if !origin.iter().all(|c| c.is_finite()) {
             return Err(GeometryError::NotFinite { name: "the label map origin" });
+        }
+        for (axis, edge) in directions.column_iter().map(|step| step.norm()).enumerate() {
+            if !POSSIBLE_EDGES.contains(&edge) {
+                return Err(GeometryError::VoxelEdge { axis, edge });
+            }
+        }
+        let distance = origin.norm();
+        if distance > FARTHEST {
+            return Err(GeometryError::FarOrigin { distance, farthest: FARTHEST });
         }
         let determinant = directions.determinant();
         let singular = GeometryError::SingularDirections { determinant };

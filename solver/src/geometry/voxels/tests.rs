@@ -132,10 +132,40 @@ fn invalid_label_maps_are_refused() {
     let mut flat = unit;
     flat[(2, 2)] = 0.0;
     let singular = LabelMap::new([1, 1, 1], origin, flat, vec![1]).unwrap_err();
+    assert_eq!(singular, GeometryError::VoxelEdge { axis: 2, edge: 0.0 });
+    let mut thin = unit;
+    thin[(2, 2)] = 1e-300;
+    let thin = LabelMap::new([1, 1, 1], origin, thin, vec![1]).unwrap_err();
+    assert_eq!(thin, GeometryError::VoxelEdge { axis: 2, edge: 1e-300 });
+    let twice = Matrix3::new(1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+    let singular = LabelMap::new([1, 1, 1], origin, twice, vec![1]).unwrap_err();
     assert_eq!(singular, GeometryError::SingularDirections { determinant: 0.0 });
+    let far = LabelMap::new([1, 1, 1], Vector3::repeat(1e300), unit, vec![1]).unwrap_err();
+    assert!(matches!(far, GeometryError::FarOrigin { .. }), "{far}");
     let skew = Matrix3::new(1.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
     let skew = LabelMap::new([1, 1, 1], origin, skew, vec![1]).unwrap_err();
     assert!(matches!(skew, GeometryError::SkewDirections { first: 0, second: 1, .. }));
     let missing = LabelField::new(slab(), &[3, 4], LabelField::SMOOTHING).unwrap_err();
     assert_eq!(missing, GeometryError::NoSuchLabel { label: 4 });
+}
+
+#[test]
+fn distances_far_from_the_level_are_those_to_its_nearest_point() {
+    // A ball of 6 voxels: up to 30 voxels away outside, beyond the band of exact distances.
+    let (n, radius) = (61usize, 6.0f64);
+    let at = |index: usize| index as f64 - 30.0;
+    let from_middle = |v: usize| Vector3::new(at(v % n), at(v / n % n), at(v / (n * n))).norm();
+    let labels = (0..n * n * n).map(|v| u32::from(from_middle(v) < radius)).collect();
+    let map = LabelMap::new([n; 3], Vector3::zeros(), Matrix3::identity(), labels).unwrap();
+    let ball = LabelField::new(Arc::new(map), &[1], LabelField::SMOOTHING).unwrap();
+    let (mut sum, mut most) = (0.0, 0.0f64);
+    for v in 0..n * n * n {
+        let X = Vector3::new((v % n) as f64, (v / n % n) as f64, (v / (n * n)) as f64);
+        let error = ball.signed_distance(&X) - (from_middle(v) - radius);
+        sum += error;
+        most = most.max(error.abs());
+    }
+    // The voxels are a ball only to about half a voxel.
+    let mean = sum / (n * n * n) as f64;
+    assert!(mean.abs() < 0.15 && most < 0.6, "{mean}, {most}");
 }

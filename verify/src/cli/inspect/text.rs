@@ -181,6 +181,7 @@ pub fn advice(inspection: &Inspection) -> Vec<String> {
             ));
         }
     }
+    advice.extend(inspection.case.notes.iter().map(|note| format!("{note}.")));
     advice.extend(warnings(inspection).map(|warning| {
         let text = warning.to_string();
         text[..1].to_uppercase() + &text[1..] + "."
@@ -266,7 +267,9 @@ pub fn to_json(inspection: &Inspection) -> Value {
                 "position_m": array(&motion.position),
             })).collect::<Vec<_>>(),
         })),
-        "warnings": warnings(inspection).map(|warning| warning.to_string()).collect::<Vec<_>>(),
+        "warnings": (inspection.case.notes.iter().cloned())
+            .chain(warnings(inspection).map(|warning| warning.to_string()))
+            .collect::<Vec<_>>(),
         "advice": advice(inspection),
     })
 }

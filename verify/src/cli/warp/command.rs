@@ -39,6 +39,7 @@ pub fn warp(arguments: &WarpArgs, common: &Common) -> Result<u8> {
     let decay = arguments.decay.map(|millimetres| 1e-3 * millimetres);
     let field = DisplacementField::new(&stored, &case.problem, decay)?;
     if let Some((path, image)) = &image {
+        image.notes.iter().for_each(|note| common.warn_about(path, note));
         refuse_other_space(path, image, &field, common)?;
     }
     outputs.ensure_writable()?;

@@ -24,9 +24,15 @@ impl ImageFormat {
 
     /// The format of a file that is to be read.
     pub fn of_input(path: &Path) -> Result<ImageFormat, FileError> {
-        let detached = path.to_string_lossy().to_lowercase().ends_with(".nhdr");
-        let known = ".nrrd, .nhdr, .nii, .nii.gz";
-        let found = if detached { Some(ImageFormat::Nrrd) } else { of(path) };
+        let name = path.to_string_lossy().to_lowercase();
+        let is = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
+        let known = ".nrrd, .nhdr, .nii, .nii.gz, .hdr, .img, .hdr.gz, .img.gz";
+        let found = match () {
+            () if is(&[".nhdr"]) => Some(ImageFormat::Nrrd),
+            () if is(&[".hdr", ".img"]) => Some(ImageFormat::Nifti),
+            () if is(&[".hdr.gz", ".img.gz"]) => Some(ImageFormat::NiftiGz),
+            () => of(path),
+        };
         found.ok_or_else(|| Mistake::UnknownExtension { known }.of(path))
     }
 }

@@ -1,4 +1,4 @@
-//! NIfTI-1 images, `.nii` and `.nii.gz`.
+//! NIfTI images, `.nii` and `.nii.gz`; pairs and those of version 2 are only read.
 
 use super::format::{ImageFormat, gzip};
 use super::grid::Grid;
@@ -21,14 +21,16 @@ pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<Image, FileError> {
         scalar: voxels.scalar,
         order: voxels.order,
         stored: voxels.stored,
+        notes: voxels.notes,
         header: Header::Nifti { bytes: voxels.header_bytes, scaling: voxels.scaling },
     })
 }
 
-/// The header of a NIfTI image is kept, without extensions; another gets one of its grid.
+/// The header of a NIfTI-1 image in one piece is kept, without extensions; another gets one of
+/// its grid.
 pub fn image(image: &Image, voxels: &[u8], format: ImageFormat) -> Result<Vec<u8>, Mistake> {
     let (mut bytes, order) = match &image.header {
-        Header::Nifti { bytes, .. } => {
+        Header::Nifti { bytes: Some(bytes), .. } => {
             let mut bytes = bytes.clone();
             bytes.resize(VOXELS_AT, 0);
             let start = VOXELS_AT as f32;
@@ -37,6 +39,12 @@ pub fn image(image: &Image, voxels: &[u8], format: ImageFormat) -> Result<Vec<u8
                 ByteOrder::Big => start.to_be_bytes(),
             });
             (bytes, image.order)
+        }
+        Header::Nifti { bytes: None, scaling: (slope, intercept) } => {
+            let mut bytes = header(&image.grid, image.scalar, false)?;
+            bytes[112..116].copy_from_slice(&(*slope as f32).to_le_bytes());
+            bytes[116..120].copy_from_slice(&(*intercept as f32).to_le_bytes());
+            (bytes, ByteOrder::Little)
         }
         Header::Nrrd { .. } => (header(&image.grid, image.scalar, false)?, ByteOrder::Little),
     };

@@ -30,7 +30,8 @@ fn parse(opened: Opened, unit: Option<LengthUnit>) -> Result<Image, Mistake> {
     };
     let grid = Grid::new(size, origin * metres, directions * metres)?;
     let stored = stored(&header, data, length, voxel_count(&size)? * scalar.size())?;
-    Ok(Image { grid, scalar, order, stored, header: Header::Nrrd { text } })
+    let notes = header.doubts();
+    Ok(Image { grid, scalar, order, stored, notes, header: Header::Nrrd { text } })
 }
 
 /// The header of an NRRD image is kept; a NIfTI image gets one of its grid.

@@ -15,14 +15,17 @@ pub struct Image {
     pub order: ByteOrder,
     /// Stored numbers, first index fastest.
     pub stored: Vec<u8>,
+    /// Reasons to doubt where the voxels lie.
+    pub notes: Vec<String>,
     pub(super) header: Header,
 }
 
 /// What a file of the same format is written with.
 #[derive(Debug, Clone)]
 pub(super) enum Header {
-    /// The bytes of a NIfTI-1 header; slope and intercept of the stored numbers.
-    Nifti { bytes: Vec<u8>, scaling: (f64, f64) },
+    /// The bytes of a NIfTI-1 header, if it is one of a file in one piece; slope and intercept of
+    /// the stored numbers.
+    Nifti { bytes: Option<Vec<u8>>, scaling: (f64, f64) },
     /// The lines of an NRRD header up to the empty one.
     Nrrd { text: Vec<u8> },
 }

@@ -240,3 +240,16 @@ fn a_compressed_block_longer_than_stated_is_refused() {
     let message = vtu::parse(&text).unwrap_err().to_string();
     assert!(message.contains("has not the 48 bytes that are stated"), "{message}");
 }
+
+#[test]
+fn more_compressed_numbers_than_there_are_points_are_refused_before_they_are_inflated() {
+    // A mebibyte of zeros, as its block states, for the 48 bytes of two points.
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(&[0; 1 << 20]).unwrap();
+    let block = encoder.finish().unwrap();
+    let header = [1, 1 << 20, 0, block.len() as u32].map(u32::to_le_bytes).concat();
+    let content = STANDARD.encode(header) + &STANDARD.encode(block);
+    let text = vtu_text("compressor=\"vtkZLibDataCompressor\"", "format=\"binary\"", &content, "");
+    let message = vtu::parse(&text).unwrap_err().to_string();
+    assert!(message.contains("state 1048576 bytes, its points 48 at most"), "{message}");
+}

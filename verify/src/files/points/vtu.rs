@@ -13,6 +13,9 @@ use quick_xml::events::{BytesStart, Event};
 use std::collections::HashMap;
 use std::io::Read;
 
+/// No cloud has more nodes.
+const MOST_POINTS: usize = 20_000_000;
+
 pub(super) type Attributes = HashMap<String, String>;
 
 /// How binary arrays of a file are stored.
@@ -45,15 +48,14 @@ fn vectors(bytes: &[u8], name: Option<&str>) -> Result<Vec<Vector3>, Mistake> {
         let other = array.get("type").map_or("", String::as_str);
         return Err(Mistake::bad_field("type", other, "Float32 or Float64"));
     }
-    let values = storage.values(&array, &text, appended.map(|at| &bytes[at..]))?;
-    match piece.get("NumberOfPoints") {
-        None => from_stated(&values, values.len() / 3),
-        Some(text) => {
-            let points = text.trim().parse();
-            let bad = |_| Mistake::bad_field("NumberOfPoints", text, "a whole number");
-            from_stated(&values, points.map_err(bad)?)
-        }
-    }
+    let points = piece.get("NumberOfPoints").map(|text| {
+        let bad = |_| Mistake::bad_field("NumberOfPoints", text, "a whole number");
+        text.trim().parse::<usize>().map_err(bad)
+    });
+    let points = points.transpose()?;
+    let most = 3 * points.map_or(MOST_POINTS, |points| points.min(MOST_POINTS));
+    let values = storage.values(&array, &text, appended.map(|at| &bytes[at..]), most)?;
+    from_stated(&values, points.unwrap_or(values.len() / 3))
 }
 
 pub(super) fn damaged(encoding: &'static str, reason: String) -> Mistake {
@@ -206,12 +208,14 @@ fn base64_bytes(text: &[u8]) -> Result<Vec<u8>, Mistake> {
 }
 
 impl Storage {
-    /// The numbers of an array with this text, or in the data at the end of the file.
+    /// The numbers of an array with this text, or in the data at the end of the file. Compressed
+    /// data that are `most` numbers and more are refused before they are inflated.
     pub(super) fn values(
         &self,
         array: &Attributes,
         text: &str,
         appended: Option<&[u8]>,
+        most: usize,
     ) -> Result<Vec<f64>, Mistake> {
         let get = |name: &str| array.get(name).map(String::as_str);
         let scalar = match get("type") {
@@ -230,12 +234,12 @@ impl Storage {
                 let values: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
                 values.map_err(|error| damaged("ASCII", error.to_string()))
             }
-            Some("binary") => self.numbers(&base64_bytes(text.as_bytes())?, scalar),
+            Some("binary") => self.numbers(&base64_bytes(text.as_bytes())?, scalar, most),
             Some("appended") => {
                 let offset = get("offset").and_then(|offset| offset.parse().ok());
                 let offset = offset.ok_or(Mistake::MissingField { field: "offset" })?;
                 let tail = appended.ok_or(Mistake::MissingField { field: "AppendedData" })?;
-                self.numbers(&appended_bytes(tail, offset)?, scalar)
+                self.numbers(&appended_bytes(tail, offset)?, scalar, most)
             }
             other => {
                 let expected = "ascii, binary or appended";
@@ -245,8 +249,12 @@ impl Storage {
     }
 
     /// Numbers of an array that starts with its lengths.
-    fn numbers(&self, bytes: &[u8], scalar: Scalar) -> Result<Vec<f64>, Mistake> {
-        let data = if self.compressed { self.inflate(bytes)? } else { self.plain(bytes)?.to_vec() };
+    fn numbers(&self, bytes: &[u8], scalar: Scalar, most: usize) -> Result<Vec<f64>, Mistake> {
+        let most = most.saturating_mul(scalar.size());
+        let data = match self.compressed {
+            true => self.inflate(bytes, most)?,
+            false => self.plain(bytes)?.to_vec(),
+        };
         let words = data.chunks_exact(scalar.size());
         Ok(words.map(|word| scalar.read(word, self.order)).collect())
     }
@@ -266,13 +274,20 @@ impl Storage {
         bytes.get(start..end).ok_or(Mistake::Truncated { expected, found })
     }
 
-    /// Blocks: their number, size, size of the last, compressed sizes, data.
-    fn inflate(&self, bytes: &[u8]) -> Result<Vec<u8>, Mistake> {
+    /// Blocks: their number, size, size of the last, compressed sizes, data; `most` bytes in all.
+    fn inflate(&self, bytes: &[u8], most: usize) -> Result<Vec<u8>, Mistake> {
         let blocks = self.length(bytes, 0)?;
         if blocks == 0 {
             return Ok(Vec::new());
         }
         let (size, partial) = (self.length(bytes, 1)?, self.length(bytes, 2)?);
+        let last = if partial == 0 { size } else { partial };
+        let stated = size.saturating_mul(blocks - 1).saturating_add(last);
+        if stated > most || stated as u64 > LONGEST {
+            let most = most.min(LONGEST as usize);
+            let reason = format!("its blocks state {stated} bytes, its points {most} at most");
+            return Err(damaged("zlib", reason));
+        }
         let mut start = blocks.saturating_add(3).saturating_mul(self.lengths.size());
         let mut out = Vec::new();
         for block in 0..blocks {
@@ -285,7 +300,7 @@ impl Storage {
             // One byte more than stated, to notice that there is one.
             let inflated = ZlibDecoder::new(data).take(size as u64 + 1).read_to_end(&mut out);
             inflated.map_err(|error| damaged("zlib", error.to_string()))?;
-            if out.len() - before != size || out.len() as u64 > LONGEST {
+            if out.len() - before != size {
                 let reason = format!("block {block} has not the {size} bytes that are stated");
                 return Err(damaged("zlib", reason));
             }

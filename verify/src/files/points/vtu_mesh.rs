@@ -56,7 +56,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeshFile, Mistake> {
             Ok(NamedArray {
                 name,
                 components: components.filter(|n| *n > 0).unwrap_or(1),
-                values: storage.values(array, text, tail)?,
+                values: storage.values(array, text, tail, usize::MAX)?,
             })
         })
         .collect()

@@ -33,6 +33,8 @@ pub struct Builder<'a> {
     pub maps: HashMap<(PathBuf, Option<UnitFormat>), Arc<LabelMap>>,
     /// Solids made of labels so far, costly to make.
     pub fields: Vec<Arc<LabelField>>,
+    /// What should be known about the files of the case.
+    pub notes: Vec<String>,
     /// Mistakes so far.
     pub mistakes: Vec<Diagnostic>,
     /// Of the case file and of the files that it names.

@@ -124,6 +124,8 @@ impl Builder<'_> {
                 for path in &read.files {
                     self.hash_file(key, path);
                 }
+                let named = |note: &String| format!("{}: {note}", file.display());
+                self.notes.extend(read.notes.iter().map(named));
                 let map = Arc::new(read.map);
                 self.maps.insert((path, unit), map.clone());
                 Some(map)
@@ -194,8 +196,16 @@ impl Builder<'_> {
             let mut present: Vec<u32> = map.labels.iter().copied().filter(|&l| l > 0).collect();
             present.sort_unstable();
             present.dedup();
+            let swapped = match present.iter().all(|label| label % 256 == 0) {
+                true => {
+                    "; if they are no multiples of 256 where they come from, the byte order of \
+                         its header is wrong"
+                }
+                false => "",
+            };
             present.truncate(20);
-            self.mistake(key, format!("label {label} does not occur; the map has {present:?}"));
+            let message = format!("label {label} does not occur; the map has {present:?}{swapped}");
+            self.mistake(key, message);
         }
     }
 

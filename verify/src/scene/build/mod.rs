@@ -37,6 +37,7 @@ pub fn build(
         body_map: None,
         maps: HashMap::new(),
         fields: Vec::new(),
+        notes: Vec::new(),
         mistakes: Vec::new(),
         hash: Sha256::new_with_prefix(document.text()),
     };
@@ -50,7 +51,7 @@ pub fn build(
             .unwrap_or_default(),
         false => String::new(),
     };
-    let Builder { mistakes, hash, .. } = builder;
+    let Builder { notes, mistakes, hash, .. } = builder;
     match problem {
         Some(problem) if mistakes.is_empty() => Ok(Case {
             name: Path::new(file_name).file_stem().unwrap_or_default().to_string_lossy().into(),
@@ -60,6 +61,7 @@ pub fn build(
             problem,
             probes,
             outputs,
+            notes,
             hash: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
             problem_hash,
             document,

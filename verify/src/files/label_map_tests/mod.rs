@@ -1,7 +1,11 @@
-use super::{LengthUnit, Mistake, nifti, nrrd, read_label_map};
+mod nifti_files;
+mod places;
+
+use super::{LabelMapFile, LengthUnit, Mistake, nifti, nrrd, read_label_map};
 use flate2::{Compression, write::GzEncoder};
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::LabelMap;
+use nifti_files::nifti_bytes;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -15,6 +19,14 @@ fn read_as(name: &str, bytes: &[u8]) -> Result<LabelMap, Mistake> {
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
     read_label_map(&path, None).map(|read| read.map).map_err(|error| error.mistake)
+}
+
+/// As [`read_as`], with what is said about the labels.
+fn read_noted(name: &str, bytes: &[u8]) -> LabelMapFile {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    read_label_map(&path, None).unwrap()
 }
 
 fn nrrd_text(header: &str, data: &[u8]) -> Vec<u8> {
@@ -34,7 +46,7 @@ const LABELS: [u8; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 #[test]
 fn the_brain_slice_is_the_same_in_nrrd_and_nifti() {
     let first = nrrd::read(&brain("slice.nrrd"), None).unwrap().map;
-    let second = nifti::read(&brain("slice.nii.gz"), None).unwrap();
+    let second = nifti::read(&brain("slice.nii.gz"), None).unwrap().map;
     assert_eq!(first.size, [157, 190, 5]);
     assert_eq!(first.size, second.size);
     assert!(first.labels == second.labels);
@@ -207,143 +219,38 @@ fn a_header_without_an_end_is_refused() {
 }
 
 #[test]
-fn fractions_and_negative_numbers_are_no_labels() {
+fn fractions_are_no_labels() {
     let header = format!("{SMALL}encoding: ascii\n").replace("uint8", "float");
-    for text in ["0 1 2 3 4 5 6 7.5", "0 1 2 3 4 5 6 -7", "0 1 2 3 4 5 6 nan"] {
+    for text in ["0 1 2 3 4 5 6 7.5", "0 1 2 3 4 5 6 -7.5", "0 1 2 3 4 5 6 5e9"] {
         let error = read_as("a.nrrd", &nrrd_text(&header, text.as_bytes())).unwrap_err();
-        assert!(matches!(error, Mistake::NotALabel { voxel: 7, .. }), "{error}");
+        let is_seven = matches!(
+            error,
+            Mistake::NotALabel { voxel: 7, .. } | Mistake::LabelTooLarge { voxel: 7, .. }
+        );
+        assert!(is_seven, "{error}");
     }
     assert!(read_as("a.nrrd", &nrrd_text(&header, b"0 1 2 3 4 5 6 7.0")).is_ok());
 }
 
 #[test]
-fn labels_read_in_the_wrong_byte_order_are_noticed() {
-    let header = format!("{SMALL}encoding: raw\nendian: big\n");
-    for (kind, size) in [("uint16", 2), ("int32", 4)] {
-        let bytes = LABELS.map(|label| u64::from(label).to_le_bytes()[..size].to_vec()).concat();
-        let error = read_as("a.nrrd", &nrrd_text(&header.replace("uint8", kind), &bytes));
-        assert!(error.unwrap_err().to_string().contains("big endian) is wrong"));
-    }
-}
-
-/// A NIfTI file of int16 voxels 0 to 7 in either byte order.
-fn nifti_bytes(big: bool, change: impl Fn(&mut dyn FnMut(usize, &[u8]))) -> Vec<u8> {
-    let mut bytes = vec![0u8; 352];
-    let word = |n: i16| if big { n.to_be_bytes() } else { n.to_le_bytes() };
-    let float = |x: f32| if big { x.to_be_bytes() } else { x.to_le_bytes() };
-    let mut put = |at: usize, data: &[u8]| bytes[at..at + data.len()].copy_from_slice(data);
-    put(0, &if big { 348i32.to_be_bytes() } else { 348i32.to_le_bytes() });
-    for (n, size) in [3, 2, 2, 2, 1, 1, 1, 1].into_iter().enumerate() {
-        put(40 + 2 * n, &word(size));
-    }
-    put(70, &word(4));
-    put(72, &word(16));
-    for (n, step) in [1.0, 1.0, 2.0, 3.0].into_iter().enumerate() {
-        put(76 + 4 * n, &float(step));
-    }
-    put(108, &float(352.0));
-    put(344, b"n+1\0");
-    change(&mut put);
-    bytes.extend(LABELS.iter().flat_map(|&label| word(i16::from(label))));
-    bytes
+fn negative_numbers_and_nan_are_outside_and_counted() {
+    let header = format!("{SMALL}encoding: ascii\n").replace("uint8", "float");
+    let read = read_noted("a.nrrd", &nrrd_text(&header, b"-1 1 2 -7 4 5 6 nan"));
+    assert_eq!(read.map.labels, [0, 1, 2, 0, 4, 5, 6, 0]);
+    assert!(read.notes.iter().any(|note| note.starts_with("3 of 8 voxels")), "{:?}", read.notes);
 }
 
 #[test]
-fn nifti_is_read_in_both_byte_orders() {
-    for big in [false, true] {
-        let map = read_as("a.nii", &nifti_bytes(big, |_| {})).unwrap();
-        assert_eq!(map.labels, LABELS.map(u32::from));
-        assert!((map.directions[(2, 2)] - 0.003).abs() < 1e-12);
-    }
-}
-
-#[test]
-fn nifti_prefers_the_sform_to_the_qform_and_turns_the_qform() {
-    // A quarter turn about z with the third axis flipped.
-    let qform = |put: &mut dyn FnMut(usize, &[u8])| {
-        put(76, &(-1.0f32).to_le_bytes());
-        put(252, &1i16.to_le_bytes());
-        put(264, &0.5f32.sqrt().to_le_bytes());
-        put(268, &10.0f32.to_le_bytes());
-    };
-    let map = read_as("a.nii", &nifti_bytes(false, qform)).unwrap();
-    let expected = Matrix3::new(0.0, -2.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -3.0) * 1e-3;
-    assert!((map.directions - expected).norm() < 1e-8);
-    assert!((map.origin.x - 0.01).abs() < 1e-12);
-    let both = |put: &mut dyn FnMut(usize, &[u8])| {
-        qform(put);
-        put(254, &1i16.to_le_bytes());
-        for (at, value) in [(280, 4.0f32), (292, 7.0), (300, 5.0), (320, 6.0)] {
-            put(at, &value.to_le_bytes());
-        }
-        put(123, &[1]);
-    };
-    let map = read_as("a.nii", &nifti_bytes(false, both)).unwrap();
-    assert_eq!(map.directions, Matrix3::from_diagonal(&Vector3::new(4.0, 5.0, 6.0)));
-    assert_eq!(map.origin.x, 7.0);
-}
-
-#[test]
-fn damaged_nifti_files_are_refused_with_a_reason() {
-    let good = nifti_bytes(false, |_| {});
-    let cases: [(Vec<u8>, &str); 6] = [
-        (good[..good.len() - 3].to_vec(), "states 16 bytes of data, there are 13"),
-        (good[..100].to_vec(), "the header ends after 100 bytes"),
-        (nifti_bytes(false, |put| put(344, b"abc\0")), "this is not a NIfTI-1 file"),
-        (nifti_bytes(false, |put| put(344, b"ni1\0")), "convert the .hdr/.img pair"),
-        (nifti_bytes(false, |put| put(40, &2i16.to_le_bytes())), "three axes"),
-        (nifti_bytes(false, |put| put(70, &128i16.to_le_bytes())), "`datatype` is `128`"),
-    ];
-    for (bytes, reason) in cases {
-        let message = read_as("a.nii", &bytes).unwrap_err().to_string();
-        assert!(message.contains(reason), "{message} does not say {reason}");
-    }
-    let zipped = gzip(&good);
-    let error = read_as("a.nii.gz", &zipped[..zipped.len() - 12]).unwrap_err();
-    assert!(
-        matches!(error, Mistake::Truncated { .. } | Mistake::TruncatedHeader { .. }),
-        "{error}"
-    );
-}
-
-#[test]
-fn nifti_fields_without_a_meaning_are_named() {
-    let nan = f32::NAN.to_le_bytes();
-    let qform = |put: &mut dyn FnMut(usize, &[u8])| put(252, &1i16.to_le_bytes());
-    let sform = |put: &mut dyn FnMut(usize, &[u8])| put(254, &1i16.to_le_bytes());
-    let cases: [(Vec<u8>, &str); 9] = [
-        (nifti_bytes(false, |put| put(108, &nan)), "vox_offset"),
-        (nifti_bytes(false, |put| put(108, &(-352.0f32).to_le_bytes())), "vox_offset"),
-        (nifti_bytes(false, |put| put(80, &nan)), "pixdim"),
-        (nifti_bytes(false, |put| put(84, &0.0f32.to_le_bytes())), "pixdim"),
-        (nifti_bytes(false, |put| put(88, &(-3.0f32).to_le_bytes())), "pixdim"),
-        (
-            nifti_bytes(false, |put| {
-                qform(put);
-                put(268, &f32::INFINITY.to_le_bytes());
-            }),
-            "qoffset",
-        ),
-        (
-            nifti_bytes(false, |put| {
-                qform(put);
-                put(256, &nan);
-            }),
-            "quatern",
-        ),
-        (
-            nifti_bytes(false, |put| {
-                sform(put);
-                put(284, &nan);
-            }),
-            "srow_x",
-        ),
-        (nifti_bytes(false, sform), "srow_x, srow_y, srow_z"),
-    ];
-    for (bytes, field) in cases {
-        let message = read_as("a.nii", &bytes).unwrap_err().to_string();
-        assert!(message.contains(&format!("header field `{field}` is")), "{message}: {field}");
-    }
+fn large_labels_are_read_and_multiples_of_256_are_pointed_out() {
+    let header = format!("{SMALL}encoding: raw\nendian: little\n").replace("uint8", "uint32");
+    let bytes = |labels: [u32; 8]| nrrd_text(&header, &labels.map(u32::to_le_bytes).concat());
+    let allen = [0, 997, 614_454_277, 0, 0, 0, 0, u32::MAX];
+    let read = read_noted("a.nrrd", &bytes(allen));
+    assert_eq!(read.map.labels, allen);
+    let doubts = |notes: &[String]| notes.iter().any(|note| note.contains("multiple of 256"));
+    assert!(!doubts(&read.notes), "{:?}", read.notes);
+    let swapped = read_noted("a.nrrd", &bytes([0, 256, 512, 0, 0, 0, 0, 65_536]));
+    assert!(doubts(&swapped.notes), "{:?}", swapped.notes);
 }
 
 #[test]
