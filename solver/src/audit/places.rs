@@ -7,8 +7,8 @@ use crate::algebra::tensor::Vector3;
 use crate::discretisation::neighbours::Neighbours;
 use crate::error::Error;
 
-/// A node lies on an edge that is nearer than this \[spacing\]: the smallest cells at edges are
-/// a quarter of it.
+/// A node lies on an edge that is nearer than this \[spacing\]: the corners of the largest cells
+/// at edges are 0.11 from their middle.
 const ON_EDGE: f64 = 0.15;
 /// An edge has nodes where one on it is nearer than this \[spacing\]: half a spacing, and a
 /// quarter for spacings that do not divide it.
@@ -16,7 +16,7 @@ const ALONG: f64 = 0.75;
 /// Part of the edges that may be without nodes \[–\]: more, and the body is another one.
 const WITHOUT: f64 = 0.5;
 /// Cells that are cut at an edge, larger than this \[spacing\], do not say where it is.
-const SHARP: f64 = 0.1;
+const SHARP: f64 = 0.13;
 /// Places that are looked at.
 const SAMPLES: usize = 2000;
 /// Sum of the sizes of shape functions across a gap from which it is glued \[–\].

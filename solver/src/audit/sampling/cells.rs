@@ -31,7 +31,7 @@ const OF_LABELS: usize = 4;
 const OF_TRIANGLES: usize = 40;
 /// Signed distances of a primitive that are spent in all: a few milliseconds, and per node, about
 /// as much as a step of the solution costs there.
-const BUDGET: (usize, usize) = (20_000, 50);
+const BUDGET: (usize, usize) = (60_000, 50);
 
 /// The body, and the parts that its volume is divided into.
 pub(crate) struct Divided<'a> {
@@ -98,13 +98,13 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     let cost = cost(divided.body) + divided.parts.iter().map(|part| cost_of(part)).sum::<usize>();
     let mut sampled =
         Sampled { volumes: vec![Volume::default(); divided.parts.len()], ..Sampled::default() };
+    // About half of the children of a cell on the boundary lie on it, fewer on an edge.
+    let mut growth = if flat { 2.0 } else { 4.0 };
     while !cells.is_empty() {
         let spent = cells.len() * cost * 5;
         budget = budget.saturating_sub(spent);
-        let children = if flat { 4 } else { 8 };
-        // About half of the children of a cell on the boundary lie on it.
-        let last =
-            budget < spent * children / 2 || cells[0].half.x <= 0.51 * FINEST * divided.spacing;
+        let last = (budget as f64) < growth * spent as f64
+            || cells[0].half.x <= 0.51 * FINEST * divided.spacing;
         let fates: Vec<Fate> = cells.par_iter().map(|cell| divided.fate(cell, last)).collect();
         let mut next = Vec::new();
         for (cell, fate) in cells.iter().zip(fates) {
@@ -117,6 +117,7 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
             }
         }
         sampled.finest = 2.0 * cells[0].half.x;
+        growth = next.len() as f64 / cells.len() as f64;
         cells = next;
     }
     Ok(sampled)

@@ -137,8 +137,8 @@ mod tests {
             assert!(vector.norm() < 1e-12 * area, "{size}: {vector}");
             let enclosed: f64 =
                 panels.iter().map(|p| p.area * p.mean_normal().dot(&p.centre) / 3.0).sum();
-            // The voxels of the ball are 0.02 % fewer than its volume.
-            assert!((enclosed / volume - 1.0).abs() < 0.005, "{size}: {enclosed} of {volume}");
+            // Triangles between voxels are chords of the ball: 0.6 % are missing.
+            assert!((enclosed / volume - 1.0).abs() < 0.01, "{size}: {enclosed} of {volume}");
             let sum: f64 = panels.iter().map(|p| p.area).sum();
             assert!((0.93..1.03).contains(&(sum / area)), "{size}: {sum} of {area}");
             let most = 6.0 * area / (size * size);
@@ -153,12 +153,13 @@ mod tests {
             x.abs() < 12.0 && y.abs() < 12.0 && (2.0..7.0).contains(&z.abs())
         });
         let area = |size: f64, facing: f64| -> f64 {
-            let towards = panels(&plates, size).into_iter().filter(|p| p.normal.z * facing > 0.9);
-            towards.map(|p| p.area).sum()
+            let along = |p: &Panel| (facing * p.area * p.mean_normal().z).max(0.0);
+            panels(&plates, size).iter().map(along).sum()
         };
         for facing in [-1.0, 1.0] {
             let (fine, coarse) = (area(1.8e-3, facing), area(10e-3, facing));
-            assert!((coarse / fine - 1.0).abs() < 0.05, "{facing}: {coarse} of {fine}");
+            // Half of the rounded edges belongs to panels of the sides.
+            assert!((coarse / fine - 1.0).abs() < 0.06, "{facing}: {coarse} of {fine}");
         }
     }
 

@@ -42,8 +42,8 @@ fn a_ball_of_voxels_has_the_volume_and_area_of_a_sphere() {
         let (ball, _) = voxel_ball(turn, voxel);
         let panels = ball.boundary_panels(2e-3, &Dimension::Three).unwrap();
         let total: f64 = panels.iter().map(|p| p.area).sum();
-        let sum: Vector3 = panels.iter().map(|p| p.area * p.normal).sum();
-        let flux: f64 = panels.iter().map(|p| p.area * p.centre.dot(&p.normal)).sum();
+        let sum: Vector3 = panels.iter().map(|p| p.area * p.mean_normal()).sum();
+        let flux: f64 = panels.iter().map(|p| p.area * p.centre.dot(&p.mean_normal())).sum();
         assert!(sum.norm() < 1e-9 * area);
         let Shape::Labels(field) = &ball else { unreachable!("voxel_ball makes labels") };
         let count = field.map().labels.iter().filter(|label| **label == 7).count();
@@ -100,7 +100,8 @@ fn the_ends_of_a_slab_are_no_boundary_of_its_section() {
     let middle = Vector3::new(0.0, 0.0, 2e-3);
     assert!((body.signed_distance(&middle) + 2.5e-3).abs() < 0.2e-3);
     // The nearest voxels without the label start at 7.5 mm.
-    assert!((section.signed_distance(&middle) + 7.65e-3).abs() < 0.2e-3);
+    let inner = section.signed_distance(&middle);
+    assert!((inner + 7.65e-3).abs() < 0.2e-3, "{inner}");
     let panels = body.boundary_panels(1e-3, &dimension).unwrap();
     let flux: f64 = panels.iter().map(|p| p.area * p.centre.dot(&p.normal)).sum();
     let voxels = slab().labels.iter().filter(|l| **l == 3).count() as f64 / 5.0;
@@ -134,9 +135,9 @@ fn invalid_label_maps_are_refused() {
     let singular = LabelMap::new([1, 1, 1], origin, flat, vec![1]).unwrap_err();
     assert_eq!(singular, GeometryError::VoxelEdge { axis: 2, edge: 0.0 });
     let mut thin = unit;
-    thin[(2, 2)] = 1e-300;
+    thin[(2, 2)] = 1e-12;
     let thin = LabelMap::new([1, 1, 1], origin, thin, vec![1]).unwrap_err();
-    assert_eq!(thin, GeometryError::VoxelEdge { axis: 2, edge: 1e-300 });
+    assert_eq!(thin, GeometryError::VoxelEdge { axis: 2, edge: 1e-12 });
     let twice = Matrix3::new(1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     let singular = LabelMap::new([1, 1, 1], origin, twice, vec![1]).unwrap_err();
     assert_eq!(singular, GeometryError::SingularDirections { determinant: 0.0 });

@@ -172,19 +172,25 @@ struct Far {
 }
 
 impl Far {
-    /// The distance at a sample: linear between the samples around it, which is too large about a
-    /// single nearest point, but no larger than those to their feet, which are too large about
-    /// a flat level.
+    /// The distance at a sample, from the samples around it: linear between them, which is too
+    /// small on a ridge, but no less than those to the planes through their feet, which are too
+    /// small about a single nearest point, and no more than those to their feet, which are too
+    /// large about a flat level.
     fn at(&self, ijk: [usize; 3]) -> f64 {
-        let here = Vector3::from_fn(|axis, _| ijk[axis] as f64 * self.step[axis]);
-        let (mut mean, mut nearest) = (0.0, f64::INFINITY);
+        let place =
+            |ijk: [usize; 3]| Vector3::from_fn(|axis, _| ijk[axis] as f64 * self.step[axis]);
+        let here = place(ijk);
+        let (mut mean, mut plane, mut nearest) = (0.0, f64::INFINITY, f64::INFINITY);
         let ends = ijk.map(|n| [n / 2, n.div_ceil(2)]);
         for corner in 0..8 {
             let [i, j, k] = [0, 1, 2].map(|axis| ends[axis][corner >> axis & 1]);
             let at = self.grid.index(i, j, k);
-            nearest = nearest.min((here - self.feet[at]).norm());
-            mean += self.grid.values[at] / 8.0;
+            let (distance, foot) = (self.grid.values[at], self.feet[at]);
+            let away = here - foot;
+            mean += distance / 8.0;
+            plane = plane.min(away.dot(&(place([2 * i, 2 * j, 2 * k]) - foot)) / distance);
+            nearest = nearest.min(away.norm());
         }
-        nearest.min(mean)
+        nearest.min(plane.max(mean))
     }
 }
