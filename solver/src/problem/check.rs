@@ -3,6 +3,7 @@
 use crate::problem::amplitude::Amplitude;
 use crate::problem::motion::{Motion, Relaxation, StepControl};
 use crate::problem::recipe::{BackgroundGrid, Basis, Cloud, Recipe, Refinement};
+use std::cmp::Ordering::Greater;
 
 /// A number of a problem that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -97,7 +98,11 @@ impl Recipe {
     pub fn check(&self) -> Vec<Mistake> {
         let mut found = Mistakes::default();
         found.part("cloud", self.cloud.check());
-        found.add_if(!(self.dilation > 1.0), "dilation", Wrong::Dilation(self.dilation));
+        found.add_if(
+            self.dilation.partial_cmp(&1.0) != Some(Greater),
+            "dilation",
+            Wrong::Dilation(self.dilation),
+        );
         if let Basis::ModifiedQuadratic { regularisation } = self.basis {
             let wrong = Wrong::Regularisation(regularisation);
             found.add_if(
@@ -166,7 +171,11 @@ impl Amplitude {
                 for (n, pair) in rows.windows(2).enumerate() {
                     let ((before, _), (after, _)) = (pair[0], pair[1]);
                     let wrong = Wrong::TimesFall { before, after };
-                    found.add_if(!(after > before), &format!("table[{}]", n + 1), wrong);
+                    found.add_if(
+                        after.partial_cmp(&before) != Some(Greater),
+                        &format!("table[{}]", n + 1),
+                        wrong,
+                    );
                 }
             }
         }

@@ -34,11 +34,9 @@ pub fn result_json(
     contacts: &[ContactResult],
     bars: Option<&Estimated>,
 ) -> Value {
-    let mut warnings = case.notes.clone();
-    warnings.extend(solved.prepared.doubts(&case.problem));
-    warnings.extend(solved.doubts());
+    let doubts = [solved.prepared.doubts(&case.problem), solved.doubts()];
     let mut result = recorded_json(case, &solved.prepared, record);
-    result["warnings"] = json!(warnings);
+    result["warnings"] = json!([case.notes.clone(), doubts.concat()].concat());
     result["motion"] = motion_json(case, solved);
     result["contacts"] = json!(contacts_json(case, contacts));
     result["work_counters"] = json!(Work::of(solved));

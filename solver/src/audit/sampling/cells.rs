@@ -23,11 +23,10 @@ const SAMPLED_CELL: (f64, f64) = (0.5, 0.25);
 /// Deviation of the signed distance from a linear function over the edge of the cell \[–\]: with
 /// it a ball of radius R is cut in cells of 0.08 R and its volume is right to 0.1 %.
 const BEND: f64 = 0.01;
-/// Area of a cell that is cut at an edge of the body, over the square of its edge, which may
-/// be wrong \[–\]: a chamfer takes the place of two faces.
-const CHAMFER: f64 = 0.6;
+/// Part of a cell that a part without distances, asked at six places of it, may be off by \[–\].
+const BY_PLACES: f64 = 0.25;
 /// Cost of a signed distance of a shape that is no primitive, over that of one that is \[–\].
-const OF_LABELS: usize = 4;
+const OF_LABELS: usize = 1;
 const OF_TRIANGLES: usize = 40;
 /// Signed distances of a primitive that are spent in all: a few milliseconds, and per node, about
 /// as much as a step of the solution costs there.
@@ -54,6 +53,8 @@ pub(crate) struct Volume {
     pub first: Vector3,
     /// How wrong the size may be \[m³\].
     pub doubt: f64,
+    /// Square of how wrong it may be besides, in sum over cells whose errors are independent \[m⁶\].
+    variance: f64,
 }
 
 /// What was found.
@@ -81,7 +82,18 @@ struct Cell {
 enum Fate {
     Outside,
     Divided,
-    Cut { pieces: Vec<(Vector3, f64, usize)>, facets: Vec<Facet>, bend: f64, edge: bool },
+    Cut(Cut),
+}
+
+/// What lies in a cell.
+#[derive(Default)]
+struct Cut {
+    pieces: Vec<(Vector3, f64, usize)>,
+    facets: Vec<Facet>,
+    bend: f64,
+    edge: bool,
+    /// Whether the pieces were told by places, not by distances.
+    by_places: bool,
 }
 
 /// Divides the bounding box of the body into cells, and these where they are cut.
@@ -111,15 +123,14 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
             match fate {
                 Fate::Outside => {}
                 Fate::Divided => next.extend(cell.children(flat)),
-                Fate::Cut { pieces, facets, bend, edge } => {
-                    sampled.add(cell, pieces, facets, bend, edge);
-                }
+                Fate::Cut(cut) => sampled.add(cell, cut),
             }
         }
         sampled.finest = 2.0 * cells[0].half.x;
         growth = next.len() as f64 / cells.len() as f64;
         cells = next;
     }
+    sampled.volumes.iter_mut().for_each(|part| part.doubt += part.variance.sqrt());
     Ok(sampled)
 }
 
@@ -233,7 +244,7 @@ impl Divided<'_> {
         let owner = self.only_owner(cell, reach);
         if let (true, Some(owner)) = (distance < -reach, owner) {
             let pieces = vec![(cell.centre, cell.volume(), owner)];
-            return Fate::Cut { pieces, facets: Vec::new(), bend: 0.0, edge: false };
+            return Fate::Cut(Cut { pieces, ..Cut::default() });
         }
         let mut values = [0.0; 8];
         for n in 0..8 {
@@ -243,7 +254,7 @@ impl Divided<'_> {
         }
         let bend = bend(&values, distance);
         let flat = bend <= BEND * edge && edge <= 1.01 * FLAT_CELL * self.spacing;
-        if !last && !(flat && owner.is_some()) {
+        if !(last || flat && owner.is_some()) {
             return Fate::Divided;
         }
         self.cut(cell, &values, owner, bend)
@@ -267,22 +278,33 @@ impl Divided<'_> {
                 volumes[part].1 += size;
             }
         };
-        match owner {
-            Some(owner) => add(&halves.inside, owner),
+        let by_places = match owner {
+            Some(owner) => {
+                add(&halves.inside, owner);
+                false
+            }
             None => self.divide(halves.inside, &mut add),
-        }
+        };
         let filled = volumes.into_iter().enumerate().filter(|(_, (_, size))| *size > 0.0);
         let pieces = filled.map(|(part, (first, size))| (first / size, size, part)).collect();
-        Fate::Cut { pieces, facets, bend, edge: is_edge && !halves.border.is_empty() }
+        let edge = is_edge && !halves.border.is_empty();
+        Fate::Cut(Cut { pieces, facets, bend, edge, by_places })
     }
 
-    /// Divides tetrahedra among the parts, along planes where the level is a distance.
-    fn divide(&self, mut rest: Vec<Tetrahedron>, add: &mut impl FnMut(&[Tetrahedron], usize)) {
+    /// Divides tetrahedra among the parts, along planes where the level is a distance; whether it
+    /// is not.
+    fn divide(
+        &self,
+        mut rest: Vec<Tetrahedron>,
+        add: &mut impl FnMut(&[Tetrahedron], usize),
+    ) -> bool {
+        let mut by_places = false;
         for (index, part) in self.parts.iter().enumerate() {
             let at = |X: &Vector3| level(part, &self.at(*X), None);
             let mut halves = Halves::default();
             for tetrahedron in std::mem::take(&mut rest) {
                 let middle = at(&(tetrahedron.iter().sum::<Vector3>() / 4.0));
+                by_places |= !middle.metric;
                 match middle.metric && middle.value.is_finite() {
                     true => halves.cut(tetrahedron.map(|X| (X, at(&X).value))),
                     false if middle.selects() => halves.inside.push(tetrahedron),
@@ -292,6 +314,7 @@ impl Divided<'_> {
             add(&halves.inside, index);
             rest = halves.outside;
         }
+        by_places
     }
 }
 
@@ -308,37 +331,28 @@ fn bend(values: &[f64; 8], middle: f64) -> f64 {
 }
 
 impl Sampled {
-    fn add(
-        &mut self,
-        cell: &Cell,
-        pieces: Vec<(Vector3, f64, usize)>,
-        facets: Vec<Facet>,
-        bend: f64,
-        edge: bool,
-    ) {
-        let area: f64 = facets.iter().map(|facet| vector_area(&facet.corners).norm()).sum();
-        let parts = pieces.len() as f64;
-        for (place, size, part) in &pieces {
+    fn add(&mut self, cell: &Cell, cut: Cut) {
+        let area: f64 = cut.facets.iter().map(|facet| vector_area(&facet.corners).norm()).sum();
+        let parts = cut.pieces.len() as f64;
+        for (place, size, part) in &cut.pieces {
             let own = &mut self.volumes[*part];
             own.size += size;
             own.first += *size * place;
             // What a boundary that bends is off, and what several owners may get of another.
-            own.doubt += bend * area / parts;
+            own.doubt += cut.bend * area / parts;
+            if cut.by_places {
+                own.variance += (BY_PLACES * cell.volume()).powi(2);
+            }
         }
-        if edge {
+        if cut.edge {
             self.edges.push(cell.centre);
         }
-        self.pieces.extend(pieces);
-        self.facets.extend(facets);
+        self.pieces.extend(cut.pieces);
+        self.facets.extend(cut.facets);
     }
 
     /// \[m³\]
     pub fn volume(&self) -> f64 {
         self.volumes.iter().map(|part| part.size).sum()
     }
-}
-
-/// Area \[m²\] that a facet in a cell with an edge of the body may be wrong by.
-pub(super) fn doubtful_area(area: f64) -> f64 {
-    CHAMFER * area
 }

@@ -5,30 +5,16 @@
 
 mod archive;
 mod binary;
+mod input;
 mod scene;
 mod text;
 mod token;
 
 pub use archive::compressed;
+pub use input::Input;
 pub use scene::{drawn_scene, smaller_scenes};
 
 use fastrand::Rng;
-
-/// A file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Input {
-    /// Its content.
-    pub bytes: Vec<u8>,
-    /// Of its name, without the dot.
-    pub extension: String,
-}
-
-impl Input {
-    /// A file of some bytes.
-    pub fn new(bytes: impl Into<Vec<u8>>, extension: &str) -> Input {
-        Input { bytes: bytes.into(), extension: extension.to_string() }
-    }
-}
 
 /// Larger inputs are cut.
 const LARGEST: usize = 4 << 20;

@@ -1,6 +1,6 @@
 //! Random scenes, which are drawn whole instead of mutated, and smaller ones.
 
-use super::Input;
+use super::input::Input;
 use fastrand::Rng;
 use mtled_metamorphic::scene::Scene;
 

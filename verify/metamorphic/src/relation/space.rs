@@ -112,7 +112,7 @@ fn in_frame(subject: &Subject, frame: &Frame) -> Option<Compared> {
     subject.given_with(problem, &view)
 }
 
-/// In one of the frames, by the seed of the scene; the first is a mirror image.
+/// In one of the frames, by the random number of the scene; the first is a mirror image.
 fn turned(subject: &Subject) -> Option<Compared> {
     let which = 1 + subject.scene.seed as usize;
     in_frame(subject, &Frame::turned(&subject.scene, which))

@@ -1,7 +1,9 @@
+mod files;
 mod nifti_files;
 mod places;
 
 use super::{LabelMapFile, LengthUnit, Mistake, nifti, nrrd, read_label_map};
+use files::{LABELS, SMALL, gzip, nrrd_text, read_as, read_noted};
 use flate2::{Compression, write::GzEncoder};
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::LabelMap;
@@ -12,36 +14,6 @@ use std::path::{Path, PathBuf};
 fn brain(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference/brain").join(name)
 }
-
-/// Reads bytes as a file of this name in a folder of its own.
-fn read_as(name: &str, bytes: &[u8]) -> Result<LabelMap, Mistake> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join(name);
-    std::fs::write(&path, bytes).unwrap();
-    read_label_map(&path, None).map(|read| read.map).map_err(|error| error.mistake)
-}
-
-/// As [`read_as`], with what is said about the labels.
-fn read_noted(name: &str, bytes: &[u8]) -> LabelMapFile {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join(name);
-    std::fs::write(&path, bytes).unwrap();
-    read_label_map(&path, None).unwrap()
-}
-
-fn nrrd_text(header: &str, data: &[u8]) -> Vec<u8> {
-    [b"NRRD0004\n", header.as_bytes(), b"\n", data].concat()
-}
-
-fn gzip(data: &[u8]) -> Vec<u8> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(data).unwrap();
-    encoder.finish().unwrap()
-}
-
-/// Eight voxels with labels 0 to 7.
-const SMALL: &str = "type: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 2 3\n";
-const LABELS: [u8; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 #[test]
 fn the_brain_slice_is_the_same_in_nrrd_and_nifti() {

@@ -1,4 +1,4 @@
-use super::{LABELS, gzip, read_as};
+use super::files::{LABELS, gzip, read_as};
 use crate::files::Mistake;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 

@@ -1,5 +1,5 @@
+use super::files::{LABELS, SMALL, nrrd_text, read_as, read_noted};
 use super::nifti_files::nifti_bytes;
-use super::{LABELS, SMALL, nrrd_text, read_as, read_noted};
 use crate::files::read_label_map;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 
@@ -107,7 +107,8 @@ fn the_labels_of_a_sheared_image_keep_their_place_and_volume() {
     let mean: Vector3 = own.iter().map(centre).sum::<Vector3>() / own.len() as f64;
     // The middle of the bar has the index (14.5, 9.5, 4.5).
     let right = Vector3::new(3.0 + 14.5 + 0.95, 4.0 + 9.5, 5.0 + 4.5) * 1e-3;
-    assert!((mean - right).norm() < 0.1e-3, "{mean} {right}");
+    // Voxels of 1 mm are taken whole.
+    assert!((mean - right).norm() < 0.25e-3, "{mean} {right}");
     let volume = own.len() as f64 * map.directions.determinant().abs() * 1e9;
     assert!((volume / 320.0 - 1.0).abs() < 0.05, "{volume}");
 }

@@ -1,7 +1,7 @@
 //! Where the voxels of a NIfTI image lie.
 
 use crate::files::error::Mistake;
-use crate::files::voxels;
+use crate::files::voxels::are_singular;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use nifti::NiftiHeader;
 
@@ -62,7 +62,7 @@ pub fn frame(header: &NiftiHeader) -> Result<(Vector3, Matrix3), Mistake> {
         let rows = [wide(&header.srow_x), wide(&header.srow_y), wide(&header.srow_z)];
         let origin = Vector3::from_fn(|row, _| rows[row][3]);
         let directions = Matrix3::from_fn(|row, column| rows[row][column]);
-        if voxels::are_singular(&directions) {
+        if are_singular(&directions) {
             let expected = "three rows whose directions span a volume";
             return Err(Mistake::bad_field(
                 "srow_x, srow_y, srow_z",

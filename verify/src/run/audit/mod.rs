@@ -18,7 +18,7 @@ fn row_json(row: &Row) -> Value {
         Figure::Number(value) => json!(value),
         Figure::Vector(value) => json!(<[f64; 3]>::from(*value)),
     };
-    json!({
+    let mut json = json!({
         "what": row.kind.name(),
         "label": row.kind.label(),
         "of": row.of,
@@ -28,8 +28,11 @@ fn row_json(row: &Row) -> Value {
         "difference": row.difference,
         "limit": row.limit,
         "doubtful": row.exceeds(),
-        "advice": row.exceeds().then(|| row.kind.advice()),
-    })
+    });
+    if row.exceeds() {
+        json["advice"] = json!(row.kind.advice());
+    }
+    json
 }
 
 /// The rows that are a reason to doubt the run, a sentence each.
