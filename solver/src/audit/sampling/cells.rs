@@ -23,8 +23,10 @@ const SAMPLED_CELL: (f64, f64) = (0.5, 0.25);
 /// Deviation of the signed distance from a linear function over the edge of the cell \[–\]: with
 /// it a ball of radius R is cut in cells of 0.08 R and its volume is right to 0.1 %.
 const BEND: f64 = 0.01;
-/// Part of a cell that a part without distances, asked at six places of it, may be off by \[–\].
-const BY_PLACES: f64 = 0.25;
+/// Tetrahedra that a part without distances passes are halved so often.
+const HALVINGS: usize = 5;
+/// Part of a cell that such a part may be off by \[–\], where pieces of 1/192 of it are asked.
+const BY_PLACES: f64 = 0.06;
 /// Cost of a signed distance of a shape that is no primitive, over that of one that is \[–\].
 const OF_LABELS: usize = 1;
 const OF_TRIANGLES: usize = 40;
@@ -90,8 +92,11 @@ enum Fate {
 struct Cut {
     pieces: Vec<(Vector3, f64, usize)>,
     facets: Vec<Facet>,
+    /// Deviation of the signed distance from a linear function \[m\].
     bend: f64,
     edge: bool,
+    /// The same of the borders between parts \[m\].
+    border_bend: f64,
     /// Whether the pieces were told by places, not by distances.
     by_places: bool,
 }
@@ -288,7 +293,20 @@ impl Divided<'_> {
         let filled = volumes.into_iter().enumerate().filter(|(_, (_, size))| *size > 0.0);
         let pieces = filled.map(|(part, (first, size))| (first / size, size, part)).collect();
         let edge = is_edge && !halves.border.is_empty();
-        Fate::Cut(Cut { pieces, facets, bend, edge, by_places })
+        let border_bend = if owner.is_none() { self.bend_of_borders(cell) } else { 0.0 };
+        Fate::Cut(Cut { pieces, facets, bend, edge, by_places, border_bend })
+    }
+
+    /// How far the borders between parts are from where a linear function has them \[m\].
+    fn bend_of_borders(&self, cell: &Cell) -> f64 {
+        let of = |part: &&Selector| {
+            let at = |X: &Vector3| level(part, &self.at(*X), None);
+            let (corners, middle) =
+                ([0, 1, 2, 3, 4, 5, 6, 7].map(|n| at(&cell.corner(n))), at(&cell.centre));
+            let is_known = middle.metric && middle.value.is_finite();
+            if is_known { bend(&corners.map(|corner| corner.value), middle.value) } else { 0.0 }
+        };
+        self.parts.iter().map(of).fold(0.0, f64::max)
     }
 
     /// Divides tetrahedra among the parts, along planes where the level is a distance; whether it
@@ -305,10 +323,13 @@ impl Divided<'_> {
             for tetrahedron in std::mem::take(&mut rest) {
                 let middle = at(&(tetrahedron.iter().sum::<Vector3>() / 4.0));
                 by_places |= !middle.metric;
-                match middle.metric && middle.value.is_finite() {
-                    true => halves.cut(tetrahedron.map(|X| (X, at(&X).value))),
-                    false if middle.selects() => halves.inside.push(tetrahedron),
-                    false => halves.outside.push(tetrahedron),
+                match middle.metric && middle.value.is_infinite() {
+                    true if middle.selects() => halves.inside.push(tetrahedron),
+                    true => halves.outside.push(tetrahedron),
+                    false if middle.metric => {
+                        halves.cut(tetrahedron.map(|X| (X, at(&X).value)));
+                    }
+                    false => halves.sort(tetrahedron, &|X| at(X).selects(), HALVINGS),
                 }
             }
             add(&halves.inside, index);
@@ -334,12 +355,13 @@ impl Sampled {
     fn add(&mut self, cell: &Cell, cut: Cut) {
         let area: f64 = cut.facets.iter().map(|facet| vector_area(&facet.corners).norm()).sum();
         let parts = cut.pieces.len() as f64;
+        let face = cell.volume() / (2.0 * cell.half.x);
         for (place, size, part) in &cut.pieces {
             let own = &mut self.volumes[*part];
             own.size += size;
             own.first += *size * place;
             // What a boundary that bends is off, and what several owners may get of another.
-            own.doubt += cut.bend * area / parts;
+            own.doubt += cut.bend * area / parts + cut.border_bend * face;
             if cut.by_places {
                 own.variance += (BY_PLACES * cell.volume()).powi(2);
             }

@@ -5,6 +5,8 @@ mod cells;
 mod level;
 mod simplex;
 mod surface;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use cells::{Divided, Sampled, sample};
 pub(crate) use level::level;

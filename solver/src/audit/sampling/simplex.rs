@@ -28,6 +28,9 @@ pub(super) fn vector_area([a, b, c]: &Triangle) -> Vector3 {
     0.5 * (b - a).cross(&(c - a))
 }
 
+/// The last halvings are left out where corners and middle say the same.
+const UNLESS_ALIKE: usize = 2;
+
 impl Halves {
     /// Divides a tetrahedron along the zero level of the linear function with these values.
     pub fn cut(&mut self, corners: [Corner; 4]) {
@@ -57,6 +60,31 @@ impl Halves {
                 self.border([ac, bd, bc], a.0);
             }
             _ => unreachable!("four corners"),
+        }
+    }
+
+    /// Sorts a tetrahedron by places in it: into halves along its longest edge where they differ.
+    pub fn sort(
+        &mut self,
+        tetrahedron: Tetrahedron,
+        is_inside: &impl Fn(&Vector3) -> bool,
+        halvings: usize,
+    ) {
+        let within = is_inside(&(tetrahedron.iter().sum::<Vector3>() / 4.0));
+        let alike = || tetrahedron.iter().all(|X| is_inside(X) == within);
+        if halvings == 0 || halvings <= UNLESS_ALIKE && alike() {
+            let side = if within { &mut self.inside } else { &mut self.outside };
+            return side.push(tetrahedron);
+        }
+        let length = |[i, j]: &[usize; 2]| (tetrahedron[*i] - tetrahedron[*j]).norm_squared();
+        let edges = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+        let longest = edges.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)));
+        let [i, j] = longest.unwrap_or_default();
+        let middle = 0.5 * (tetrahedron[i] + tetrahedron[j]);
+        for end in [i, j] {
+            let mut half = tetrahedron;
+            half[end] = middle;
+            self.sort(half, is_inside, halvings - 1);
         }
     }
 

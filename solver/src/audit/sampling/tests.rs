@@ -1,0 +1,42 @@
+use super::*;
+use crate::algebra::tensor::{Matrix3, Vector3};
+use crate::geometry::{LabelField, LabelMap, Selector, Shape};
+use crate::problem::Dimension;
+use std::sync::Arc;
+
+/// An ellipsoid of label 2 in a ball of label 1, voxels of 4 mm.
+fn nested() -> (Shape, Selector, f64) {
+    let (n, voxel) = (41usize, 4e-3);
+    let at = |index: usize| voxel * (index as f64 - 20.0);
+    let label = |v: usize| {
+        let X = Vector3::new(at(v % n), at(v / n % n), at(v / (n * n)));
+        let inner =
+            (X - Vector3::new(0.0, 0.0, 5e-3)).component_div(&Vector3::new(12e-3, 30e-3, 10e-3));
+        u32::from(X.norm() < 70e-3) + u32::from(inner.norm() < 1.0)
+    };
+    let labels: Vec<u32> = (0..n * n * n).map(label).collect();
+    let volume = labels.iter().filter(|label| **label == 2).count() as f64 * voxel.powi(3);
+    let directions = Matrix3::from_diagonal_element(voxel);
+    let map = LabelMap::new([n; 3], Vector3::repeat(-20.0 * voxel), directions, labels);
+    let map = Arc::new(map.unwrap());
+    let field = LabelField::new(map.clone(), &[1, 2], LabelField::SMOOTHING).unwrap();
+    (Shape::Labels(Arc::new(field)), Selector::Label { map, label: 2 }, volume)
+}
+
+#[test]
+fn the_volume_of_a_label_is_known_within_its_doubt() {
+    let (body, part, volume) = nested();
+    for spacing in [20e-3, 14e-3, 10e-3, 7e-3, 5e-3] {
+        let divided = Divided {
+            body: &body,
+            dimension: &Dimension::Three,
+            parts: vec![&part, &Selector::All],
+            spacing,
+            nodes: 1000,
+        };
+        let found = sample(&divided).unwrap().volumes[0];
+        println!("{spacing} {} of {volume}, {}", found.size, found.doubt);
+        assert!((found.size - volume).abs() < found.doubt, "{spacing}: {} of {volume}", found.size);
+        assert!(found.doubt < 0.2 * volume, "{spacing}: {}", found.doubt);
+    }
+}
