@@ -12,6 +12,8 @@ use crate::problem::Dimension;
 
 /// Lattice nodes keep this distance from the boundary \[spacing\].
 const CLEARANCE: f64 = 0.5;
+/// Those that are as near to round-off stay, so that it does not choose \[spacing\].
+const TIE: f64 = 1e-6;
 /// Smallest distance of jittered nodes from the boundary \[spacing\].
 const JITTER_CLEARANCE: f64 = 0.25;
 
@@ -73,7 +75,7 @@ pub(super) fn in_solid(
     let at = |ijk: [usize; 3]| lower + Vector3::from(ijk.map(|n| n as f64)).component_mul(&step);
     let mut inner: Vec<Vector3> = indices(cells.map(|n| n + 1))
         .map(at)
-        .filter(|X| body.signed_distance(X) < -CLEARANCE * spacing)
+        .filter(|X| body.signed_distance(X) < (TIE - CLEARANCE) * spacing)
         .collect();
     if let Some((size, seed)) = jitter {
         let mut random = Random(seed);
