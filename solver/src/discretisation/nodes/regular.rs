@@ -12,7 +12,7 @@ use crate::problem::Dimension;
 
 /// Lattice nodes keep more than this distance from the boundary \[spacing\]; a little more, so
 /// that round-off does not decide about those at just that distance.
-const CLEARANCE: f64 = 0.5 + 1e-9;
+const CLEARANCE: f64 = 0.5 + 1e-6;
 /// Smallest distance of jittered nodes from the boundary \[spacing\].
 const JITTER_CLEARANCE: f64 = 0.25;
 

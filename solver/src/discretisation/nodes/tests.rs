@@ -232,3 +232,17 @@ fn a_graded_cloud_has_no_other_nodes_where_round_off_makes_the_body_larger() {
         assert_eq!(home.positions.len(), cloud(size).positions.len(), "{size}");
     }
 }
+
+#[test]
+fn lattice_nodes_half_a_spacing_from_the_boundary_do_not_hang_on_round_off() {
+    let cloud = |size: f64| {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.5, 0.5], [0.5, 1.0], [0.0, 1.0]];
+        let points = corners.map(|c| c.map(|c| size * c)).to_vec();
+        let body = Shape::Polygon { points: points.into(), z: (0.0, 0.6 * size) };
+        node_cloud(&body, &Cloud::Regular { spacing: 0.2 * size }, &Dimension::Three).unwrap()
+    };
+    let home = cloud(1.0);
+    for size in [1.0 + 1e-13, 1.0 - 1e-13, 0.7, 1.3, 0.01, 0.3] {
+        assert_eq!(home.positions.len(), cloud(size).positions.len(), "{size}");
+    }
+}

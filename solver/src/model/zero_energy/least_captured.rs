@@ -17,6 +17,10 @@ pub struct CapturedMotion {
     pub position: Vector3,
 }
 
+/// Squared length of a direction that is not round-off over the longest one \[–\]: images are
+/// mixed in every iteration, and what is shorter grows until quotients are negative.
+const SHORTEST: f64 = 1e-9;
+
 /// Size of the block.
 const MOTIONS: usize = 8;
 /// Largest number of iterations.
@@ -112,7 +116,7 @@ impl Subspace {
         let gram = form(&self.finer).symmetric_eigen();
         let largest = gram.eigenvalues.iter().copied().fold(0.0, f64::max);
         let retained: Vec<usize> =
-            (0..n).filter(|&i| gram.eigenvalues[i] > 1e-12 * largest).collect();
+            (0..n).filter(|&i| gram.eigenvalues[i] > SHORTEST * largest).collect();
         let basis = DMatrix::from_fn(n, retained.len(), |i, j| {
             gram.eigenvectors[(i, retained[j])] / gram.eigenvalues[retained[j]].sqrt()
         });
