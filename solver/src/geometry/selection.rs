@@ -85,6 +85,26 @@ impl Selector {
         self.selects(X, None)
     }
 
+    /// Whether it says in some words that it selects everything.
+    pub fn is_everything(&self) -> bool {
+        match self {
+            Selector::All => true,
+            Selector::Not(part) => part.is_nothing(),
+            Selector::Union(parts) => parts.iter().any(Selector::is_everything),
+            Selector::Intersection(parts) => parts.iter().all(Selector::is_everything),
+            _ => false,
+        }
+    }
+
+    fn is_nothing(&self) -> bool {
+        match self {
+            Selector::Not(part) => part.is_everything(),
+            Selector::Union(parts) => parts.iter().all(Selector::is_nothing),
+            Selector::Intersection(parts) => parts.iter().any(Selector::is_nothing),
+            _ => false,
+        }
+    }
+
     /// Whether a piece of the boundary is selected, by its centre and its normal.
     pub fn contains_panel(&self, panel: &Panel) -> bool {
         self.selects(&panel.centre, Some(&panel.normal))

@@ -4,7 +4,6 @@ use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::discretisation::consistency::connected_bodies;
 use crate::discretisation::{Discretisation, Rows, Warning};
 use crate::error::Error;
-use crate::geometry::Selector;
 use crate::model::blocks::{Block, Sums, blocks};
 use crate::model::contact::{ContactPlan, check_obstacles};
 use crate::model::essential::{Constraints, check_shared_nodes};
@@ -138,7 +137,7 @@ impl Model {
 fn empty_regions(problem: &Problem, discretisation: &Discretisation) -> Vec<Warning> {
     let owners = &discretisation.quadrature.regions;
     let empty = |(index, region): (usize, &Region)| {
-        let rest = index + 1 == problem.regions.len() && matches!(region.part, Selector::All);
+        let rest = index + 1 == problem.regions.len() && region.part.is_everything();
         let unused = !rest && !owners.contains(&(index as u16));
         unused.then(|| Warning::EmptyRegion { name: region.name.clone() })
     };

@@ -45,7 +45,7 @@ pub fn load_patterns(
             }
             !positions.is_empty()
         };
-        let acts = if let Selector::All = body_force.part {
+        let acts = if body_force.part.is_everything() {
             add_points(&quadrature.positions, &masses, &discretisation.supports)
         } else {
             let part = LoadedVolume::new(problem, discretisation, (index, &body_force.part))?;

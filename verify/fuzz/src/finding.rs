@@ -95,6 +95,8 @@ impl fmt::Display for Finding {
 pub enum Outcome {
     /// To its end.
     Succeeded,
+    /// To its end, with a reason to doubt it.
+    Doubtful,
     /// With a message that names the input.
     Refused,
     /// With a message that no solution was found.

@@ -184,6 +184,9 @@ fn judge_end(
         {
             Some(Outcome::Succeeded)
         }
+        Some(3) if step.arguments[0] == "solve" && stderr.contains("doubtful: ") => {
+            Some(Outcome::Doubtful)
+        }
         Some(2) => {
             let name = Path::new(place).file_stem().unwrap_or_default().to_string_lossy();
             // A plan may be at fault only together with its cases.
@@ -214,7 +217,7 @@ fn result_that_contradicts(end: &End, work: &Path) -> Option<Finding> {
     let result: serde_json::Value = serde_json::from_str(&text).ok()?;
     let outcome = result["motion"]["outcome"].as_str().unwrap_or("nothing");
     let expected: &[&str] = match end.code() {
-        Some(0) => &["completed", "converged"],
+        Some(0 | 3) => &["completed", "converged"],
         Some(2) => &["not_converged", "diverged", "failed"],
         Some(130) => &["stopped"],
         _ => return None,

@@ -57,10 +57,11 @@ impl Tally {
             self.findings.iter().map(|(kind, count)| format!("{count} {}", kind.name())).collect();
         let findings = if findings.is_empty() { "0".into() } else { findings.join(", ") };
         format!(
-            "| {name} | {} | {:.0} | {} | {} | {} | {} | {} | {findings} | {:.0} | {:.2} |\n",
+            "| {name} | {} | {:.0} | {} | {} | {} | {} | {} | {} | {findings} | {:.0} | {:.2} |\n",
             self.inputs,
             self.inputs as f64 / self.seconds.max(1e-9),
             count(Outcome::Succeeded),
+            count(Outcome::Doubtful),
             count(Outcome::Refused),
             count(Outcome::Diverged),
             count(Outcome::Stopped),
@@ -73,8 +74,8 @@ impl Tally {
 
 /// All counts as a Markdown table.
 pub fn markdown(tallies: &BTreeMap<Target, Tally>) -> String {
-    let mut text = "| target | inputs | per s | succeeded | refused | diverged | stopped | left out | findings \
-                    | most memory, MB | longest, s |\n|---|--:|--:|--:|--:|--:|--:|--:|---|--:|--:|\n"
+    let mut text = "| target | inputs | per s | succeeded | doubtful | refused | diverged | stopped | left out | findings \
+                    | most memory, MB | longest, s |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|---|--:|--:|\n"
         .to_string();
     let mut all = Tally::default();
     for (target, tally) in tallies {

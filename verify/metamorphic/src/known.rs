@@ -20,25 +20,15 @@ pub struct Known {
 }
 
 /// Every known fault.
-pub const KNOWN: &[Known] = &[
-    Known {
-        relation: "order_of_triangles",
-        scenes: "surfaces",
-        has: |scene| scene.form == Form::Wedge,
-        figure: "another number of nodes",
-        reason: "the points on edges and faces follow the numbers of vertices and triangles \
-                 (`geometry::boundary::features`)",
-    },
-    Known {
-        relation: "united_with_itself",
-        scenes: "label maps, and unions and intersections with curved members",
-        has: |scene| matches!(scene.form, Form::Voxels | Form::Dome | Form::Rounded),
-        figure: "0.8",
-        reason: "of coinciding faces that are not flat each member keeps about a half, by a distance \
+pub const KNOWN: &[Known] = &[Known {
+    relation: "united_with_itself",
+    scenes: "label maps, and unions and intersections with curved members",
+    has: |scene| matches!(scene.form, Form::Voxels | Form::Dome | Form::Rounded),
+    figure: "0.8",
+    reason: "of coinciding faces that are not flat each member keeps about a half, by a distance \
                  that is round-off or that of marching cubes (`geometry::boundary::composite`, \
                  `fraction_kept`)",
-    },
-];
+}];
 
 /// The known fault by which a relation fails for a scene.
 pub fn known(relation: &Relation, scene: &Scene) -> Option<&'static Known> {

@@ -63,7 +63,7 @@ pub fn metamorphic(bench: &Workbench, study: &mut Study) -> Result<()> {
 const SCENES: usize = 40;
 const SCENES_OF_FULL_SUITE: usize = 800;
 
-fn count<'a>(tried: &mut BTreeMap<&'a str, Tried>, scene: &Scene, verdict: Verdict) {
+fn count(tried: &mut BTreeMap<&str, Tried>, scene: &Scene, verdict: Verdict) {
     let own = tried.entry(verdict.relation.name).or_default();
     let difference = match &verdict.compared {
         None => return,

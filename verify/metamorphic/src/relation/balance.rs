@@ -179,7 +179,7 @@ fn traction(subject: &Subject) -> Option<Compared> {
     if scene.form != Form::Box || scene.components() == 2 {
         return None;
     }
-    let part = Part::End { axis: 0, upper: true, depth: 1e-3 };
+    let part = Part::End { axis: 0, upper: true, depth: 1e-8 };
     let stress = [0.01, 0.02, -0.01];
     let loaded = Scene { pushes: vec![Push::Traction(part, stress)], ..scene.clone() };
     let simulation = Simulation::new(&build::problem(&loaded).ok()?).ok()?;

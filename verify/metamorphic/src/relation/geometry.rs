@@ -15,8 +15,9 @@ pub const RELATIONS: &[Relation] = &[
     Relation {
         name: "united_with_itself",
         claim: "A ∪ A is A",
-        bound: 1e-6,
-        reason: SAME_BODY,
+        bound: 1e-5,
+        reason: "The smallest cells in which the distance has a kink are cut by each member in \
+                 turn, the second time in other pieces: 4e-6 were seen at a re-entrant edge",
         compare: |subject| with_body(subject, |body, _| Shape::Union(vec![body.clone(), body])),
     },
     Relation {

@@ -2,11 +2,10 @@ mod files;
 mod nifti_files;
 mod places;
 
-use super::{LabelMapFile, LengthUnit, Mistake, nifti, nrrd, read_label_map};
+use super::{LengthUnit, Mistake, nifti, nrrd, read_label_map};
 use files::{LABELS, SMALL, gzip, nrrd_text, read_as, read_noted};
 use flate2::{Compression, write::GzEncoder};
 use mtled::algebra::tensor::{Matrix3, Vector3};
-use mtled::geometry::LabelMap;
 use nifti_files::nifti_bytes;
 use std::io::Write;
 use std::path::{Path, PathBuf};
