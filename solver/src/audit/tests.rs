@@ -144,7 +144,7 @@ fn loads_that_reached_the_nodes_otherwise_are_doubted() {
 #[test]
 fn forces_that_do_not_add_up_are_doubted() {
     let mut simulation = run(&block());
-    simulation.state.force_factor *= 0.9;
+    simulation.state.force_factor *= 0.5;
     let doubts = doubts(&simulation);
     assert!(doubts.contains(&Kind::Forces) && doubts.contains(&Kind::Moments), "{doubts:?}");
 }

@@ -24,15 +24,19 @@ const SAMPLED_CELL: (f64, f64) = (0.5, 0.25);
 /// it a ball of radius R is cut in cells of 0.08 R and its volume is right to 0.1 %.
 const BEND: f64 = 0.01;
 /// Tetrahedra that a part without distances passes are halved so often.
-const HALVINGS: usize = 5;
-/// Part of a cell that such a part may be off by \[–\], where pieces of 1/192 of it are asked.
-const BY_PLACES: f64 = 0.06;
+const HALVINGS: usize = 3;
+/// Part of a cell that such a part may be off by \[–\], where pieces of 1/48 of it are asked.
+const BY_PLACES: f64 = 0.3;
+/// A body from an image may take so many times that: its set-up takes seconds.
+const OF_IMAGE: usize = 4;
 /// Cost of a signed distance of a shape that is no primitive, over that of one that is \[–\].
 const OF_LABELS: usize = 1;
 const OF_TRIANGLES: usize = 40;
+/// The same of a part without distances, which is asked at many places of a cell.
+const OF_PLACES: usize = 4;
 /// Signed distances of a primitive that are spent in all: a few milliseconds, and per node, about
 /// as much as a step of the solution costs there.
-const BUDGET: (usize, usize) = (60_000, 50);
+const BUDGET: (usize, usize) = (60_000, 30);
 
 /// The body, and the parts that its volume is divided into.
 pub(crate) struct Divided<'a> {
@@ -112,6 +116,9 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     let count = counts.x * counts.y * if flat { 1 } else { counts.z };
     let mut cells: Vec<Cell> = (0..count).map(|n| divided.cell(n, counts, &start, edge)).collect();
     let mut budget = BUDGET.0 + BUDGET.1 * divided.nodes;
+    if !flat && has_labels(divided.body) {
+        budget *= OF_IMAGE;
+    }
     let cost = cost(divided.body) + divided.parts.iter().map(|part| cost_of(part)).sum::<usize>();
     let mut sampled =
         Sampled { volumes: vec![Volume::default(); divided.parts.len()], ..Sampled::default() };
@@ -139,6 +146,14 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     Ok(sampled)
 }
 
+fn has_labels(shape: &Shape) -> bool {
+    match shape {
+        Shape::Union(members) | Shape::Intersection(members) => members.iter().any(has_labels),
+        Shape::Difference(body, hole) => has_labels(body) || has_labels(hole),
+        _ => matches!(shape, Shape::Labels(_)),
+    }
+}
+
 /// Signed distances of a primitive that take as long as one of a shape.
 fn cost(shape: &Shape) -> usize {
     match shape {
@@ -156,7 +171,8 @@ fn cost_of(part: &Selector) -> usize {
         Selector::Union(parts) | Selector::Intersection(parts) => parts.iter().map(cost_of).sum(),
         Selector::Not(part) => cost_of(part),
         Selector::All | Selector::Plane { .. } => 0,
-        Selector::Label { .. } | Selector::Facing { .. } => 1,
+        Selector::Label { .. } => OF_PLACES,
+        Selector::Facing { .. } => 1,
     }
 }
 

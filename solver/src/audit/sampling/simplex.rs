@@ -29,7 +29,7 @@ pub(super) fn vector_area([a, b, c]: &Triangle) -> Vector3 {
 }
 
 /// The last halvings are left out where corners and middle say the same.
-const UNLESS_ALIKE: usize = 2;
+const UNLESS_ALIKE: usize = 1;
 
 impl Halves {
     /// Divides a tetrahedron along the zero level of the linear function with these values.
