@@ -27,7 +27,7 @@ const BEND: f64 = 0.01;
 const HALVINGS: usize = 3;
 /// Part of a cell that such a part may be off by \[–\], where pieces of 1/48 of it are asked.
 const BY_PLACES: f64 = 0.3;
-/// A body from an image may take so many times that: its set-up takes seconds.
+/// The nodes of a body from an image may take so many times that: its set-up takes seconds.
 const OF_IMAGE: usize = 4;
 /// Cost of a signed distance of a shape that is no primitive, over that of one that is \[–\].
 const OF_LABELS: usize = 1;
@@ -115,10 +115,8 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     let flat = matches!(divided.dimension, Dimension::PlaneStrain { .. });
     let count = counts.x * counts.y * if flat { 1 } else { counts.z };
     let mut cells: Vec<Cell> = (0..count).map(|n| divided.cell(n, counts, &start, edge)).collect();
-    let mut budget = BUDGET.0 + BUDGET.1 * divided.nodes;
-    if !flat && has_labels(divided.body) {
-        budget *= OF_IMAGE;
-    }
+    let times = if !flat && has_labels(divided.body) { OF_IMAGE } else { 1 };
+    let mut budget = BUDGET.0 + times * BUDGET.1 * divided.nodes;
     let cost = cost(divided.body) + divided.parts.iter().map(|part| cost_of(part)).sum::<usize>();
     let mut sampled =
         Sampled { volumes: vec![Volume::default(); divided.parts.len()], ..Sampled::default() };

@@ -35,7 +35,6 @@ fn the_volume_of_a_label_is_known_within_its_doubt() {
             nodes: 1000,
         };
         let found = sample(&divided).unwrap().volumes[0];
-        println!("{spacing} {} of {volume}, {}", found.size, found.doubt);
         assert!((found.size - volume).abs() < found.doubt, "{spacing}: {} of {volume}", found.size);
         assert!(found.doubt < 0.2 * volume, "{spacing}: {}", found.doubt);
     }

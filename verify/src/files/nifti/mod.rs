@@ -28,7 +28,7 @@ pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileE
 }
 
 /// An image as it stands in its file.
-pub(in crate::files) struct Voxels {
+pub(super) struct Voxels {
     pub header: NiftiHeader,
     /// The bytes of a header of version 1 in one piece with its voxels.
     pub header_bytes: Option<Vec<u8>>,
@@ -54,7 +54,7 @@ struct Start {
 }
 
 /// Reads an image of one value per voxel, compressed or not.
-pub(in crate::files) fn read_voxels(path: &Path) -> Result<Voxels, FileError> {
+pub(super) fn read_voxels(path: &Path) -> Result<Voxels, FileError> {
     let Some((header_file, voxel_file)) = pair(path) else {
         let voxels = parse_voxels(decompressed(path)?).map_err(|mistake| mistake.of(path))?;
         return Ok(Voxels { files: vec![path.to_path_buf()], ..voxels });
@@ -96,7 +96,7 @@ fn decompressed(path: &Path) -> Result<Box<dyn Read>, FileError> {
     })
 }
 
-pub(in crate::files) fn parse_voxels(mut stream: impl Read) -> Result<Voxels, Mistake> {
+pub(super) fn parse_voxels(mut stream: impl Read) -> Result<Voxels, Mistake> {
     let start = read_header(&mut stream)?;
     if start.in_pair {
         let expected = "`n+1`; name the .hdr file of a pair, with its .img file beside it";
