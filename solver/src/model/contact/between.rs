@@ -43,7 +43,7 @@ pub(super) struct Between {
 impl Outside {
     /// That of a problem.
     pub fn new(problem: &Problem) -> Outside {
-        Outside { body: problem.body.clone(), dimension: problem.dimension.clone() }
+        Outside { body: problem.body.clone(), dimension: problem.dimension }
     }
 
     /// Places on it, no farther apart than obstacles of this width \[m\] ask for.
@@ -84,7 +84,7 @@ pub(super) fn narrow(
     }
     is_narrow(&obstacle.shape, obstacle.offset, around, spacing).then(|| {
         let edges = obstacle.shape.bounding_box().map(|(lower, upper)| upper - lower);
-        let finite = edges.into_iter().flat_map(|edges| <[f64; 3]>::from(edges));
+        let finite = edges.into_iter().flat_map(<[f64; 3]>::from);
         let least = finite.filter(|edge| edge.is_finite()).fold(f64::INFINITY, f64::min);
         least + 2.0 * obstacle.offset
     })
