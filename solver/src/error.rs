@@ -15,11 +15,22 @@ pub struct Instability {
     pub position: Vector3,
     /// The motion, its largest component 1 \[component of node\] \[–\].
     pub mode: Vec<f64>,
+    /// Whether the body has left it for an equilibrium without such a mode.
+    pub passed: bool,
 }
 
 impl std::fmt::Display for Instability {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Instability { step, node, position, .. } = self;
+        let Instability { step, node, position, passed, .. } = self;
+        if *passed {
+            return write!(
+                f,
+                "buckled: at step {step} the tangent had a negative mode, largest at node {node} at ({}), and the body \
+                 has left that equilibrium for one that is stable against smooth motions; there may be others, such as \
+                 its mirror image",
+                show(position)
+            );
+        }
         write!(
             f,
             "unstable: at step {step} the tangent has a negative mode, largest at node {node} at ({}): the body \
@@ -122,6 +133,9 @@ pub enum Error {
         depth: f64,
         time: f64,
     },
+    #[error("obstacle \"{name}\" lies inside the body at the start, between its nodes, at ({}): move it, or cut \
+             its place out of the body", show(.position))]
+    ObstacleInBody { name: String, position: Vector3 },
     #[error("obstacle \"{name}\" is empty: its offset or what is cut out of it leaves nothing")]
     EmptyObstacle { name: String },
     #[error(

@@ -167,6 +167,28 @@ fn a_straight_strip_that_would_buckle_is_an_unstable_equilibrium_of_newton() {
     assert!(instability.position.y > 5.0 * EDGE, "{instability}");
 }
 
+/// A strip of ten times its width between two clamps, one of which shortens it by a part of its
+/// length. It buckles beyond 4π²/(12·10²) = 3.3 % (Euler).
+fn shortened(part: f64) -> Problem {
+    let length = 10.0 * EDGE;
+    let mut problem = with_law(square(4), neo_hookean(3000.0, 0.3));
+    let max = Vector3::new(EDGE, length, EDGE);
+    problem.body = mtled::geometry::Shape::Box { min: Vector3::zeros(), max };
+    problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
+    let moved = [Some(0.0), Some(-part * length), Some(0.0)];
+    problem.conditions.push(condition("top", face(1, length), moved));
+    problem
+}
+
+#[test]
+fn a_straight_column_between_clamps_is_called_unstable_beyond_its_euler_load_alone() {
+    for (part, unstable) in [(0.05, true), (0.01, false)] {
+        let solved = solve_by(&shortened(part), newton());
+        let found = solved.summary.instability.is_some();
+        assert_eq!(found, unstable, "shortened by {part}");
+    }
+}
+
 #[test]
 fn the_automatic_solution_is_that_of_newton_within_the_tolerance_of_displacements() {
     for problem in [leaning(jittered(cube(4), 0.2, 1)), leaning(jittered(square(6), 0.2, 1))] {

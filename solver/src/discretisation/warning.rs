@@ -104,6 +104,22 @@ pub enum Warning {
         /// \[m\]
         depth: f64,
     },
+    /// The surface has entered an obstacle between nodes.
+    SurfaceInObstacle {
+        /// Name of the obstacle.
+        name: String,
+        /// The deepest place.
+        position: Vector3,
+        /// \[m\]
+        depth: f64,
+    },
+    /// An obstacle has passed through the surface between nodes.
+    ObstacleInBody {
+        /// Name of the obstacle.
+        name: String,
+        /// Where it is now in the undeformed body.
+        position: Vector3,
+    },
 }
 
 impl std::fmt::Display for Warning {
@@ -163,6 +179,18 @@ impl std::fmt::Display for Warning {
                 f,
                 "{nodes} nodes have entered obstacle \"{name}\", node {node} of reference position ({}) by {depth:.4e} m: contact \
                  does not act on nodes of which a component is prescribed",
+                show(position)
+            ),
+            Warning::SurfaceInObstacle { name, position, depth } => write!(
+                f,
+                "the surface has entered obstacle \"{name}\" between nodes, by {depth:.4e} m at reference position ({}): the \
+                 obstacle has an edge or is narrow for the spacing of the nodes there; use a finer cloud",
+                show(position)
+            ),
+            Warning::ObstacleInBody { name, position } => write!(
+                f,
+                "obstacle \"{name}\" has passed into the body between nodes and lies about reference position ({}), where it \
+                 exerts no force: it is narrow for the spacing of the nodes; use a finer cloud, or a larger obstacle",
                 show(position)
             ),
         }

@@ -86,6 +86,7 @@ impl Model {
         let contact = ContactPlan::new(problem, discretisation, &constraints)?;
         let (cloud, end) = (&discretisation.cloud, problem.motion.end());
         warnings.extend(check_obstacles(&contact, cloud, &constraints, components, end)?);
+        contact.refuse_swallowed(&cloud.positions, &problem.body)?;
         let bodies = connected_bodies(&discretisation.supports, cloud.positions.len());
         check_rank(discretisation, &constraints, &bodies)?;
         let per_point_bound = per_point_bound(problem, discretisation, &lumped_mass);

@@ -55,11 +55,13 @@ impl Stability {
     /// Looks for a mode away from the equilibrium that has been reached; returns the
     /// number of products with the tangent.
     pub fn search(&mut self, model: &Model, state: &State, workspace: &mut Workspace) -> usize {
-        if self.found.is_some() || !model.contact.obstacles.is_empty() {
-            return 0;
+        let State { displacement, time, contact, .. } = state;
+        let (products, mode) =
+            negative_mode(model, displacement, *time, &contact.touching, workspace);
+        match (&mut self.found, mode) {
+            (Some(found), mode) => found.passed = mode.is_none(),
+            (None, mode) => self.found = mode.map(|mode| instability(model, state, &mode)),
         }
-        let (products, mode) = negative_mode(model, &state.displacement, state.time, workspace);
-        self.found = mode.map(|mode| instability(model, state, &mode));
         products
     }
 
@@ -76,18 +78,19 @@ impl Stability {
 const DEGREE: i32 = 2;
 
 /// A mode of the tangent with negative curvature at displacements `u` \[m\] under the
-/// conditions of time `t` \[s\], among fields that are polynomials times the distance to the
-/// nodes held in their component: bodies buckle and topple in such smooth modes, which
+/// conditions of time `t` \[s\], among fields that are polynomials times the distances to the
+/// nodes that each condition holds in their component, and to those `touching` obstacles: bodies buckle and topple in such smooth modes, which
 /// iterations from a random start would find last. The first number is that of products
 /// with the tangent (method book, eq. 20.7).
 pub(crate) fn negative_mode(
     model: &Model,
     u: &[f64],
     t: f64,
+    touching: &[u32],
     workspace: &mut Workspace,
 ) -> (usize, Option<Vec<f64>>) {
     let mut tangent = Tangent::new(model, u, t, workspace);
-    let fields = smooth_fields(model, t);
+    let fields = smooth_fields(model, t, touching);
     let images: Vec<Vec<f64>> = fields.iter().map(|field| tangent.stiffness_times(field)).collect();
     let n = fields.len();
     let columns = |fields: &[Vec<f64>]| DMatrix::from_iterator(u.len(), n, fields.concat());
@@ -116,7 +119,7 @@ pub(crate) fn negative_mode(
 }
 
 /// Fields of one component each that the conditions allow \[field\]\[component of node\].
-fn smooth_fields(model: &Model, t: f64) -> Vec<Vec<f64>> {
+fn smooth_fields(model: &Model, t: f64, touching: &[u32]) -> Vec<Vec<f64>> {
     let d = model.components;
     let powers: Vec<[i32; 3]> = indices([DEGREE as usize + 1; 3])
         .map(|powers| powers.map(|power| power as i32))
@@ -126,10 +129,10 @@ fn smooth_fields(model: &Model, t: f64) -> Vec<Vec<f64>> {
     let mut fields = Vec::new();
     let (mut known, mut distances) = (None, Vec::new());
     for component in 0..d {
-        let nodes = held_nodes(model, t, component);
-        if known.as_ref() != Some(&nodes) {
-            distances = distance_to(model, &nodes);
-            known = Some(nodes);
+        let groups = held_nodes(model, t, component, touching);
+        if known.as_ref() != Some(&groups) {
+            distances = distances_to(model, &groups);
+            known = Some(groups);
         }
         for [i, j, k] in &powers {
             let mut field = vec![0.0; model.size()];
@@ -145,18 +148,30 @@ fn smooth_fields(model: &Model, t: f64) -> Vec<Vec<f64>> {
     fields
 }
 
-/// The nodes that are held in a component.
-fn held_nodes(model: &Model, t: f64, component: usize) -> Vec<u32> {
-    let sets = model.constraints.active(t).iter().filter(|set| set.component == component);
-    sets.flat_map(|set| set.rows.iter().map(|row| row.node)).collect()
+/// The nodes that each condition holds in a component, and those that touch.
+fn held_nodes(model: &Model, t: f64, component: usize, touching: &[u32]) -> Vec<Vec<u32>> {
+    let mut groups = vec![Vec::new(); model.constraints.conditions.len()];
+    for set in model.constraints.active(t).iter().filter(|set| set.component == component) {
+        set.rows.iter().for_each(|row| groups[row.condition as usize].push(row.node));
+    }
+    groups.push(touching.to_vec());
+    groups.retain(|group| !group.is_empty());
+    groups
 }
 
-/// Distance of each node to the nearest of some, over the size of the body; 1 where there are
-/// none.
-fn distance_to(model: &Model, nodes: &[u32]) -> Vec<f64> {
-    if nodes.is_empty() {
-        return vec![1.0; model.positions.len()];
+/// The product of the distances of each node to some groups, as smooth as those are: the
+/// least of them has a kink between two held ends, whose energy hides that a column buckles.
+fn distances_to(model: &Model, groups: &[Vec<u32>]) -> Vec<f64> {
+    let mut product = vec![1.0; model.positions.len()];
+    for group in groups {
+        let distances = distance_to(model, group);
+        product.iter_mut().zip(&distances).for_each(|(all, distance)| *all *= distance);
     }
+    product
+}
+
+/// Distance of each node to the nearest of some, over the size of the body.
+fn distance_to(model: &Model, nodes: &[u32]) -> Vec<f64> {
     let held: Vec<Vector3> = nodes.iter().map(|&node| model.positions[node as usize]).collect();
     let distance = |X: &Vector3| {
         let squares = held.iter().map(|Y| (X - Y).norm_squared());
@@ -174,6 +189,7 @@ fn instability(model: &Model, state: &State, motion: &[f64]) -> Instability {
         node,
         position: model.positions[node],
         mode: motion.iter().map(|u| u / size).collect(),
+        passed: false,
     }
 }
 

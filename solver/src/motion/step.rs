@@ -2,7 +2,7 @@
 
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
-use crate::model::contact::Moved;
+use crate::model::contact::{ContactStep, Moved};
 use crate::motion::internal_force::{SmallestJacobian, Workspace, internal_force};
 use crate::motion::state::State;
 use rayon::prelude::*;
@@ -191,10 +191,9 @@ fn constrain(model: &Model, scheme: &Scheme, t: f64, state: &mut State) -> f64 {
     if model.contact.obstacles.is_empty() {
         return increment;
     }
-    contact.enforce(&model.contact, positions, increment, displacement, |i, delta| {
-        velocity[i] += delta * rate;
-    });
-    contact.forces.iter_mut().for_each(|way| way.force *= mass[way.node as usize]);
+    let time_step = scheme.time_step;
+    let moving = ContactStep { mass, displacement, velocity, time_step };
+    contact.enforce(&model.contact, positions, increment, moving);
     let (time_step, keep) = (scheme.time_step, scheme.keep);
     let moved = Moved { positions, mass, displacement, velocity, time_step, keep };
     contact.impacts.settle(&model.contact, &contact.forces, moved);

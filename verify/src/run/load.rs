@@ -54,9 +54,9 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         Error::NoDisplacement { name, .. } => &format!("prescribe.{name}"),
         Error::ContradictingConditions { second, .. } => &format!("prescribe.{second}"),
         Error::DrivenIntoObstacle { condition, .. } => &format!("prescribe.{condition}"),
-        Error::NodesInObstacle { name, .. } | Error::EmptyObstacle { name } => {
-            &format!("obstacle.{name}")
-        }
+        Error::NodesInObstacle { name, .. }
+        | Error::ObstacleInBody { name, .. }
+        | Error::EmptyObstacle { name } => &format!("obstacle.{name}"),
         Error::EmptyInitialVelocity { index } => &format!("initial_velocity[{index}]"),
         Error::EmptyRegion { .. } => "probe",
         Error::EmptyTraction { name } => &format!("traction.{name}.where"),

@@ -187,12 +187,9 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
         .map(|failure| json!({ "reached": failure.reached, "iterations": failure.iterations }));
     let moves = newton.is_none();
     let dynamic = matches!(case.problem.motion, Motion::Dynamic { .. });
-    let unstable = summary.instability.as_ref().map(|instability| {
-        json!({
-            "step": instability.step,
-            "node": instability.node,
-            "position_m": array(&instability.position),
-        })
+    let unstable = summary.instability.as_ref().map(|found| {
+        let (step, node, passed) = (found.step, found.node, found.passed);
+        json!({ "step": step, "node": node, "position_m": array(&found.position), "passed": passed })
     });
     json!({
         "method": method(case),

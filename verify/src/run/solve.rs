@@ -54,6 +54,9 @@ impl Solved {
         let inside = model.contact.penetrations(&model.positions, &self.state.displacement);
         let mut doubts = self.summary.doubts(model);
         doubts.extend(inside.iter().map(Warning::to_string));
+        let discretisation = &self.prepared.discretisation;
+        let unresolved = model.contact.unresolved(discretisation, &self.state.displacement);
+        doubts.extend(unresolved.iter().map(Warning::to_string));
         doubts
     }
 }

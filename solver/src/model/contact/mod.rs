@@ -1,13 +1,15 @@
 //! Nodes against rigid obstacles given as signed distance (method book, section 16).
 
+mod between;
 mod check;
 mod impact;
 mod plan;
 mod report;
+mod unresolved;
 
 pub(crate) use check::check_obstacles;
 pub use impact::Impacts;
 pub(crate) use impact::Moved;
 pub(crate) use plan::{Components, normal, onto_surface};
-pub use plan::{ContactForce, ContactPlan, ContactState, gap};
+pub use plan::{ContactForce, ContactPlan, ContactState, ContactStep, gap};
 pub use report::{ContactResult, ContactSurface};

@@ -1,6 +1,7 @@
 //! Which nodes may touch the obstacles, and how they are kept out.
 #![allow(non_snake_case)]
 
+use super::between::{Outside, narrow};
 use super::impact::Impacts;
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::discretisation::Discretisation;
@@ -24,6 +25,10 @@ pub struct ContactPlan {
     free: Vec<Components>,
     /// Candidates are searched again when the body may have moved so far \[m\].
     pub skin: f64,
+    /// Widths of obstacles that nodes alone may miss \[obstacle\] \[m\].
+    pub(super) narrow: Vec<Option<f64>>,
+    /// The body whose surface they may enter between nodes; none where there are no such obstacles.
+    pub(super) outside: Option<Outside>,
 }
 
 /// A choice of components.
@@ -86,13 +91,13 @@ impl ContactPlan {
             let shape = obstacle.shape.section(&problem.dimension)?;
             Ok(Obstacle { shape, ..obstacle.clone() })
         };
-        Ok(ContactPlan {
-            obstacles: problem.obstacles.iter().map(section).collect::<Result<_, _>>()?,
-            nodes,
-            held,
-            free,
-            skin,
-        })
+        let obstacles: Vec<Obstacle> =
+            problem.obstacles.iter().map(section).collect::<Result<_, _>>()?;
+        let around = problem.body.bounding_box();
+        let narrow: Vec<Option<f64>> =
+            obstacles.iter().map(|obstacle| narrow(obstacle, around, skin)).collect();
+        let outside = narrow.iter().any(Option::is_some).then(|| Outside::new(problem));
+        Ok(ContactPlan { obstacles, nodes, held, free, skin, narrow, outside })
     }
 
     /// Which components of a node obstacles may push.
@@ -187,59 +192,70 @@ pub(crate) fn onto_surface(
     x + n * moved
 }
 
+/// The step that contact corrects.
+pub struct ContactStep<'a> {
+    /// \[node\] \[kg\]
+    pub mass: &'a [f64],
+    /// \[component of node\] \[m\]
+    pub displacement: &'a mut [f64],
+    /// \[component of node\] \[m/s\]
+    pub velocity: &'a mut [f64],
+    /// \[s\]
+    pub time_step: f64,
+}
+
 impl ContactState {
     /// Moves nodes that entered an obstacle back to its surface (method book, eq.
-    /// 16.2), on u(t+Δt) as in Horton 2007, section 2.7, keeps their ways as forces, and calls
-    /// `on_change(index, Δu)` for each changed entry of `u` \[component of node\]
-    /// \[m\], of which none changed by more than `largest_increment` \[m\] before.
+    /// 16.2), on u(t+Δt) as in Horton 2007, section 2.7, with their velocities, and keeps
+    /// m Δu as forces. No entry of `u` changed by more than `largest_increment` \[m\] before.
     pub fn enforce(
         &mut self,
         plan: &ContactPlan,
         positions: &[Vector3],
         largest_increment: f64,
-        u: &mut [f64],
-        mut on_change: impl FnMut(usize, f64),
+        mut step: ContactStep,
     ) {
-        let components = u.len() / positions.len();
-        self.travelled += largest_increment * (components as f64).sqrt();
+        let components = step.displacement.len() / positions.len();
+        let increment = largest_increment * (components as f64).sqrt();
+        self.travelled += increment;
         if !self.searched || self.travelled > plan.skin {
-            self.search(plan, positions, u);
+            self.search(plan, positions, step.displacement, increment);
         }
         self.touching.clear();
         self.forces.clear();
         for i in 0..self.candidates.len() {
-            let (index, node) = self.candidates[i];
-            let obstacle = &plan.obstacles[index as usize];
-            let x = positions[node as usize] + vector_at(u, node as usize, components);
-            let Some(target) = self.target(obstacle, (index, node), &x, plan.free(node)) else {
-                continue;
-            };
+            let (obstacle, node) = self.candidates[i];
+            let x =
+                positions[node as usize] + vector_at(step.displacement, node as usize, components);
+            let moved = step.time_step * vector_at(step.velocity, node as usize, components);
+            let target = self.target(plan, (obstacle, node), &x, &moved);
+            let Some(target) = target else { continue };
             self.touching.push(node);
-            self.forces.push(ContactForce { obstacle: index, node, force: target - x });
-            for k in 0..components {
-                let entry = components * node as usize + k;
-                u[entry] += target[k] - x[k];
-                on_change(entry, target[k] - x[k]);
-            }
+            let force = step.push(node, target - x);
+            self.forces.push(ContactForce { obstacle, node, force });
         }
     }
 
-    /// Where a node at `x` that has entered the obstacle is moved to: the nearest
-    /// point of the surface, or the place where it sticks. None if the obstacle cannot push it.
+    /// Where a node at `x` that has entered the obstacle, in a step in which it has `moved` \[m\],
+    /// is put: the nearest point of the surface, that where it went in if it passed the middle
+    /// of a narrow one, or the place where it sticks. None if the obstacle cannot push it.
     fn target(
         &mut self,
-        obstacle: &Obstacle,
+        plan: &ContactPlan,
         pair: (u32, u32),
         x: &Vector3,
-        free: Components,
+        moved: &Vector3,
     ) -> Option<Vector3> {
+        let (obstacle, free) = (&plan.obstacles[pair.0 as usize], plan.free(pair.1));
         let opening = gap(obstacle, x);
         let stuck = self.anchors.iter().position(|anchor| (anchor.0, anchor.1) == pair);
-        if opening >= 0.0 {
+        let entered = plan.crossing(pair.0, &(x - moved), x);
+        if opening >= 0.0 && entered.is_none() {
             stuck.map(|index| self.anchors.swap_remove(index));
             return None;
         }
-        let nearest = onto_surface(obstacle, x, opening, free);
+        let (from, depth) = entered.map_or((*x, opening), |x| (x, gap(obstacle, &x)));
+        let nearest = onto_surface(obstacle, &from, depth, free);
         if nearest == *x {
             return None;
         }
@@ -256,19 +272,33 @@ impl ContactState {
         }
     }
 
-    /// Lists the nodes with a gap below twice the skin.
-    fn search(&mut self, plan: &ContactPlan, positions: &[Vector3], u: &[f64]) {
+    /// Lists the nodes with a gap below twice the skin, before the last step too.
+    fn search(&mut self, plan: &ContactPlan, positions: &[Vector3], u: &[f64], increment: f64) {
         let components = u.len() / positions.len();
         self.candidates.clear();
         for (index, obstacle) in plan.obstacles.iter().enumerate() {
             for &node in &plan.nodes {
                 let x = positions[node as usize] + vector_at(u, node as usize, components);
-                if gap(obstacle, &x) < 2.0 * plan.skin {
+                if gap(obstacle, &x) < 2.0 * plan.skin + increment {
                     self.candidates.push((index as u32, node));
                 }
             }
         }
         self.travelled = 0.0;
         self.searched = true;
+    }
+}
+
+impl ContactStep<'_> {
+    /// Moves a node by `way` \[m\], and changes its velocity with it; returns m Δu.
+    fn push(&mut self, node: u32, way: Vector3) -> Vector3 {
+        let components = self.displacement.len() / self.mass.len();
+        let rate = 1.0 / self.time_step;
+        for k in 0..components {
+            let entry = components * node as usize + k;
+            self.displacement[entry] += way[k];
+            self.velocity[entry] += way[k] * rate;
+        }
+        way * self.mass[node as usize]
     }
 }

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::free_space::{ContactRow, place};
-use crate::algebra::tensor::{Matrix3, Vector3};
+use crate::algebra::tensor::{Matrix3, Vector3, vector_at};
 use crate::model::Model;
 use crate::model::contact::{Components, ContactForce, gap, normal, onto_surface};
 use crate::problem::{Friction, Obstacle};
@@ -17,6 +17,9 @@ const MOST_CHANGES: u32 = 4;
 const NOTABLE: f64 = 1e-3;
 /// Step of the differences of normals over the mean nodal spacing \[–\].
 const SLIDING_STEP: f64 = 0.05;
+
+/// How deep a correction may lead into a narrow obstacle, over its width or the mean spacing \[–\].
+const PASSING: f64 = 0.2;
 
 /// A node on the surface of an obstacle.
 #[derive(Debug, Clone, Copy)]
@@ -169,6 +172,27 @@ impl ActiveContacts {
             found.push((contact.node, stiffness));
         }
         found
+    }
+
+    /// The part of a change of `u` \[m\] with which no node passes through a narrow obstacle that
+    /// it does not touch \[–\].
+    pub fn safe_part(&self, model: &Model, u: &[f64], change: &[f64]) -> f64 {
+        let contact = &model.contact;
+        let mut part = 1.0f64;
+        for obstacle in 0..contact.obstacles.len() as u32 {
+            let Some(width) = contact.width(obstacle) else { continue };
+            let known: BTreeSet<u32> =
+                self.contacts.iter().filter(|c| c.obstacle == obstacle).map(|c| c.node).collect();
+            let inside = PASSING * width.min(contact.skin);
+            for &node in contact.nodes.iter().filter(|node| !known.contains(node)) {
+                let from = place(model, node, u);
+                let way = vector_at(change, node as usize, model.components);
+                if let Some(x) = contact.crossing(obstacle, &from, &(from + way)) {
+                    part = part.min(((x - from).norm() + inside) / way.norm());
+                }
+            }
+        }
+        part
     }
 
     /// The parts of forces along the normals, positive where the obstacle pushes \[N\].

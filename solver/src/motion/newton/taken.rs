@@ -69,15 +69,17 @@ impl Solver<'_> {
         searched: bool,
         buffers: &mut Buffers,
     ) -> Outcome {
+        let safe = self.contacts.safe_part(self.model, &now.u, change);
         if searched {
-            return match self.search(now, change, fraction, buffers) {
+            let change: Vec<f64> = change.iter().map(|change| safe * change).collect();
+            return match self.search(now, &change, fraction, buffers) {
                 Some(next) => Outcome::Taken(next, 1.0),
                 None => Outcome::TooFar,
             };
         }
         let model = self.model;
         let farthest = LARGEST_MOVE * model.contact.skin / largest(change);
-        let length = if model.contact.obstacles.is_empty() { 1.0 } else { farthest.min(1.0) };
+        let length = if model.contact.obstacles.is_empty() { 1.0 } else { farthest.min(safe) };
         if self.floating && farthest < 1.0 && self.shift < SHIFTS.1 {
             return Outcome::TooFar;
         }

@@ -94,7 +94,10 @@ fn verdict(result: &Json) -> Value {
     if class == "pass" && result["audit"]["doubtful"] == true {
         (class, text) = ("doubt", "Doubtful: what was done is not what was asked");
     } else if class == "pass" && !motion["instability"].is_null() {
-        (class, text) = ("doubt", "Came to an end, but the body is unstable");
+        let passed = motion["instability"]["passed"] == true;
+        let unstable = "Came to an end, but the body is unstable";
+        (class, text) =
+            ("doubt", if passed { "Came to an end, and has buckled" } else { unstable });
     } else if class == "pass" && warned {
         class = "doubt";
     }

@@ -11,7 +11,7 @@ use mtled::algebra::random::Random;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
 use mtled::model::Model;
-use mtled::model::contact::{ContactState, gap};
+use mtled::model::contact::{ContactState, ContactStep, gap};
 use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
@@ -105,7 +105,10 @@ pub fn contact(bench: &Workbench, study: &mut Study) -> Result<()> {
     let model = prepare(&problem)?.model;
     let mut contact = ContactState::default();
     let mut u = vec![0.0; model.size()];
-    contact.enforce(&model.contact, &model.positions, 0.0, &mut u, |_, _| ());
+    let mut velocity = vec![0.0; model.size()];
+    let (displacement, velocity) = (&mut u[..], &mut velocity[..]);
+    let step = ContactStep { mass: &model.inertia, displacement, velocity, time_step: 1.0 };
+    contact.enforce(&model.contact, &model.positions, 0.0, step);
     let obstacle = &model.contact.obstacles[0];
     let position = |node: usize| {
         model.positions[node] + Vector3::from_column_slice(&u[3 * node..3 * node + 3])

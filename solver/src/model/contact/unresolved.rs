@@ -1,0 +1,112 @@
+//! What contact has left inside narrow obstacles, and obstacles inside the body.
+#![allow(non_snake_case)]
+
+use super::plan::{ContactPlan, gap};
+use crate::algebra::tensor::{Vector3, bounding_box, vector_at};
+use crate::discretisation::{Discretisation, Warning};
+use crate::error::Error;
+use crate::geometry::{PointHash, Shape, indices};
+
+/// Depth over the mean spacing that is not worth a word \[–\].
+const DEEP: f64 = 0.1;
+/// Samples of an obstacle along each axis.
+const SAMPLES: usize = 12;
+/// Iterations X ← y − u(X) towards what has moved to y; strains of soft bodies are below one.
+const ITERATIONS: usize = 12;
+/// Distance over the mean spacing that is none \[–\].
+const FOUND: f64 = 0.05;
+
+impl ContactPlan {
+    /// Refuses a narrow obstacle inside the body at the start, where no node is in it.
+    pub(crate) fn refuse_swallowed(
+        &self,
+        positions: &[Vector3],
+        body: &Shape,
+    ) -> Result<(), Error> {
+        for (index, obstacle) in self.obstacles.iter().enumerate() {
+            let samples = self.samples(index, bounding_box(positions));
+            let deep = |y: &Vector3| body.signed_distance(y) < -DEEP * self.skin;
+            if let Some(position) = samples.into_iter().find(deep) {
+                return Err(Error::ObstacleInBody { name: obstacle.name.clone(), position });
+            }
+        }
+        Ok(())
+    }
+
+    /// Warnings of narrow obstacles that the surface enters between nodes, or that lie inside the
+    /// body, at nodal parameters `u` \[component of node\] \[m\].
+    pub fn unresolved(&self, discretisation: &Discretisation, u: &[f64]) -> Vec<Warning> {
+        let least = self.narrow.iter().flatten().copied().reduce(f64::min);
+        let Some((outside, width)) = self.outside.as_ref().zip(least) else { return Vec::new() };
+        // Where the surface has no panels, the set-up has refused or warned.
+        let Ok(between) = outside.places(discretisation, self.skin, width) else {
+            return Vec::new();
+        };
+        let now = between.current(u, u.len() / discretisation.cloud.positions.len());
+        let mut warnings = Vec::new();
+        for (index, obstacle) in self.obstacles.iter().enumerate() {
+            if self.narrow[index].is_none() {
+                continue;
+            }
+            let depths = now.iter().map(|x| -gap(obstacle, x)).enumerate();
+            let (place, depth) = depths.fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+            let name = obstacle.name.clone();
+            if depth > DEEP * self.skin {
+                let position = between.positions[place];
+                warnings.push(Warning::SurfaceInObstacle { name, position, depth });
+            } else if let Some(position) = self.swallowed(index, discretisation, u) {
+                warnings.push(Warning::ObstacleInBody { name, position });
+            }
+        }
+        warnings
+    }
+
+    /// Where an obstacle lies inside the deformed body, in the undeformed one \[m\].
+    fn swallowed(
+        &self,
+        index: usize,
+        discretisation: &Discretisation,
+        u: &[f64],
+    ) -> Option<Vector3> {
+        let cloud = &discretisation.cloud;
+        let d = u.len() / cloud.positions.len();
+        let now: Vec<Vector3> = (cloud.positions.iter().enumerate())
+            .map(|(node, X)| X + vector_at(u, node, d))
+            .collect();
+        let mut hash = PointHash::new(self.skin, self.skin);
+        now.iter().for_each(|x| hash.insert(*x));
+        let body = &self.outside.as_ref()?.body;
+        let origin = |y: &Vector3| {
+            let (_, nearest) = *hash.nearest(y, usize::MAX, 1).first()?;
+            let mut X = y - vector_at(u, nearest, d);
+            for _ in 0..ITERATIONS {
+                X = y - discretisation.rows_at(&[X]).ok()?.interpolate(0, u, d);
+            }
+            let x = X + discretisation.rows_at(&[X]).ok()?.interpolate(0, u, d);
+            let found = (x - y).norm() < FOUND * self.skin;
+            (found && body.signed_distance(&X) < -DEEP * self.skin).then_some(X)
+        };
+        self.samples(index, bounding_box(&now)).iter().find_map(origin)
+    }
+
+    /// Points inside a narrow obstacle within a box \[m\].
+    fn samples(&self, index: usize, (lower, upper): (Vector3, Vector3)) -> Vec<Vector3> {
+        let obstacle = &self.obstacles[index];
+        if self.narrow[index].is_none() {
+            return Vec::new();
+        }
+        let grown = Vector3::repeat(obstacle.offset);
+        let (lower, upper) = match obstacle.shape.bounding_box() {
+            Some((l, u)) => (lower.sup(&(l - grown)), upper.inf(&(u + grown))),
+            None => (lower, upper),
+        };
+        let edges = upper - lower;
+        if edges.min() < 0.0 {
+            return Vec::new();
+        }
+        let point = |ijk: [usize; 3]| {
+            lower + Vector3::from_fn(|k, _| (ijk[k] as f64 + 0.5) / SAMPLES as f64 * edges[k])
+        };
+        indices([SAMPLES; 3]).map(point).filter(|y| gap(obstacle, y) < 0.0).collect()
+    }
+}
