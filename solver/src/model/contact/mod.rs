@@ -5,11 +5,13 @@ mod check;
 mod impact;
 mod plan;
 mod report;
+mod state;
 mod unresolved;
 
 pub(crate) use check::check_obstacles;
 pub use impact::Impacts;
 pub(crate) use impact::Moved;
 pub(crate) use plan::{Components, normal, onto_surface};
-pub use plan::{ContactForce, ContactPlan, ContactState, ContactStep, gap};
+pub use plan::{ContactForce, ContactPlan, gap};
 pub use report::{ContactResult, ContactSurface};
+pub use state::{ContactState, ContactStep};
