@@ -151,7 +151,15 @@ impl Rows {
 
     /// F = I + Σ_a u_a ⊗ Grad φ_a at row `i` (method book, eq. 2.2).
     pub fn deformation_gradient(&self, i: usize, field: &[f64], components: usize) -> Matrix3 {
-        let mut F = Matrix3::identity();
+        self.with_gradient(Matrix3::identity(), i, field, components)
+    }
+
+    /// Σ_a u_a ⊗ Grad φ_a at row `i`, with all digits of small fields.
+    pub fn gradient(&self, i: usize, field: &[f64], components: usize) -> Matrix3 {
+        self.with_gradient(Matrix3::zeros(), i, field, components)
+    }
+
+    fn with_gradient(&self, mut F: Matrix3, i: usize, field: &[f64], components: usize) -> Matrix3 {
         for entry in self.row(i) {
             let node = self.nodes[entry] as usize;
             let mut u = Vector3::zeros();

@@ -102,7 +102,7 @@ impl PressureLoad {
         }
         for (point, area) in self.areas.iter().enumerate() {
             let F = self.rows.deformation_gradient(point, u, components);
-            let dF = self.rows.deformation_gradient(point, v, components) - Matrix3::identity();
+            let dF = self.rows.gradient(point, v, components);
             let V = self.rows.interpolate(point, v, components);
             let force = cofactor_slope(&F, &dF) * area * (-0.5 * pressure);
             let stress = cofactor_slope(&F, &(V * area.transpose())) * (-0.5 * pressure);

@@ -9,6 +9,8 @@ use rayon::prelude::*;
 /// A way around a gap by another node that is no longer than this is as good as the straight
 /// one \[straight way\].
 const AROUND: f64 = 1.25;
+/// Differences of this size do not choose \[spacing\].
+const ROUND_OFF: f64 = 1e-9;
 /// Gaps are sought between nodes that are closer than this \[influence radius\]: a point sees
 /// no farther, and has a node on its side beside it.
 const SOUGHT: f64 = 1.35;
@@ -98,9 +100,10 @@ impl Visibility {
         let point = self.body.place(X);
         let guides = self.guides(&point, around);
         let is_barred = |&node: &u32| {
-            let mut opinions = guides.iter().map(|&guide| !self.see(guide, node));
-            match (opinions.next(), opinions.next()) {
-                (Some(one), Some(other)) if one == other => one,
+            let barring = guides.iter().filter(|guide| !self.see(**guide, node)).count();
+            match guides.len() {
+                0 | 1 => self.is_barred(&point, node),
+                all if barring == 0 || barring == all => barring > 0,
                 _ => self.is_barred(&point, node),
             }
         };
@@ -108,7 +111,7 @@ impl Visibility {
         let seen = |node: &u32| hidden.binary_search(node).is_err();
         let by_others = |&node: &u32| {
             let place = &self.nodes[node as usize].X;
-            let most = AROUND * (place - X).norm();
+            let most = (1.0 + ROUND_OFF) * AROUND * (place - X).norm();
             let leads_there = |&by: &u32| {
                 let middle = &self.nodes[by as usize].X;
                 (middle - X).norm() + (place - middle).norm() <= most && self.see(by, node)
@@ -119,14 +122,19 @@ impl Visibility {
         around.retain(|node| lost.binary_search(node).is_err());
     }
 
-    /// The two nodes nearest to a point, of the four nearest, that it sees: where they agree
-    /// about a node farther away, it does.
+    /// The two nodes nearest to a point, of the four nearest, that it sees, and others that are
+    /// as near: where they agree about a node farther away, it does.
     fn guides(&self, point: &Place, around: &[u32]) -> Vec<u32> {
-        let distance = |node: u32| (self.nodes[node as usize].X - point.X).norm_squared();
+        let distance = |node: u32| {
+            let way = (self.nodes[node as usize].X - point.X) / self.spacing[node as usize];
+            way.norm_squared()
+        };
         let mut nearest: Vec<(f64, u32)> = around.iter().map(|&n| (distance(n), n)).collect();
         nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let nearest = nearest.into_iter().take(4).map(|(_, node)| node);
-        nearest.filter(|&node| !self.is_barred(point, node)).take(2).collect()
+        keep_nearest(&mut nearest, 4);
+        nearest.retain(|&(_, node)| !self.is_barred(point, node));
+        keep_nearest(&mut nearest, 2);
+        nearest.into_iter().map(|(_, node)| node).collect()
     }
 
     /// Whether a gap bars the straight way from a point to a node.
@@ -144,6 +152,13 @@ impl Visibility {
             true => self.barred[a].binary_search(&(b as u32)).is_err(),
             false => !self.body.parts(&self.nodes[a], &self.nodes[b], spacing),
         }
+    }
+}
+
+/// Keeps the first of an ascending list, and those that are as near but for round-off.
+fn keep_nearest(nearest: &mut Vec<(f64, u32)>, count: usize) {
+    if let Some(&(farthest, _)) = nearest.get(count - 1) {
+        nearest.retain(|(distance, _)| *distance <= farthest + ROUND_OFF);
     }
 }
 

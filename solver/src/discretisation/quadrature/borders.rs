@@ -13,6 +13,8 @@ const NEARLY_LINEAR: f64 = 0.004;
 
 /// In the smallest cells levels that differ by less than this are smooth, others have a kink.
 const SMOOTH: f64 = 0.1;
+/// Less of a cell is round-off \[–\].
+const ROUND_OFF: f64 = 1e-9;
 /// Tolerances up to this fraction of the largest cells are there for round-off \[–\].
 const THIN: f64 = 0.01;
 
@@ -125,8 +127,9 @@ impl<'a> Borders<'a> {
             let halves = cutter.by_selection(rest, &region.part)?;
             (*own, rest) = (halves.low, halves.high);
         }
-        // What no region holds is refused where its place is known.
-        rest.is_empty().then_some(parts)
+        // What no region holds, but for round-off, is refused where its place is known.
+        let left: f64 = rest.iter().map(Simplex::size).sum();
+        (left <= ROUND_OFF * cell.edge.powi(components as i32)).then_some(parts)
     }
 }
 
@@ -204,7 +207,15 @@ impl Cutter<'_> {
                     Some(if std::ptr::eq(*shape, hole) { halves.swapped() } else { halves })
                 })
             }
-            _ => self.by_level(parts, &|X| shape.signed_distance(X) - tolerance),
+            _ => {
+                let level = |X: &Vector3| shape.signed_distance(X) - tolerance;
+                let reach = shape.steepness() * self.cell.half_diagonal(self.components);
+                match level(&self.cell.centre) {
+                    far if far > reach => Some(Halves { low: Vec::new(), high: parts }),
+                    deep if deep < -reach => Some(Halves { low: parts, high: Vec::new() }),
+                    _ => self.by_level(parts, &level),
+                }
+            }
         }
     }
 

@@ -67,9 +67,13 @@ pub(super) fn composite_patches(shape: &Shape, of: PatchesOf) -> Result<Vec<Patc
             levels.fold(f64::NEG_INFINITY, f64::max)
         };
         let level = Level { at: &at, steepness };
-        let remaining =
-            |patch: &Patch| patch.cut(&level, DEEPEST, NOTHING).map(|(kept, _)| kept.exact());
-        patches.par_iter().filter_map(remaining).collect()
+        let remaining = |patch: &Patch| patch.cut(&level, DEEPEST, NOTHING);
+        let kept: Vec<_> = patches.par_iter().map(remaining).collect();
+        // All of a solid has its own rule, which closes.
+        if kept.iter().all(|kept| kept.as_ref().is_some_and(|(_, fraction)| *fraction == 1.0)) {
+            return patches;
+        }
+        kept.into_iter().flatten().map(|(kept, _)| kept.exact()).collect()
     };
     match shape {
         Shape::Union(members) | Shape::Intersection(members) => {

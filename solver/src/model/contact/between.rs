@@ -2,7 +2,6 @@
 //! that the body may meet (method book, section 16).
 #![allow(non_snake_case)]
 
-use super::plan::{ContactPlan, gap, normal};
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::{Discretisation, Rows};
 use crate::error::Error;
@@ -17,13 +16,9 @@ const THICK: f64 = 4.0;
 /// Bounds of the distance of places over the mean spacing, and over the width of the narrowest
 /// obstacle \[–\].
 const DISTANCES: (f64, f64) = (0.125, 0.25);
-const OF_WIDTH: f64 = 0.4;
+pub(super) const OF_WIDTH: f64 = 0.4;
 /// Most places: a larger body has them farther apart.
 const MOST: f64 = 60_000.0;
-/// Bounds of the shortest part of a way that is looked at on it \[–\].
-const FINEST: (f64, f64) = (1.0 / 2048.0, 1.0 / 128.0);
-/// Gap over a way below which the way has entered \[–\].
-const ENTERED: f64 = 1e-6;
 
 /// The body whose surface obstacles may enter between nodes.
 #[derive(Debug, Clone)]
@@ -120,38 +115,4 @@ fn is_narrow(shape: &Shape, offset: f64, around: Option<(Vector3, Vector3)>, spa
 
 fn largest(radii: &Vector3) -> f64 {
     radii.iter().copied().filter(|radius| radius.is_finite()).fold(0.0, f64::max)
-}
-
-impl ContactPlan {
-    /// Whether the way between two positions \[m\] leads through a narrow obstacle, or past its
-    /// middle, and where it enters \[m\].
-    pub(crate) fn crossing(&self, obstacle: u32, from: &Vector3, to: &Vector3) -> Option<Vector3> {
-        let width = self.narrow[obstacle as usize]?;
-        let shape = &self.obstacles[obstacle as usize];
-        let (way, at_end) = (to - from, gap(shape, to));
-        let length = way.norm();
-        // A gap changes by no more than the way.
-        if at_end >= length || gap(shape, from) >= length {
-            return None;
-        }
-        if at_end < 0.0 && normal(shape, to, [true; 3]).dot(&way) <= 0.0 {
-            return None;
-        }
-        let finest = (OF_WIDTH * width / length).clamp(FINEST.0, FINEST.1);
-        let mut part = 0.0;
-        while part < 1.0 {
-            let x = from + part * way;
-            let opening = gap(shape, &x);
-            if opening < -ENTERED * length {
-                return Some(x);
-            }
-            part += (opening / length).max(finest);
-        }
-        None
-    }
-
-    /// Least width of a narrow obstacle \[m\].
-    pub(crate) fn width(&self, obstacle: u32) -> Option<f64> {
-        self.narrow[obstacle as usize]
-    }
 }

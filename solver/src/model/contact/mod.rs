@@ -2,6 +2,7 @@
 
 mod between;
 mod check;
+mod crossing;
 mod impact;
 mod plan;
 mod report;

@@ -41,8 +41,17 @@ pub(super) fn least_captured(pencil: &Pencil, enough: f64) -> Vec<CapturedMotion
     let mut directions = Subspace::default();
     let d = pencil.model.components;
     for _ in 0..ITERATIONS {
-        if values.first().is_none_or(|&least| least < enough) {
-            break;
+        let is_enough = |values: &[f64]| values.first().is_none_or(|&least| least < enough);
+        if is_enough(&values) {
+            // Not by the round-off of images that were mixed: with new ones.
+            let mut fresh = Subspace::default();
+            block.vectors.into_iter().for_each(|vector| fresh.push(pencil, vector));
+            (values, parts) = fresh.ritz(MOTIONS, 0);
+            block = parts.remove(0);
+            directions = Subspace::default();
+            if is_enough(&values) {
+                break;
+            }
         }
         let mut space = block.clone();
         for (i, value) in values.iter().enumerate() {

@@ -1,7 +1,6 @@
 //! The matrix pencil whose quotient is the captured fraction of a strain energy.
 #![allow(non_snake_case)]
 
-use crate::algebra::tensor::Matrix3;
 use crate::discretisation::rows::Rows;
 use crate::discretisation::{Discretisation, quadrature_of};
 use crate::error::Error;
@@ -75,7 +74,7 @@ impl<'a> Pencil<'a> {
         let d = self.model.components;
         let mut out: Vec<f64> = self.anchor.iter().zip(v).map(|(m, v)| m * v).collect();
         for (q, weight) in weights.iter().enumerate() {
-            let H = rows.deformation_gradient(q, v, d) - Matrix3::identity();
+            let H = rows.gradient(q, v, d);
             let strain = (H + H.transpose()) * (0.5 * weight);
             for entry in rows.row(q) {
                 let force = strain * rows.grad_phi[entry];

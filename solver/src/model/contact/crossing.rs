@@ -1,0 +1,44 @@
+//! Ways of nodes through narrow obstacles.
+
+use super::between::OF_WIDTH;
+use super::plan::{ContactPlan, gap, normal};
+use crate::algebra::tensor::Vector3;
+
+/// Bounds of the shortest part of a way that is looked at on it \[–\].
+const FINEST: (f64, f64) = (1.0 / 2048.0, 1.0 / 128.0);
+/// Gap over a way below which the way has entered \[–\].
+const ENTERED: f64 = 1e-6;
+
+impl ContactPlan {
+    /// Whether the way between two positions \[m\] leads through a narrow obstacle, or past its
+    /// middle, and where it enters \[m\].
+    pub(crate) fn crossing(&self, obstacle: u32, from: &Vector3, to: &Vector3) -> Option<Vector3> {
+        let width = self.narrow[obstacle as usize]?;
+        let shape = &self.obstacles[obstacle as usize];
+        let (way, at_end) = (to - from, gap(shape, to));
+        let length = way.norm();
+        // A gap changes by no more than the way.
+        if at_end >= length || gap(shape, from) >= length {
+            return None;
+        }
+        if at_end < 0.0 && normal(shape, to, [true; 3]).dot(&way) <= 0.0 {
+            return None;
+        }
+        let finest = (OF_WIDTH * width / length).clamp(FINEST.0, FINEST.1);
+        let mut part = 0.0;
+        while part < 1.0 {
+            let x = from + part * way;
+            let opening = gap(shape, &x);
+            if opening < -ENTERED * length {
+                return Some(x);
+            }
+            part += (opening / length).max(finest);
+        }
+        None
+    }
+
+    /// Least width of a narrow obstacle \[m\].
+    pub(crate) fn width(&self, obstacle: u32) -> Option<f64> {
+        self.narrow[obstacle as usize]
+    }
+}
