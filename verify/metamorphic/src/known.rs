@@ -20,15 +20,16 @@ pub struct Known {
 }
 
 /// Every known fault.
-pub const KNOWN: &[Known] = &[Known {
-    relation: "united_with_itself",
-    scenes: "label maps, and unions and intersections with curved members",
-    has: |scene| matches!(scene.form, Form::Voxels | Form::Dome | Form::Rounded),
-    figure: "0.8",
-    reason: "of coinciding faces that are not flat each member keeps about a half, by a distance \
-                 that is round-off or that of marching cubes (`geometry::boundary::composite`, \
-                 `fraction_kept`)",
-}    Known {
+pub const KNOWN: &[Known] = &[
+    Known {
+        relation: "united_with_itself",
+        scenes: "label maps, and unions and intersections with curved members",
+        has: |scene| matches!(scene.form, Form::Voxels | Form::Dome | Form::Rounded),
+        figure: "0.8",
+        reason: "of coinciding faces that are not flat each member keeps about a half, by a distance \
+                 that is round-off or that of marching cubes (`geometry::boundary::composite`)",
+    },
+    Known {
         relation: "one_material_in_two_regions",
         scenes: "boxes with a bore, whose walls are a seventh of a spacing thick",
         has: |scene| scene.form == Form::Bored,
