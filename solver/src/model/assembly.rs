@@ -71,7 +71,7 @@ impl Model {
         let lumped_mass = lumped_mass(discretisation, &density, problem.recipe.mass)?;
         let components = problem.dimension.components();
         let blocks = blocks(problem, discretisation)?;
-        let stiffness = stiffness_diagonal(&blocks, components, lumped_mass.len());
+        let stiffness = stiffness_diagonal(&blocks, components, lumped_mass.len(), f64::INFINITY);
         let relaxation = problem.motion.relaxation();
         let lumped = matches!(problem.motion, Motion::Dynamic { .. })
             || relaxation.is_some_and(|settings| settings.mass == RelaxationMass::Lumped);

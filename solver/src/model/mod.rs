@@ -19,4 +19,4 @@ pub use assembly::Model;
 pub(crate) use blocks::{Block, Chunk};
 pub use load::LoadPattern;
 pub use pressure::PressureLoad;
-pub(crate) use stiffness::ModuliAtRest;
+pub(crate) use stiffness::{ModuliAtRest, stiffness_diagonal};

@@ -43,20 +43,29 @@ impl BasisBlock {
     }
 }
 
-/// Replaces values at the points of a patch by their projection; the values at the
-/// padding must be finite.
+/// Σ_q w_q B_b(X_q) v_q of values v at the points of a patch; those at the padding must be
+/// finite.
 #[inline(always)]
-pub fn project<S: Simd>(simd: S, patch: &[BasisBlock], values: &mut [SimdBlock]) {
+fn moments<S: Simd>(simd: S, patch: &[BasisBlock], values: &[SimdBlock]) -> [f64; 4] {
     let mut moments = [f64x8::splat(simd, 0.0); 4];
-    for (BasisBlock { weights, basis }, value) in patch.iter().zip(&*values) {
+    for (BasisBlock { weights, basis }, value) in patch.iter().zip(values) {
         let weighted = load_block(simd, weights) * load_block(simd, value);
         for b in 0..4 {
             moments[b] = weighted.mul_add(load_block(simd, &basis[b]), moments[b]);
         }
     }
-    let mut sums = moments;
+    moments.map(
+        #[inline(always)]
+        |moment| moment.reduce_sum(),
+    )
+}
+
+/// Replaces values at the points of a patch by Σ_b B_b(X_q) m_b of moments m.
+#[inline(always)]
+fn expand<S: Simd>(simd: S, patch: &[BasisBlock], moments: [f64; 4], values: &mut [SimdBlock]) {
+    let mut sums = [f64x8::splat(simd, 0.0); 4];
     for b in 0..4 {
-        sums[b] = f64x8::splat(simd, moments[b].reduce_sum());
+        sums[b] = f64x8::splat(simd, moments[b]);
     }
     for (BasisBlock { basis, .. }, value) in patch.iter().zip(values) {
         let mut sum = load_block(simd, &basis[0]) * sums[0];
@@ -67,22 +76,52 @@ pub fn project<S: Simd>(simd: S, patch: &[BasisBlock], values: &mut [SimdBlock])
     }
 }
 
+/// Replaces values at the points of a patch by their projection; the values at the
+/// padding must be finite.
+#[inline(always)]
+fn project<S: Simd>(simd: S, patch: &[BasisBlock], values: &mut [SimdBlock]) {
+    expand(simd, patch, moments(simd, patch, values), values);
+}
+
+/// Moments of the pressure of a patch that has one of its own, beside that which J gives.
+#[derive(Debug, Clone, Copy)]
+pub struct OwnPressure {
+    /// Σ_q w_q B_b(X_q) p_q \[Pa·m^(3/2)\].
+    pub moments: [f64; 4],
+    /// Part c of the difference between the two that acts beside it \[–\].
+    pub part: f64,
+}
+
+impl OwnPressure {
+    /// p + c (P − p) with the moments P that J gives (method book, eq. 21.13).
+    #[inline(always)]
+    pub fn approached(&self, found: [f64; 4]) -> [f64; 4] {
+        let OwnPressure { moments, part } = self;
+        [0, 1, 2, 3].map(
+            #[inline(always)]
+            |b| moments[b] + part * (found[b] - moments[b]),
+        )
+    }
+}
+
 impl Projection {
     /// B_b \[m^−3/2\] at the point in a lane of the block.
     pub fn basis_at(&self, lane: usize) -> [f64; 4] {
         self.blocks[lane / LANES].basis.map(|values| values.0[lane % LANES])
     }
 
-    /// s (p_q − U'(J_q)) \[Pa\] from J at the points of a patch.
+    /// s (p_q − U'(J_q)) \[Pa\] from J at the points of a patch, which may have a pressure of
+    /// its own. Returns the moments of the pressure that J gives.
     #[inline(always)]
     pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
         &self,
         simd: S,
         law: &L,
         groups: Range<usize>,
+        own: Option<OwnPressure>,
         jacobians: &Parts<SimdBlock>,
         pressures: &mut Parts<SimdBlock>,
-    ) {
+    ) -> [f64; 4] {
         let count = groups.len();
         let patch = &self.blocks[groups];
         pressures.values[..count].copy_from_slice(&jacobians.values[..count]);
@@ -104,9 +143,13 @@ impl Projection {
                 pressures.slopes[count - 1].0[lane] = 0.0;
             }
         }
-        project(simd, patch, &mut pressures.values[..count]);
+        let found = moments(simd, patch, &pressures.values[..count]);
+        let acting = own.map_or(found, |own| own.approached(found));
+        expand(simd, patch, acting, &mut pressures.values[..count]);
         if R::SLOPES {
-            project(simd, patch, &mut pressures.slopes[..count]);
+            let found = moments(simd, patch, &pressures.slopes[..count]);
+            let acting = own.map_or(found, |own| found.map(|slope| own.part * slope));
+            expand(simd, patch, acting, &mut pressures.slopes[..count]);
         }
         for entry in 0..count {
             for piece in 0..R::PER_BLOCK {
@@ -115,6 +158,7 @@ impl Projection {
                 ((pressure - pointwise) * self.fraction).store(pressures, entry, piece);
             }
         }
+        found
     }
 
     /// Σ_q w_q s (U(θ_q) − U(J_q)) \[J\] of a patch.

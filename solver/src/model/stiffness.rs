@@ -24,17 +24,27 @@ impl ModuliAtRest {
         let pointwise = constants.lame_modulus() - projected;
         ModuliAtRest { shear: constants.shear_modulus, pointwise, projected }
     }
+
+    /// With the projected one no more than `most` times μ.
+    pub fn capped(self, most: f64) -> ModuliAtRest {
+        ModuliAtRest { projected: self.projected.min(most * self.shear), ..self }
+    }
 }
 
 /// Diagonal of K at rest, the mean over the components of a node \[node\]
 /// \[N/m\] (method book, eq. 13.3). A point adds w |Grad φ|² (μ + (λ − s U''(1) +
-/// μ)/d), a patch s U''(1) Σ_b |Σ_q w B_b Grad φ|²/d.
-pub fn stiffness_diagonal(blocks: &[Block], components: usize, nodes: usize) -> Vec<f64> {
+/// μ)/d), a patch s U''(1) Σ_b |Σ_q w B_b Grad φ|²/d, its modulus no more than `most` μ.
+pub fn stiffness_diagonal(
+    blocks: &[Block],
+    components: usize,
+    nodes: usize,
+    most: f64,
+) -> Vec<f64> {
     let mut diagonal = vec![0.0; nodes];
     for block in blocks {
         let local = with_gradients!(&block.grad_phi, gradients => match components {
-            2 => block_diagonal::<_, 2>(block, gradients),
-            _ => block_diagonal::<_, 3>(block, gradients),
+            2 => block_diagonal::<_, 2>(block, gradients, most),
+            _ => block_diagonal::<_, 3>(block, gradients, most),
         });
         for (&node, value) in block.nodes.iter().zip(local) {
             diagonal[node as usize] += value;
@@ -43,8 +53,12 @@ pub fn stiffness_diagonal(blocks: &[Block], components: usize, nodes: usize) -> 
     diagonal
 }
 
-fn block_diagonal<G: GradientQuad, const D: usize>(block: &Block, grad_phi: &[G]) -> Vec<f64> {
-    let ModuliAtRest { shear, pointwise, projected } = ModuliAtRest::of(block);
+fn block_diagonal<G: GradientQuad, const D: usize>(
+    block: &Block,
+    grad_phi: &[G],
+    most: f64,
+) -> Vec<f64> {
+    let ModuliAtRest { shear, pointwise, projected } = ModuliAtRest::of(block).capped(most);
     let modulus = shear + (pointwise + shear) / D as f64;
     let mut diagonal = vec![0.0; block.nodes.len()];
     for lane in block.occupied() {

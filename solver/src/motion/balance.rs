@@ -3,7 +3,7 @@
 use crate::algebra::packed::{dot, largest};
 use crate::model::Model;
 use crate::model::essential::ConstraintForces;
-use crate::motion::internal_force::{SmallestJacobian, internal_force};
+use crate::motion::internal_force::{OwnPressures, SmallestJacobian, internal_force_with};
 use crate::motion::step::{Buffers, add_pressures};
 
 /// Nodal force over stiffness times displacement below which a body counts as free of
@@ -36,9 +36,20 @@ impl Imbalance {
         buffers: &mut Buffers,
         forces: &mut ConstraintForces,
     ) -> Imbalance {
+        Imbalance::with_pressures(model, (u, None), t, buffers, forces)
+    }
+
+    /// The same of patches that may have pressures of their own.
+    pub fn with_pressures(
+        model: &Model,
+        (u, own): (&[f64], Option<&OwnPressures>),
+        t: f64,
+        buffers: &mut Buffers,
+        forces: &mut ConstraintForces,
+    ) -> Imbalance {
         add_pressures(model, t, u, &mut buffers.f_ext);
         let smallest_jacobian =
-            internal_force(model, u, &mut buffers.workspace, &mut buffers.f_int);
+            internal_force_with(model, u, own, &mut buffers.workspace, &mut buffers.f_int);
         let force: Vec<f64> = buffers
             .f_ext
             .iter()

@@ -7,7 +7,8 @@ use crate::algebra::real::Dual;
 use crate::algebra::tensor::Matrix3;
 use crate::model::blocks::{LocalVectors, with_gradients};
 use crate::model::{Block, Chunk, Model};
-use crate::motion::kernel::{self, Local, Scratch, block_force};
+pub use crate::motion::kernel::OwnPressures;
+use crate::motion::kernel::{self, BlockPressures, Local, Scratch, block_force};
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -45,6 +46,12 @@ impl Workspace {
     pub fn new(model: &Model) -> Workspace {
         Workspace { level: Level::new(), blocks: model.blocks.iter().map(Scratch::new).collect() }
     }
+
+    /// Moments of the pressures that J gave in the last evaluation \[block\]\[patch\]
+    /// \[Pa·m^(3/2)\].
+    pub fn pressures_of_j(&self) -> impl Iterator<Item = &[[f64; 4]]> {
+        self.blocks.iter().map(|scratch| &scratch.pressures_of_j[..])
+    }
 }
 
 /// Models of fewer points run on one thread, which is faster than to wake another.
@@ -60,9 +67,21 @@ pub fn internal_force(
     workspace: &mut Workspace,
     f: &mut [f64],
 ) -> SmallestJacobian {
+    internal_force_with(model, u, None, workspace, f)
+}
+
+/// As [`internal_force`], of patches that may have pressures of their own (method book,
+/// eq. 21.13).
+pub fn internal_force_with(
+    model: &Model,
+    u: &[f64],
+    own: Option<&OwnPressures>,
+    workspace: &mut Workspace,
+    f: &mut [f64],
+) -> SmallestJacobian {
     match model.components {
-        2 => internal_force_in::<2>(model, u, false, workspace, f),
-        _ => internal_force_in::<3>(model, u, false, workspace, f),
+        2 => internal_force_in::<2>(model, (u, own), false, workspace, f),
+        _ => internal_force_in::<3>(model, (u, own), false, workspace, f),
     }
 }
 
@@ -76,7 +95,7 @@ pub fn stiffness_times(
     product: &mut [f64],
 ) {
     linearise(model, u, workspace);
-    linearised_stiffness_times(model, v, workspace, product);
+    linearised_stiffness_times(model, v, None, workspace, product);
 }
 
 /// Prepares [`linearised_stiffness_times`] at displacements `u` \[m\].
@@ -87,19 +106,21 @@ pub fn linearise(model: &Model, u: &[f64], workspace: &mut Workspace) {
     }
 }
 
-/// As [`stiffness_times`] at the displacements of the last [`linearise`].
+/// As [`stiffness_times`] at the displacements of the last [`linearise`]: the derivative of
+/// [`internal_force_with`] with the patches' own pressures as they are.
 ///
 /// # Panics
 /// If there has been none.
 pub fn linearised_stiffness_times(
     model: &Model,
     v: &[f64],
+    own: Option<&OwnPressures>,
     workspace: &mut Workspace,
     product: &mut [f64],
 ) {
     match model.components {
-        2 => internal_force_in::<2>(model, v, true, workspace, product),
-        _ => internal_force_in::<3>(model, v, true, workspace, product),
+        2 => internal_force_in::<2>(model, (v, own), true, workspace, product),
+        _ => internal_force_in::<3>(model, (v, own), true, workspace, product),
     };
 }
 
@@ -136,14 +157,15 @@ fn on_one_thread(model: &Model) -> bool {
 /// Forces at displacements `u`, or their derivative along `u` where the model was linearised.
 fn internal_force_in<const D: usize>(
     model: &Model,
-    u: &[f64],
+    (u, own): (&[f64], Option<&OwnPressures>),
     along: bool,
     workspace: &mut Workspace,
     f: &mut [f64],
 ) -> SmallestJacobian {
     let level = workspace.level;
-    let run = |block: &Block, local: &mut Local, scratch: &mut Scratch| {
+    let run = |index: usize, block: &Block, local: &mut Local, scratch: &mut Scratch| {
         local.u.gather::<D>(&block.nodes, u);
+        let block = (block, own.map(|own| own.block(index)));
         with_vectors!(level, (simd, numbers) => match along {
             false => force::<_, _, D>(simd, numbers, block, local, scratch),
             true => derivative::<_, _, D>(simd, numbers, block, local, scratch),
@@ -153,18 +175,19 @@ fn internal_force_in<const D: usize>(
     if on_one_thread(model) {
         nodes.fill([0.0; D]);
         with_local(|local| {
-            for (block, scratch) in model.blocks.iter().zip(&mut workspace.blocks) {
-                run(block, local, scratch);
+            let blocks = model.blocks.iter().zip(&mut workspace.blocks).enumerate();
+            for (index, (block, scratch)) in blocks {
+                run(index, block, local, scratch);
                 block.nodes.iter().zip(local.f.iter::<D>()).for_each(|(&node, force)| {
                     add(&mut nodes[node as usize], force);
                 });
             }
         });
     } else {
-        let blocks = model.blocks.par_iter().zip(&mut workspace.blocks).with_max_len(1);
-        blocks.for_each(|(block, scratch)| {
+        let blocks = model.blocks.par_iter().zip(&mut workspace.blocks).enumerate();
+        blocks.with_max_len(1).for_each(|(index, (block, scratch))| {
             with_local(|local| {
-                run(block, local, scratch);
+                run(index, block, local, scratch);
                 let forces = local.f.iter::<D>().take(block.nodes.len());
                 scratch.forces.clear();
                 scratch.forces.extend(forces.flatten());
@@ -183,7 +206,7 @@ fn internal_force_in<const D: usize>(
 fn force<S: Simd, N: Lanes<S>, const D: usize>(
     simd: S,
     _: PhantomData<N>,
-    block: &Block,
+    block: (&Block, Option<&BlockPressures>),
     local: &mut Local,
     scratch: &mut Scratch,
 ) {
@@ -205,7 +228,7 @@ fn keep_gradients<S: Simd, N, const D: usize>(
 fn derivative<S: Simd, N: Number<S>, const D: usize>(
     simd: S,
     _: PhantomData<N>,
-    block: &Block,
+    block: (&Block, Option<&BlockPressures>),
     local: &mut Local,
     scratch: &mut Scratch,
 ) {

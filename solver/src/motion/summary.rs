@@ -136,6 +136,43 @@ pub struct NewtonCounts {
     pub evaluations: usize,
     /// Largest unbalanced nodal force over the largest nodal force \[–\].
     pub residual: f64,
+    /// What has decided on the pressures of patches.
+    pub pressures: PatchPressures,
+}
+
+impl NewtonCounts {
+    /// How many corrections, and of what, in words.
+    pub fn corrections(&self) -> String {
+        let of = match self.pressures {
+            PatchPressures::OfDisplacements => "",
+            PatchPressures::Unknowns => " of displacements and pressures",
+            PatchPressures::GivenUp => " (of pressures too, until these failed)",
+        };
+        format!("{} corrections{of}", self.iterations)
+    }
+}
+
+/// What decides on the pressures of the patches of a volumetric projection.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum PatchPressures {
+    /// The displacements.
+    #[default]
+    OfDisplacements,
+    /// They are unknowns beside the displacements (method book, eq. 21.13).
+    Unknowns,
+    /// They were, in vain for a part of the load; from there on, the displacements.
+    GivenUp,
+}
+
+impl PatchPressures {
+    /// In results.
+    pub fn name(self) -> &'static str {
+        match self {
+            PatchPressures::OfDisplacements => "of_displacements",
+            PatchPressures::Unknowns => "unknowns",
+            PatchPressures::GivenUp => "given_up",
+        }
+    }
 }
 
 /// How far Newton's method came where relaxation took its place.

@@ -3,13 +3,16 @@
 
 use crate::model::Model;
 use crate::model::essential::ConstraintForces;
-use crate::motion::internal_force::{Workspace, linearise, linearised_stiffness_times};
+use crate::motion::internal_force::{
+    OwnPressures, Workspace, linearise, linearised_stiffness_times,
+};
 
 /// v ↦ Π M^(−1/2) K M^(−1/2) Π v with Π the projection onto free displacements.
 pub(crate) struct Tangent<'a> {
     model: &'a Model,
     u: &'a [f64],
     t: f64,
+    own: Option<&'a OwnPressures>,
     workspace: &'a mut Workspace,
     /// √m per component of node \[√kg\].
     pub root_mass: Vec<f64>,
@@ -27,7 +30,13 @@ impl<'a> Tangent<'a> {
         let root_mass =
             model.inertia.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
         linearise(model, u, workspace);
-        Tangent { model, u, t, workspace, root_mass, forces: ConstraintForces::default() }
+        let forces = ConstraintForces::default();
+        Tangent { model, u, t, own: None, workspace, root_mass, forces }
+    }
+
+    /// Of patches with pressures of their own.
+    pub fn with_pressures(self, own: Option<&'a OwnPressures>) -> Tangent<'a> {
+        Tangent { own, ..self }
     }
 
     pub fn free_size(&self) -> usize {
@@ -68,7 +77,7 @@ impl<'a> Tangent<'a> {
 
     fn internal_stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.u.len()];
-        linearised_stiffness_times(self.model, direction, self.workspace, &mut product);
+        linearised_stiffness_times(self.model, direction, self.own, self.workspace, &mut product);
         product
     }
 }

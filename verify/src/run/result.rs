@@ -179,7 +179,7 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
             "increments": counts.increments,
             "iterations": counts.iterations,
             "tangent_products": counts.products,
-            "relative_residual": counts.residual,
+            "relative_residual": counts.residual, "pressures": counts.pressures.name(),
         })
     });
     let newton_failed = summary
@@ -288,10 +288,10 @@ pub fn summary_text(
         ),
         match s.newton {
             Some(newton) => format!(
-                "  {}: {} corrections in {} parts of the load, {} products with the tangent, smallest J {}, \
+                "  {}: {} in {} parts of the load, {} products with the tangent, smallest J {}, \
                  residual {} of the largest nodal force",
                 ending(s),
-                newton.iterations,
+                newton.corrections(),
                 newton.increments,
                 newton.products,
                 four_digits(s.smallest_jacobian.jacobian),

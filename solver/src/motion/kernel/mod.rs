@@ -4,6 +4,7 @@
 #![allow(non_snake_case)]
 
 mod nodes;
+mod own_pressures;
 mod points;
 
 use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock};
@@ -12,6 +13,7 @@ use crate::model::blocks::{LocalVectors, with_gradients};
 use crate::model::{Block, Chunk};
 use fearless_simd::Simd;
 use nodes::{add_forces, deformation_gradients};
+pub use own_pressures::{BlockPressures, OwnPressures};
 use points::{jacobians, pressures, stresses};
 
 /// Vectors at the nodes of the block that a thread works on.
@@ -37,6 +39,8 @@ pub struct Scratch {
     pub forces: Vec<f64>,
     /// The smallest J and its lane.
     pub smallest: (f64, usize),
+    /// Moments of the pressure that J gives \[patch\] \[Pa·m^(3/2)\].
+    pub pressures_of_j: Vec<[f64; 4]>,
     /// F \[–\] of all points at the displacements of a derivative, once there has been one.
     linearised: Vec<SimdBlock>,
     /// F \[–\], row by row, of each eight points of a chunk.
@@ -58,6 +62,10 @@ impl Scratch {
         Scratch {
             forces: Vec::new(),
             smallest: (f64::INFINITY, 0),
+            pressures_of_j: match block.projection {
+                Some(_) => vec![[0.0; 4]; block.chunks.len()],
+                None => Vec::new(),
+            },
             linearised: Vec::new(),
             deformation,
             stress: Parts::new(9 * groups),
@@ -88,19 +96,20 @@ pub fn linearise<S: Simd, const D: usize>(
 }
 
 /// f_a = Σ_q w_q P(F_q) Grad φ_a(X_q) of the block's points at the local displacements; with
-/// dual numbers the derivative along them where the block was linearised.
+/// dual numbers the derivative along them where the block was linearised. Patches may have
+/// pressures of their own.
 #[inline(always)]
 pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
     simd: S,
-    block: &Block,
+    (block, own): (&Block, Option<&BlockPressures>),
     Local { u, f }: &mut Local,
     scratch: &mut Scratch,
 ) {
     f.clear::<D>(block.nodes.len());
     scratch.smallest = (f64::INFINITY, 0);
-    let Scratch { smallest, linearised, deformation, stress, .. } = scratch;
+    let Scratch { smallest, pressures_of_j, linearised, deformation, stress, .. } = scratch;
     let (jacobian, pressure) = (&mut scratch.jacobians, &mut scratch.pressures);
-    for Chunk { lanes, groups } in &block.chunks {
+    for (patch, Chunk { lanes, groups }) in block.chunks.iter().enumerate() {
         let count = groups.len();
         with_gradients!(&block.grad_phi, grad_phi => {
             let (stream, groups) = ((block, &grad_phi[..]), groups.clone());
@@ -117,7 +126,9 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
         with_law!(&block.law, law => {
             if let Some(projection) = projection {
                 jacobians::<S, R>(simd, count, deformation, jacobian);
-                pressures::<S, R, _>(simd, law, projection, groups.clone(), jacobian, pressure);
+                let patches = (projection, own.map(|own| own.of(patch)));
+                pressures_of_j[patch] =
+                    pressures::<S, R, _>(simd, law, patches, groups.clone(), jacobian, pressure);
             }
             let pressure = projection.map(|_| &*pressure);
             let results = (&mut *stress, &mut *jacobian);

@@ -6,7 +6,7 @@
 use crate::algebra::lanes::{Lanes, Parts, SimdBlock};
 use crate::algebra::tensor::{Tensor, map};
 use crate::material::{ConstitutiveLaw, Deformation};
-use crate::model::projection::Projection;
+use crate::model::projection::{OwnPressure, Projection};
 use fearless_simd::Simd;
 use std::ops::Range;
 
@@ -31,19 +31,19 @@ pub fn jacobians<S: Simd, R: Lanes<S>>(
     );
 }
 
-/// s (p_q − U'(J_q)) \[Pa\] of a patch.
+/// s (p_q − U'(J_q)) \[Pa\] of a patch, and the moments of the pressure that J gives.
 pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
     simd: S,
     law: &L,
-    projection: &Projection,
+    (projection, own): (&Projection, Option<OwnPressure>),
     groups: Range<usize>,
     jacobians: &Parts<SimdBlock>,
     pressures: &mut Parts<SimdBlock>,
-) {
+) -> [f64; 4] {
     simd.vectorize(
         #[inline(always)]
-        || projection.pressures::<S, R, _>(simd, law, groups, jacobians, pressures),
-    );
+        || projection.pressures::<S, R, _>(simd, law, groups, own, jacobians, pressures),
+    )
 }
 
 /// J and P of the first `count` SIMD blocks; with a projected pressure p, P + p cof F, J being known.

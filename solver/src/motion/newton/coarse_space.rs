@@ -7,6 +7,7 @@ use crate::algebra::spline_lattice::Lattice;
 use crate::algebra::tensor::Vector3;
 use crate::model::{Block, Chunk, Model, ModuliAtRest};
 use crate::motion::newton::coarse_matrix::CoarseMatrix;
+use crate::motion::newton::preconditioner::Stiffness;
 use std::collections::BTreeMap;
 
 /// Spacing of the lattice over that of the nodes \[–\], at most.
@@ -39,7 +40,7 @@ pub(super) struct Held {
 }
 
 impl CoarseSpace {
-    pub fn new(model: &Model) -> CoarseSpace {
+    pub fn new(model: &Model, at_rest: &Stiffness) -> CoarseSpace {
         let d = model.components;
         let volume: f64 = model.blocks.iter().flat_map(|b| &b.quadrature_weights).sum();
         let spacing = (volume / model.positions.len() as f64).powf(1.0 / d as f64);
@@ -61,9 +62,9 @@ impl CoarseSpace {
         let functions = Functions { lattice, numbers };
         let mut free = CoarseMatrix::new(count, d);
         (0..model.positions.len()).for_each(|node| free.reserve(row_of(&values, node).0));
-        functions.add_stiffness(model, &mut free);
-        add_to_nodes(model, &values, FLOOR, &mut free);
-        stiffen_tails(model, &values, &mut free);
+        functions.add_stiffness(model, at_rest.most, &mut free);
+        add_to_nodes(&at_rest.diagonal, &values, FLOOR, &mut free);
+        stiffen_tails(&at_rest.diagonal, &values, &mut free);
         CoarseSpace {
             values: [values, transposed],
             free,
@@ -74,14 +75,14 @@ impl CoarseSpace {
 
     /// Factors A₀ with some displacements held and `shift` times the stiffness of every
     /// node added.
-    pub fn factor(&mut self, model: &Model, held: &[Held], shift: f64) {
+    pub fn factor(&mut self, at_rest: &Stiffness, held: &[Held], shift: f64) {
         let mut matrix = self.free.clone();
         for Held { node, along, stiffness } in held {
             let (columns, values) = row_of(&self.values[0], *node as usize);
             matrix.add_spring(columns, values, along, *stiffness);
         }
         if shift > 0.0 {
-            add_to_nodes(model, &self.values[0], shift, &mut matrix);
+            add_to_nodes(&at_rest.diagonal, &self.values[0], shift, &mut matrix);
         }
         let matrix = matrix.assembled();
         let again = self.cholesky.as_mut().is_some_and(|cholesky| cholesky.factor_again(&matrix));
@@ -105,8 +106,8 @@ impl CoarseSpace {
 }
 
 /// Adds a part of the stiffness of every node, lumped to the functions that reach it.
-fn add_to_nodes(model: &Model, values: &Sparse, part: f64, matrix: &mut CoarseMatrix) {
-    for (node, stiffness) in model.stiffness.iter().enumerate() {
+fn add_to_nodes(diagonal: &[f64], values: &Sparse, part: f64, matrix: &mut CoarseMatrix) {
+    for (node, stiffness) in diagonal.iter().enumerate() {
         let (columns, values) = row_of(values, node);
         for (&i, &value) in columns.iter().zip(values) {
             matrix.add_to_diagonal(i, part * stiffness * f64::from(value));
@@ -116,9 +117,9 @@ fn add_to_nodes(model: &Model, values: &Sparse, part: f64, matrix: &mut CoarseMa
 
 /// Functions of which only a tail reaches the body may bend almost without a point that
 /// sees it: their stiffness over Σ_a k_a N(X_a)² is raised to a part of the median.
-fn stiffen_tails(model: &Model, values: &Sparse, matrix: &mut CoarseMatrix) {
+fn stiffen_tails(diagonal: &[f64], values: &Sparse, matrix: &mut CoarseMatrix) {
     let mut sums = vec![0.0; matrix.len()];
-    for (node, stiffness) in model.stiffness.iter().enumerate() {
+    for (node, stiffness) in diagonal.iter().enumerate() {
         let (columns, values) = row_of(values, node);
         for (&i, &value) in columns.iter().zip(values) {
             sums[i as usize] += stiffness * f64::from(value).powi(2);
@@ -172,10 +173,10 @@ impl Functions {
         });
     }
 
-    fn add_stiffness(&self, model: &Model, matrix: &mut CoarseMatrix) {
+    fn add_stiffness(&self, model: &Model, most: f64, matrix: &mut CoarseMatrix) {
         let mut found = Vec::new();
         for block in &model.blocks {
-            let moduli = ModuliAtRest::of(block);
+            let moduli = ModuliAtRest::of(block).capped(most);
             for (weight, X) in self.lumps(model, block) {
                 self.at(&X, &mut found);
                 matrix.add_elastic(&found, weight * moduli.shear, weight * moduli.pointwise);

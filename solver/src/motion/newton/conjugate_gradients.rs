@@ -3,7 +3,7 @@
 
 use super::coarse_space::Held;
 use super::free_space::FreeSpace;
-use super::preconditioner::Preconditioner;
+use super::preconditioner::{Preconditioner, Stiffness};
 use crate::algebra::packed::{axpy, dot, largest};
 use crate::algebra::tensor::Matrix3;
 use crate::model::Model;
@@ -54,6 +54,7 @@ pub(super) struct System<'a> {
 
 /// Solves corrections, and keeps the preconditioner from one to the next.
 pub(super) struct Solver {
+    at_rest: Stiffness,
     preconditioner: Option<Preconditioner>,
     /// Products with the diagonal alone until the preconditioner is made, if it ever is.
     until: Option<usize>,
@@ -65,12 +66,27 @@ pub(super) struct Solver {
 }
 
 impl Solver {
-    pub fn new(model: &Model) -> Solver {
+    /// For tangents whose projected bulk moduli are at most `most` shear moduli; where that is
+    /// a bound, the diagonal alone never serves.
+    pub fn new(model: &Model, most: f64) -> Solver {
+        let at_rest = Stiffness::new(model, most);
         let nodes = if model.components == 3 { model.positions.len() } else { 0 };
-        let at_once = nodes > FEW_NODES;
-        let preconditioner = at_once.then(|| Preconditioner::new(model)).flatten();
-        let until = (LEAST_NODES..=FEW_NODES).contains(&nodes).then_some(OF_FIRST);
-        Solver { preconditioner, until, corrected: false, held: Vec::new(), shift: f64::NAN }
+        let at_once = nodes > FEW_NODES || most.is_finite() && model.components == 3;
+        let preconditioner = at_once.then(|| Preconditioner::new(model, &at_rest)).flatten();
+        let few = !at_once && (LEAST_NODES..=FEW_NODES).contains(&nodes);
+        Solver {
+            at_rest,
+            preconditioner,
+            until: few.then_some(OF_FIRST),
+            corrected: false,
+            held: Vec::new(),
+            shift: f64::NAN,
+        }
+    }
+
+    /// The diagonal of the stiffness at rest \[node\] \[N/m\].
+    pub fn diagonal(&self) -> &[f64] {
+        &self.at_rest.diagonal
     }
 
     /// Counts a product; whether the preconditioner was due with it and has been made.
@@ -78,13 +94,13 @@ impl Solver {
         let Some(left) = self.until else { return false };
         self.until = left.checked_sub(1);
         if self.until.is_none() {
-            self.preconditioner = Preconditioner::new(model);
+            self.preconditioner = Preconditioner::new(model, &self.at_rest);
         }
         self.preconditioner.is_some()
     }
 
     /// Makes the preconditioner anew where it would no longer serve.
-    fn prepare(&mut self, model: &Model, free: &FreeSpace, shift: f64) {
+    fn prepare(&mut self, free: &FreeSpace, shift: f64) {
         let Some(preconditioner) = &mut self.preconditioner else { return };
         let directions = free.held();
         // Normals of a closed contact turn a little; its node says enough.
@@ -103,9 +119,10 @@ impl Solver {
         let held_by = |(node, along): (u32, _)| Held {
             node,
             along,
-            stiffness: model.stiffness[node as usize],
+            stiffness: self.at_rest.diagonal[node as usize],
         };
-        preconditioner.hold(model, &directions.into_iter().map(held_by).collect::<Vec<_>>(), shift);
+        let directions: Vec<_> = directions.into_iter().map(held_by).collect();
+        preconditioner.hold(&self.at_rest, &directions, shift);
         (self.held, self.shift) = (held, shift);
     }
 
@@ -118,16 +135,16 @@ impl Solver {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Correction {
         let System { mut tangent, mut residual, mut change, forcing, sliding, shift } = system;
-        self.prepare(model, free, shift);
+        self.prepare(free, shift);
         let d = model.components;
+        let shifted = self.at_rest.diagonal.iter().map(|k| shift * k);
+        let shifts: Vec<f64> = if shift > 0.0 { shifted.collect() } else { Vec::new() };
         let mut products = 0;
         let mut product_with = |v: &[f64]| {
             products += 1;
             let mut product = tangent.stiffness_times(v);
-            if shift > 0.0 {
-                for (i, (p, v)) in product.iter_mut().zip(v).enumerate() {
-                    *p += shift * model.stiffness[i / d] * v;
-                }
+            for ((product, v), shift) in product.chunks_mut(d).zip(v.chunks(d)).zip(&shifts) {
+                product.iter_mut().zip(v).for_each(|(p, v)| *p += shift * v);
             }
             add_sliding(model, &sliding, v, &mut product);
             product
@@ -160,7 +177,7 @@ impl Solver {
             axpy(&mut residual, -square / curvature, &product);
             let due = self.has_become_due(model);
             if due {
-                self.prepare(model, free, shift);
+                self.prepare(free, shift);
             }
             let restart = due || count + 1 == PATIENCE && self.preconditioner.take().is_some();
             descent = self.preconditioned(model, free, &mut residual);

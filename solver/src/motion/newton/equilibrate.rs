@@ -1,6 +1,7 @@
 //! Newton's method towards a static solution, the load in as few parts as it takes.
 
 use super::increment::Unsolved;
+use super::pressures::can_be_unknowns;
 use super::solver::{Equilibrium, Solver};
 use crate::algebra::packed::dot;
 use crate::error::{Error, Instability};
@@ -10,11 +11,13 @@ use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::stability::Stability;
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, add_pressures, external_force};
-use crate::motion::summary::Summary;
+use crate::motion::summary::{PatchPressures, Summary};
 use crate::problem::Newton;
 
 /// Fraction of the load below which an increment is not halved again.
 const SMALLEST_INCREMENT: f64 = 1e-3;
+/// The same where pressures are unknowns, which are given up there.
+const SMALLEST_WITH_PRESSURES: f64 = 0.02;
 /// Residual of the increments before the last one \[–\].
 const PASSING_TOLERANCE: f64 = 1e-4;
 /// Solves f_ext = f_int under the conditions of the end of loading, by
@@ -39,7 +42,7 @@ pub(crate) fn equilibrate(
         let tolerance = if last { settings.tolerance } else { PASSING_TOLERANCE };
         match solver.solve(&state.displacement, fraction, tolerance, &mut buffers, observer) {
             Ok(equilibrium) => {
-                let jacobian = equilibrium.imbalance.smallest_jacobian.jacobian;
+                let jacobian = equilibrium.exact().smallest_jacobian.jacobian;
                 solver.accept(equilibrium, fraction, state, &mut buffers);
                 reached = fraction;
                 increment *= 2.0;
@@ -47,13 +50,23 @@ pub(crate) fn equilibrate(
                 stopped = stop == Continue::Stop;
             }
             Err(Unsolved::Stopped(here)) => {
-                let jacobian = here.imbalance.smallest_jacobian.jacobian;
+                let jacobian = here.exact().smallest_jacobian.jacobian;
                 solver.accept(*here, fraction, state, &mut buffers);
                 notify(model, state, jacobian, reached, observer);
                 stopped = true;
             }
             Err(Unsolved::Failed { residual, indefinite }) => {
+                if solver.counts.pressures == PatchPressures::OfDisplacements
+                    && can_be_unknowns(model)
+                {
+                    solver.free_pressures(&state.displacement, reached, &mut buffers);
+                    continue;
+                }
                 increment = 0.5 * (fraction - reached);
+                if increment < SMALLEST_WITH_PRESSURES && solver.pressures.is_some() {
+                    solver.give_up_pressures();
+                    increment = 1.0 - reached;
+                }
                 if increment < SMALLEST_INCREMENT {
                     return Err(Error::NoEquilibrium {
                         reached,
@@ -84,7 +97,8 @@ impl Solver<'_> {
         buffers: &mut Buffers,
     ) {
         let model = self.model;
-        let Equilibrium { u, imbalance } = equilibrium;
+        let Equilibrium { u, imbalance, exact } = equilibrium;
+        let imbalance = exact.unwrap_or(imbalance);
         self.counts.increments += 1;
         self.counts.residual = imbalance.relative(model);
         self.smallest_jacobian = self.smallest_jacobian.or(imbalance.smallest_jacobian);

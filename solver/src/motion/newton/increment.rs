@@ -11,8 +11,10 @@ use crate::motion::observe::{Continue, Observer};
 use crate::motion::step::Buffers;
 use crate::motion::tangent::Tangent;
 
-/// Corrections in one increment of the load; more where contacts have to be found.
+/// Corrections in one increment of the load; more where pressures follow, and where contacts
+/// have to be found.
 const MOST_ITERATIONS: usize = 20;
+const MOST_ITERATIONS_WITH_PRESSURES: usize = 40;
 const MOST_ITERATIONS_IN_CONTACT: usize = 100;
 /// Bounds of the relative residual at which conjugate gradients end.
 const FORCING: (f64, f64) = (1e-4, 0.1);
@@ -52,20 +54,20 @@ impl Solver<'_> {
         buffers: &mut Buffers,
         observer: &mut dyn Observer,
     ) -> Result<Equilibrium, Unsolved> {
-        let contacts = self.contacts.clone();
+        let (contacts, pressures) = (self.contacts.clone(), self.pressures.clone());
         let asked = largest(&self.jump(start, fraction));
         let solved = self.iterate(start, fraction, tolerance, buffers, observer);
         // Whatever an iteration does, it may not end short of what is prescribed.
         let solved =
             solved.and_then(|now| match is_left(&self.jump(&now.u, fraction), asked, &now.u) {
                 true => Err(Unsolved::Failed {
-                    residual: now.imbalance.relative(self.model),
+                    residual: now.exact().relative(self.model),
                     indefinite: false,
                 }),
                 false => Ok(now),
             });
         if matches!(solved, Err(Unsolved::Failed { .. })) {
-            self.contacts = contacts;
+            (self.contacts, self.pressures) = (contacts, pressures);
         }
         solved
     }
@@ -85,16 +87,17 @@ impl Solver<'_> {
         let asked = largest(&jump);
         let imbalance = self.imbalance(start, fraction, buffers);
         self.shift = if self.floating { self.first_shift(&imbalance) } else { 0.0 };
-        let mut now = Equilibrium { u: start.to_vec(), imbalance };
+        let mut now = Equilibrium { u: start.to_vec(), imbalance, exact: None };
         // The jump of what is prescribed may take several corrections.
         let (mut forcing, mut indefinite, mut jumping) = (FIRST_FORCING, false, true);
         let most = match model.contact.obstacles.is_empty() {
+            true if self.pressures.is_some() => MOST_ITERATIONS_WITH_PRESSURES,
             true => MOST_ITERATIONS,
             false => MOST_ITERATIONS_IN_CONTACT,
         };
         for _ in 0..=most {
             let changes = self.settle(start, &mut now);
-            let residual = now.imbalance.relative(model);
+            let residual = now.exact().relative(model);
             let failed = Unsolved::Failed { residual, indefinite };
             if residual.is_nan() {
                 return Err(failed);
@@ -120,7 +123,8 @@ impl Solver<'_> {
             let norm = now.imbalance.norm(model);
             let cut = match self.take(&now, &correction.change, fraction, searched, buffers) {
                 Outcome::Taken(next, length) => {
-                    now = next;
+                    let jumped = jumping || !settled || length < 1.0;
+                    now = self.with_pressures_of(next, fraction, jumped, buffers);
                     jumping && !(whole && length == 1.0)
                 }
                 Outcome::TooFar if self.floating && self.shift < SHIFTS.1 => {
@@ -143,20 +147,21 @@ impl Solver<'_> {
                 true => FORCING.1,
                 false => {
                     // Not much beyond the tolerance (Kelley 1995, eq. 6.20).
-                    let enough = ENOUGH * tolerance / now.imbalance.relative(model);
+                    let relative = now.imbalance.relative(model).max(now.exact().relative(model));
+                    let enough = ENOUGH * tolerance / relative;
                     (0.9 * fallen * fallen).max(enough).clamp(FORCING.0, FORCING.1)
                 }
             };
             jumping = left.is_some();
             jump = left.unwrap_or_else(|| vec![0.0; start.len()]);
         }
-        Err(Unsolved::Failed { residual: now.imbalance.relative(model), indefinite })
+        Err(Unsolved::Failed { residual: now.exact().relative(model), indefinite })
     }
 
     fn is_balanced(&self, now: &Equilibrium, tolerance: f64) -> bool {
         let model = self.model;
         let round_off = ROUND_OFF * f64::EPSILON * largest(&model.stiffness) * largest(&now.u);
-        now.imbalance.relative(model) <= tolerance || now.imbalance.largest(model) <= round_off
+        now.exact().relative(model) <= tolerance || now.exact().largest(model) <= round_off
     }
 
     /// Opens and closes contacts; returns how many.
@@ -172,8 +177,10 @@ impl Solver<'_> {
         if changes > 0 {
             self.close(now);
         }
-        now.imbalance.acceleration = model.accelerations(&now.imbalance.force);
-        self.free.project(&mut now.imbalance.acceleration);
+        for imbalance in std::iter::once(&mut now.imbalance).chain(&mut now.exact) {
+            imbalance.acceleration = model.accelerations(&imbalance.force);
+            self.free.project(&mut imbalance.acceleration);
+        }
         changes
     }
 
@@ -221,7 +228,7 @@ impl Solver<'_> {
             })
             .sum::<f64>()
             .sqrt();
-        let stiffness: f64 = model.stiffness.iter().sum();
+        let stiffness: f64 = self.linear.diagonal().iter().sum();
         let shift = resultant / (stiffness * FIRST_MOVE * model.contact.skin);
         shift.clamp(SHIFTS.0, SHIFTS.1)
     }
@@ -238,7 +245,8 @@ impl Solver<'_> {
         let model = self.model;
         let forces = self.contact_forces(&now.imbalance);
         let sliding = self.contacts.sliding_stiffness(model, &now.u, &forces, only_resisting);
-        let tangent = Tangent::new(model, &now.u, self.free.t, &mut buffers.workspace);
+        let tangent = Tangent::new(model, &now.u, self.free.t, &mut buffers.workspace)
+            .with_pressures(self.pressures.as_ref().map(|pressures| &pressures.own));
         let residual = now.imbalance.free(model);
         let system = System { tangent, residual, change, forcing, sliding, shift: self.shift };
         let correction = self.linear.solve(model, &mut self.free, system, go_on);

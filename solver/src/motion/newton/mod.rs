@@ -11,6 +11,7 @@ mod increment;
 mod load_path;
 mod nodal_values;
 mod preconditioner;
+mod pressures;
 mod solver;
 mod taken;
 

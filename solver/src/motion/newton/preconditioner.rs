@@ -5,10 +5,29 @@
 use super::coarse_space::{CoarseSpace, Held};
 use super::nodal_values::NodalValues;
 use crate::algebra::sparse::{Padded, pad, unpad};
-use crate::model::Model;
+use crate::model::{Model, stiffness_diagonal};
 
 /// Flexibility of parameters without values over that of values \[–\].
 const HIDDEN: f64 = 50.0;
+
+/// The stiffness at rest that a preconditioner inverts.
+pub(super) struct Stiffness {
+    /// Diagonal \[node\] \[N/m\].
+    pub diagonal: Vec<f64>,
+    /// Largest projected bulk modulus over the shear modulus \[–\].
+    pub most: f64,
+}
+
+impl Stiffness {
+    pub fn new(model: &Model, most: f64) -> Stiffness {
+        let (d, nodes) = (model.components, model.positions.len());
+        let diagonal = match most.is_finite() {
+            true => stiffness_diagonal(&model.blocks, d, nodes, most),
+            false => model.stiffness.clone(),
+        };
+        Stiffness { diagonal, most }
+    }
+}
 
 /// B = T D⁻¹ Tᵀ + 50 Q D⁻¹ Qᵀ + P A₀⁻¹ Pᵀ: from forces on nodal parameters to those on nodal
 /// values, there the inverse of the diagonal, and back; the second term is for parameters
@@ -27,12 +46,12 @@ pub(super) struct Preconditioner {
 
 impl Preconditioner {
     /// `None` without the shape functions at the nodes.
-    pub fn new(model: &Model) -> Option<Preconditioner> {
+    pub fn new(model: &Model, at_rest: &Stiffness) -> Option<Preconditioner> {
         let values = NodalValues::new(model.nodal_rows.as_ref()?);
-        let stiffness = values.mean(&model.stiffness);
+        let stiffness = values.mean(&at_rest.diagonal);
         Some(Preconditioner {
             values,
-            coarse: CoarseSpace::new(model),
+            coarse: CoarseSpace::new(model, at_rest),
             flexibility: stiffness.iter().map(|k| 1.0 / k).collect(),
             padded: Vec::new(),
             smooth: Vec::new(),
@@ -41,8 +60,8 @@ impl Preconditioner {
     }
 
     /// Takes account of what is held, and of `shift` times the diagonal added to K.
-    pub fn hold(&mut self, model: &Model, held: &[Held], shift: f64) {
-        self.coarse.factor(model, held, shift);
+    pub fn hold(&mut self, at_rest: &Stiffness, held: &[Held], shift: f64) {
+        self.coarse.factor(at_rest, held, shift);
     }
 
     /// B r \[m\] into `product`; the two parts of B at the same time.

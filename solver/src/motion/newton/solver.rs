@@ -4,13 +4,14 @@ use super::active_contacts::ActiveContacts;
 use super::conjugate_gradients::Solver as LinearSolver;
 use super::free_space::FreeSpace;
 use super::load_path::Path;
+use super::pressures::{Pressures, are_unknowns, most};
 use crate::model::Model;
 use crate::model::rigid_motions::rigid_motions_left_to_contact;
 use crate::motion::balance::Imbalance;
-use crate::motion::internal_force::SmallestJacobian;
+use crate::motion::internal_force::{OwnPressures, SmallestJacobian};
 use crate::motion::state::State;
 use crate::motion::step::Buffers;
-use crate::motion::summary::NewtonCounts;
+use crate::motion::summary::{NewtonCounts, PatchPressures};
 use crate::problem::Newton;
 
 /// Bounds of the shift \[–\]; 0 where the body is held without contact.
@@ -28,12 +29,24 @@ pub(super) struct Solver<'a> {
     pub(super) floating: bool,
     /// Part of the diagonal that is added to K \[–\].
     pub(super) shift: f64,
+    /// Of the patches, where they are unknowns beside the displacements.
+    pub(super) pressures: Option<Pressures>,
 }
 
 /// Displacements in equilibrium at a fraction of the load.
 pub(super) struct Equilibrium {
     pub u: Vec<f64>,
+    /// With the pressures of the patches that the iteration has.
     pub imbalance: Imbalance,
+    /// With those that J gives, where these are others.
+    pub exact: Option<Imbalance>,
+}
+
+impl Equilibrium {
+    /// The imbalance that displacements alone decide on.
+    pub fn exact(&self) -> &Imbalance {
+        self.exact.as_ref().unwrap_or(&self.imbalance)
+    }
 }
 
 impl<'a> Solver<'a> {
@@ -45,16 +58,18 @@ impl<'a> Solver<'a> {
     ) -> Solver<'a> {
         let end = settings.load_end;
         let held = || rigid_motions_left_to_contact(model, end) == 0;
+        let unknown = are_unknowns(model);
         let mut solver = Solver {
             model,
             path: Path::new(state.time, end, model.size()),
             counts: NewtonCounts::default(),
             smallest_jacobian: SmallestJacobian::NONE,
-            linear: LinearSolver::new(model),
+            linear: LinearSolver::new(model, most(unknown)),
             free: FreeSpace::new(model, state.time),
             contacts: ActiveContacts::default(),
             floating: !model.contact.obstacles.is_empty() && !held(),
             shift: 0.0,
+            pressures: None,
         };
         // Before anything fades: the conditions and forces at the start.
         let forces = &mut solver.free.forces;
@@ -62,6 +77,10 @@ impl<'a> Solver<'a> {
         let imbalance = solver.imbalance(&state.displacement, 0.0, buffers);
         solver.path.force = imbalance.force;
         solver.smallest_jacobian = imbalance.smallest_jacobian;
+        if unknown {
+            solver.counts.pressures = PatchPressures::Unknowns;
+            solver.take_pressures_of(&state.displacement, 0.0, buffers);
+        }
         solver
     }
 
@@ -71,10 +90,25 @@ impl<'a> Solver<'a> {
         fraction: f64,
         buffers: &mut Buffers,
     ) -> Imbalance {
+        let pressures = self.pressures.take();
+        let own = pressures.as_ref().map(|pressures| &pressures.own);
+        let imbalance = self.imbalance_with(u, own, fraction, buffers);
+        self.pressures = pressures;
+        imbalance
+    }
+
+    /// With pressures of patches, or with those that J gives.
+    pub(super) fn imbalance_with(
+        &mut self,
+        u: &[f64],
+        own: Option<&OwnPressures>,
+        fraction: f64,
+        buffers: &mut Buffers,
+    ) -> Imbalance {
         self.counts.evaluations += 1;
         self.path.external_force(self.model, fraction, &mut buffers.f_ext);
-        let t = self.path.time(fraction);
-        let mut imbalance = Imbalance::new(self.model, u, t, buffers, &mut self.free.forces);
+        let (t, forces) = (self.path.time(fraction), &mut self.free.forces);
+        let mut imbalance = Imbalance::with_pressures(self.model, (u, own), t, buffers, forces);
         self.free.project_contacts(&mut imbalance.acceleration);
         imbalance
     }

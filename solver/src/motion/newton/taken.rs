@@ -87,7 +87,7 @@ impl Solver<'_> {
         let u = moved(&now.u, change, length);
         let imbalance = self.imbalance(&u, fraction, buffers);
         match imbalance.smallest_jacobian.jacobian > volume {
-            true => Outcome::Taken(Equilibrium { u, imbalance }, length),
+            true => Outcome::Taken(Equilibrium { u, imbalance, exact: None }, length),
             false if self.floating => Outcome::TooFar,
             false => Outcome::Failed,
         }
@@ -111,7 +111,7 @@ impl Solver<'_> {
             let valid = imbalance.smallest_jacobian.jacobian > volume;
             let closer = imbalance.norm(model) <= 0.99 * before.norm(model)
                 || dot(change, &imbalance.free(model)).abs() <= 0.8 * slope;
-            (valid && closer).then_some(Equilibrium { u, imbalance })
+            (valid && closer).then_some(Equilibrium { u, imbalance, exact: None })
         })
     }
 }
