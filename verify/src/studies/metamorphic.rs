@@ -46,6 +46,7 @@ pub fn metamorphic(bench: &Workbench, study: &mut Study) -> Result<()> {
             Err(_) => without_answer += 1,
         }
     }
+    try_the_rest(&mut tried, &mut rng);
     let empty = Tried::default();
     for relation in all() {
         study.checks.push(check(relation, tried.get(relation.name).unwrap_or(&empty)));
@@ -62,6 +63,24 @@ pub fn metamorphic(bench: &Workbench, study: &mut Study) -> Result<()> {
 /// Scenes with an answer.
 const SCENES: usize = 40;
 const SCENES_OF_FULL_SUITE: usize = 800;
+/// Most scenes besides, for relations that few scenes are fit for.
+const MORE_SCENES: usize = 200;
+
+/// Draws more scenes for those relations that say nothing about any so far.
+fn try_the_rest(tried: &mut BTreeMap<&str, Tried>, rng: &mut fastrand::Rng) {
+    for _ in 0..MORE_SCENES {
+        let silent = |relation: &Relation| {
+            tried.get(relation.name).is_none_or(|tried| tried.scenes + tried.known == 0)
+        };
+        if !all().any(silent) {
+            break;
+        }
+        let scene = Scene::draw(rng);
+        if let Ok(verdicts) = examine(&scene, &silent) {
+            verdicts.into_iter().for_each(|verdict| count(tried, &scene, verdict));
+        }
+    }
+}
 
 fn count(tried: &mut BTreeMap<&str, Tried>, scene: &Scene, verdict: Verdict) {
     let own = tried.entry(verdict.relation.name).or_default();
