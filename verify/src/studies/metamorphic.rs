@@ -69,9 +69,8 @@ const MORE_SCENES: usize = 200;
 /// Draws more scenes for those relations that say nothing about any so far.
 fn try_the_rest(tried: &mut BTreeMap<&str, Tried>, rng: &mut fastrand::Rng) {
     for _ in 0..MORE_SCENES {
-        let silent = |relation: &Relation| {
-            tried.get(relation.name).is_none_or(|tried| tried.scenes + tried.known == 0)
-        };
+        let silent =
+            |relation: &Relation| tried.get(relation.name).is_none_or(|tried| tried.scenes == 0);
         if !all().any(silent) {
             break;
         }
