@@ -34,7 +34,7 @@ pub struct Footprint {
 /// Bytes of the program itself, 2e6 of them in development builds only; this and the
 /// following bytes at the peak are fitted to the measured bodies.
 const PROGRAM: f64 = 22.3e6;
-const PER_NODE: f64 = 1950.0;
+const PER_NODE: f64 = 1400.0;
 const PER_ENTRY: f64 = 63.0;
 const PER_PANEL: f64 = 710.0;
 /// What couples the nodes of parts where displacements are prescribed.
@@ -45,7 +45,7 @@ const BATCH: f64 = 16_384.0;
 /// The preconditioner of Newton's method: φ at the nodes and its approximate inverse, the
 /// splines and their factor.
 const PER_NEWTON_ENTRY: f64 = 55.0;
-const PER_BATCH_ENTRY: f64 = 54.0;
+const PER_BATCH_ENTRY: f64 = 36.0;
 /// Panels over the boundary's area divided by their size², and those of an image or a
 /// function, which come from tetrahedra.
 const PANELS_PER_AREA: [f64; 2] = [1.0, 8.0];

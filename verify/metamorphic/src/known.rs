@@ -45,13 +45,6 @@ pub const KNOWN: &[Known] = &[
         reason: "obstacles push nodes after conditions were imposed, and the value at a held node \
                  is a mean over its neighbours; the audit doubts the run where it matters",
     },
-    Known {
-        relation: "volume_of_a_flat_body",
-        scenes: "bodies with a held volume",
-        has: |scene| scene.holds.iter().any(|hold| hold.inner),
-        figure: "3e-5",
-        reason: "not known; nodes at the edges of the held volume are there",
-    },
 ];
 
 /// The known fault by which a relation fails for a scene.

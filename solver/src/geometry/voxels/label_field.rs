@@ -166,10 +166,12 @@ impl LabelField {
         &self.surface
     }
 
-    /// Memory of that surface \[bytes\].
+    /// Memory of that surface \[bytes\]; of one that is not there yet as if it had the area of the
+    /// image.
     pub(crate) fn surface_bytes(&self) -> f64 {
-        let pieces = self.surface.get().map_or(0, |pieces| pieces.len());
-        (pieces * size_of::<SurfacePiece>()) as f64
+        let faces = || 6.0 * (self.samples() as f64).powf(2.0 / 3.0);
+        let pieces = self.surface.get().map_or_else(faces, |pieces| pieces.len() as f64);
+        pieces * size_of::<SurfacePiece>() as f64
     }
 
     /// Around all samples within a voxel of the solid; infinite along the

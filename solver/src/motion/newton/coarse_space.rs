@@ -5,10 +5,28 @@ use crate::algebra::sparse::{Combine, Padded, Sparse, pad, unpad};
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::spline_lattice::Lattice;
 use crate::algebra::tensor::Vector3;
-use crate::model::{Block, Chunk, Model, ModuliAtRest};
+use crate::model::{Block, Chunk, Model, ModuliAtRest, stiffness_diagonal};
 use crate::motion::newton::coarse_matrix::CoarseMatrix;
-use crate::motion::newton::preconditioner::Stiffness;
 use std::collections::BTreeMap;
+
+/// The stiffness at rest that a preconditioner inverts.
+pub(super) struct Stiffness {
+    /// Diagonal \[node\] \[N/m\].
+    pub diagonal: Vec<f64>,
+    /// Largest projected bulk modulus over the shear modulus \[–\].
+    pub most: f64,
+}
+
+impl Stiffness {
+    pub fn new(model: &Model, most: f64) -> Stiffness {
+        let (d, nodes) = (model.components, model.positions.len());
+        let diagonal = match most.is_finite() {
+            true => stiffness_diagonal(&model.blocks, d, nodes, most),
+            false => model.stiffness.clone(),
+        };
+        Stiffness { diagonal, most }
+    }
+}
 
 /// Spacing of the lattice over that of the nodes \[–\], at most.
 const SPACING: f64 = 4.5;

@@ -1,9 +1,9 @@
 //! Corrections of Newton's method by conjugate gradients.
 #![allow(non_snake_case)]
 
-use super::coarse_space::Held;
+use super::coarse_space::{Held, Stiffness};
 use super::free_space::FreeSpace;
-use super::preconditioner::{Preconditioner, Stiffness};
+use super::preconditioner::Preconditioner;
 use crate::algebra::packed::{axpy, dot, largest};
 use crate::algebra::tensor::Matrix3;
 use crate::model::Model;

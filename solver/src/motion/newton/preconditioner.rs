@@ -2,32 +2,13 @@
 //! number of nodes.
 #![allow(non_snake_case)]
 
-use super::coarse_space::{CoarseSpace, Held};
+use super::coarse_space::{CoarseSpace, Held, Stiffness};
 use super::nodal_values::NodalValues;
 use crate::algebra::sparse::{Padded, pad, unpad};
-use crate::model::{Model, stiffness_diagonal};
+use crate::model::Model;
 
 /// Flexibility of parameters without values over that of values \[–\].
 const HIDDEN: f64 = 50.0;
-
-/// The stiffness at rest that a preconditioner inverts.
-pub(super) struct Stiffness {
-    /// Diagonal \[node\] \[N/m\].
-    pub diagonal: Vec<f64>,
-    /// Largest projected bulk modulus over the shear modulus \[–\].
-    pub most: f64,
-}
-
-impl Stiffness {
-    pub fn new(model: &Model, most: f64) -> Stiffness {
-        let (d, nodes) = (model.components, model.positions.len());
-        let diagonal = match most.is_finite() {
-            true => stiffness_diagonal(&model.blocks, d, nodes, most),
-            false => model.stiffness.clone(),
-        };
-        Stiffness { diagonal, most }
-    }
-}
 
 /// B = T D⁻¹ Tᵀ + 50 Q D⁻¹ Qᵀ + P A₀⁻¹ Pᵀ: from forces on nodal parameters to those on nodal
 /// values, there the inverse of the diagonal, and back; the second term is for parameters

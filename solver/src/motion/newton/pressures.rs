@@ -1,13 +1,9 @@
 //! Pressures of patches as unknowns beside the displacements, where a body is nearly
 //! incompressible.
 
-use super::conjugate_gradients::Solver as LinearSolver;
-use super::solver::{Equilibrium, Solver};
 use crate::algebra::packed::{axpy, dot};
 use crate::model::{Model, ModuliAtRest};
 use crate::motion::internal_force::OwnPressures;
-use crate::motion::step::Buffers;
-use crate::motion::summary::PatchPressures;
 use nalgebra::{DMatrix, DVector};
 
 /// Largest projected bulk modulus over the shear modulus in the tangent \[–\].
@@ -31,6 +27,11 @@ pub(super) struct Pressures {
 }
 
 impl Pressures {
+    /// As they are.
+    pub fn new(own: OwnPressures) -> Pressures {
+        Pressures { own, past: Vec::new() }
+    }
+
     /// Forgets what changed under other conditions.
     pub fn forget(&mut self) {
         self.past.clear();
@@ -38,7 +39,7 @@ impl Pressures {
 
     /// Goes towards the pressures that J gives, extrapolated from the last corrections where
     /// that is slow (method book, eq. 21.15: Anderson 1965).
-    fn follow<'a>(&mut self, of_j: impl Iterator<Item = &'a [[f64; 4]]>) {
+    pub fn follow<'a>(&mut self, of_j: impl Iterator<Item = &'a [[f64; 4]]>) {
         let before = self.own.values();
         self.own.approach(of_j, 1.0);
         let mut after = self.own.values();
@@ -116,48 +117,4 @@ pub(super) fn most(unknown: bool) -> f64 {
 /// Whether they may become unknowns.
 pub(super) fn can_be_unknowns(model: &Model) -> bool {
     largest_ratio(model) > MOST
-}
-
-impl Solver<'_> {
-    /// Makes the pressures of the patches unknowns from displacements `u` \[m\] on.
-    pub(super) fn free_pressures(&mut self, u: &[f64], fraction: f64, buffers: &mut Buffers) {
-        self.counts.pressures = PatchPressures::Unknowns;
-        self.linear = LinearSolver::new(self.model, most(true));
-        self.take_pressures_of(u, fraction, buffers);
-    }
-
-    /// The pressures become those of displacements `u` \[m\].
-    pub(super) fn take_pressures_of(&mut self, u: &[f64], fraction: f64, buffers: &mut Buffers) {
-        self.imbalance_with(u, None, fraction, buffers);
-        let mut own = OwnPressures::zero(self.model, most(true));
-        own.approach(buffers.workspace.pressures_of_j(), f64::INFINITY);
-        self.pressures = Some(Pressures { own, past: Vec::new() });
-    }
-
-    /// Leaves the pressures to the displacements again, for good.
-    pub(super) fn give_up_pressures(&mut self) {
-        self.pressures = None;
-        self.counts.pressures = PatchPressures::GivenUp;
-        self.linear = LinearSolver::new(self.model, most(false));
-    }
-
-    /// Has the pressures follow new displacements, which have been evaluated last; `jumped`
-    /// says that other conditions held before.
-    pub(super) fn with_pressures_of(
-        &mut self,
-        next: Equilibrium,
-        fraction: f64,
-        jumped: bool,
-        buffers: &mut Buffers,
-    ) -> Equilibrium {
-        let Some(pressures) = &mut self.pressures else { return next };
-        if jumped {
-            pressures.forget();
-        }
-        pressures.follow(buffers.workspace.pressures_of_j());
-        let Equilibrium { u, .. } = next;
-        let imbalance = self.imbalance(&u, fraction, buffers);
-        let exact = Some(self.imbalance_with(&u, None, fraction, buffers));
-        Equilibrium { u, imbalance, exact }
-    }
 }

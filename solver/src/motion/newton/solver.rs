@@ -113,3 +113,47 @@ impl<'a> Solver<'a> {
         imbalance
     }
 }
+
+impl Solver<'_> {
+    /// Makes the pressures of the patches unknowns from displacements `u` \[m\] on.
+    pub(super) fn free_pressures(&mut self, u: &[f64], fraction: f64, buffers: &mut Buffers) {
+        self.counts.pressures = PatchPressures::Unknowns;
+        self.linear = LinearSolver::new(self.model, most(true));
+        self.take_pressures_of(u, fraction, buffers);
+    }
+
+    /// The pressures become those of displacements `u` \[m\].
+    pub(super) fn take_pressures_of(&mut self, u: &[f64], fraction: f64, buffers: &mut Buffers) {
+        self.imbalance_with(u, None, fraction, buffers);
+        let mut own = OwnPressures::zero(self.model, most(true));
+        own.approach(buffers.workspace.pressures_of_j(), f64::INFINITY);
+        self.pressures = Some(Pressures::new(own));
+    }
+
+    /// Leaves the pressures to the displacements again, for good.
+    pub(super) fn give_up_pressures(&mut self) {
+        self.pressures = None;
+        self.counts.pressures = PatchPressures::GivenUp;
+        self.linear = LinearSolver::new(self.model, most(false));
+    }
+
+    /// Has the pressures follow new displacements, which have been evaluated last; `jumped`
+    /// says that other conditions held before.
+    pub(super) fn with_pressures_of(
+        &mut self,
+        next: Equilibrium,
+        fraction: f64,
+        jumped: bool,
+        buffers: &mut Buffers,
+    ) -> Equilibrium {
+        let Some(pressures) = &mut self.pressures else { return next };
+        if jumped {
+            pressures.forget();
+        }
+        pressures.follow(buffers.workspace.pressures_of_j());
+        let Equilibrium { u, .. } = next;
+        let imbalance = self.imbalance(&u, fraction, buffers);
+        let exact = Some(self.imbalance_with(&u, None, fraction, buffers));
+        Equilibrium { u, imbalance, exact }
+    }
+}

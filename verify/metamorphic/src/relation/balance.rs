@@ -54,9 +54,10 @@ pub const RELATIONS: &[Relation] = &[
     Relation {
         name: "volume_of_a_flat_body",
         claim: "The same for bodies with flat faces and consistent gradients",
-        bound: 1e-6,
-        reason: "Weights are scaled to the volume that panels enclose; a polygon or a box is the \
-                 union of its panels",
+        bound: 1e-4,
+        reason: "Weights are scaled to the volume that the points of the boundary enclose; a polygon \
+                 or a box is the union of its panels, but on held faces shares of panels stand at \
+                 nodes and not at their centroids: 3e-5 were seen with three nodes along an edge",
         compare: |subject| {
             let scene = &subject.scene;
             let flat = matches!(scene.form, Form::Box | Form::Corner | Form::Wedge)
