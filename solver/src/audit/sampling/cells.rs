@@ -17,7 +17,7 @@ const COARSEST: f64 = 2.0;
 const FLAT_CELL: f64 = 1.0;
 /// The same of the smallest cells, at edges of the body and at rough boundaries \[–\].
 const FINEST: f64 = 1.0 / 32.0;
-/// The largest cells lie so far beside the middle \[their edge\], so that the errors of a body
+/// Those of an image lie so far beside its middle \[their edge\], so that the errors of a body
 /// with planes of symmetry do not add up.
 const ASIDE: [f64; 3] = [0.13, 0.07, 0.19];
 /// Edge of the largest cells of which corners and centre alone say that one part owns them,
@@ -29,7 +29,7 @@ const BEND: f64 = 0.01;
 /// Tetrahedra that a part without distances passes are halved so often.
 const HALVINGS: usize = 3;
 /// Part of a cell that such a part may be off by \[–\], where pieces of 1/48 of it are asked.
-const BY_PLACES: f64 = 0.3;
+const BY_PLACES: f64 = 0.45;
 /// The nodes of a body from an image may take so many times that: its set-up takes seconds.
 const OF_IMAGE: usize = 4;
 /// Cost of a signed distance of a shape that is no primitive, over that of one that is \[–\].
@@ -114,12 +114,14 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     let edge = COARSEST * divided.spacing;
     // Faces of the body that lie along the axes shall not lie between cells.
     let counts = (upper - lower).map(|length| (length / edge + 0.7).ceil().max(1.0) as usize);
-    let middle = 0.5 * (lower + upper) + edge * Vector3::from(ASIDE);
+    let labels = has_labels(divided.body);
+    let aside = if labels { edge * Vector3::from(ASIDE) } else { Vector3::zeros() };
+    let middle = 0.5 * (lower + upper) + aside;
     let start = middle - 0.5 * edge * counts.map(|n| n as f64);
     let flat = matches!(divided.dimension, Dimension::PlaneStrain { .. });
     let count = counts.x * counts.y * if flat { 1 } else { counts.z };
     let mut cells: Vec<Cell> = (0..count).map(|n| divided.cell(n, counts, &start, edge)).collect();
-    let times = if !flat && has_labels(divided.body) { OF_IMAGE } else { 1 };
+    let times = if !flat && labels { OF_IMAGE } else { 1 };
     let mut budget = BUDGET.0 + times * BUDGET.1 * divided.nodes;
     let cost = cost(divided.body) + divided.parts.iter().map(|part| cost_of(part)).sum::<usize>();
     let mut sampled =

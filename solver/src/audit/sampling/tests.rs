@@ -36,6 +36,6 @@ fn the_volume_of_a_label_is_known_within_its_doubt() {
         };
         let found = sample(&divided).unwrap().volumes[0];
         assert!((found.size - volume).abs() < found.doubt, "{spacing}: {} of {volume}", found.size);
-        assert!(found.doubt < 0.25 * volume, "{spacing}: {}", found.doubt);
+        assert!(found.doubt < 0.4 * volume, "{spacing}: {}", found.doubt);
     }
 }
