@@ -197,7 +197,7 @@ fn a_body_force_on_a_part_of_any_size_has_the_mass_of_the_part() {
             let reach = Vector3::repeat(0.5 * size);
             let cube = Shape::Box { min: centre - reach, max: centre + reach };
             let ball = Shape::Sphere { centre, radius: 0.5 * size };
-            // A ball is told from cubes to the 0.4 % of a cell to which it is flat in one.
+            // The surface of a ball is cut as flat in cells where it bends by at most 0.4 % of their edge.
             for (shape, volume, tolerance) in [(cube, 1.0, 1e-6), (ball, PI / 6.0, 0.005)] {
                 let mut problem = held_cube(cells);
                 problem.loads.body_forces = vec![BodyForce {

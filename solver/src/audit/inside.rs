@@ -118,7 +118,8 @@ impl Run<'_> {
     }
 }
 
-/// Distance \[m\] of a place from an obstacle; negative inside.
+/// Distance \[m\] of a place from an obstacle; negative inside. Not that of the contact, which the
+/// audit checks.
 fn gap(obstacle: &Obstacle, x: &Vector3) -> f64 {
     let from_surface = obstacle.shape.signed_distance(x) - obstacle.offset;
     match obstacle.side {

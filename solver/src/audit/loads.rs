@@ -109,10 +109,10 @@ impl Run<'_> {
     fn body_force(&self, body_force: &BodyForce) -> Result<Resultant, Error> {
         let regions = &self.problem.regions;
         let own;
-        let everywhere = matches!(body_force.part, Selector::All)
-            && matches!(body_force.acceleration, Field::Uniform(_));
-        let (sampled, parts) = match everywhere {
-            true => (self.sampled, regions.len()),
+        let everywhere =
+            body_force.part.is_everything() && matches!(body_force.acceleration, Field::Uniform(_));
+        let sampled = match everywhere {
+            true => self.sampled,
             false => {
                 // The part itself first, divided among the regions by what it has in common
                 // with each.
@@ -130,16 +130,16 @@ impl Run<'_> {
                     nodes: self.model.positions.len(),
                 };
                 own = sample(&divided)?;
-                (&own, regions.len())
+                &own
             }
         };
-        let of_regions = sampled.pieces.iter().filter(|(.., part)| *part < parts);
+        let of_regions = sampled.pieces.iter().filter(|(.., part)| *part < regions.len());
         let force = |&(X, size, part): &(Vector3, f64, usize)| {
             let acceleration = self.problem.dimension.in_plane(body_force.acceleration.at(&X));
             (X, regions[part].material.density * size * acceleration)
         };
         let forces: Vec<(Vector3, Vector3)> = of_regions.map(force).collect();
-        let volumes = sampled.volumes.iter().take(parts);
+        let volumes = sampled.volumes.iter().take(regions.len());
         let (size, doubt) = volumes.fold((0.0, 0.0), |(s, d), v| (s + v.size, d + v.doubt));
         let mut resultant = Resultant { forces, doubt: 0.0 };
         resultant.doubt = doubt / size.max(f64::MIN_POSITIVE) * resultant.size();

@@ -20,6 +20,7 @@ const SMALLEST_INCREMENT: f64 = 1e-3;
 const SMALLEST_WITH_PRESSURES: f64 = 0.02;
 /// Residual of the increments before the last one \[–\].
 const PASSING_TOLERANCE: f64 = 1e-4;
+
 /// Solves f_ext = f_int under the conditions of the end of loading, by
 /// corrections K Δu = f_ext − f_int from conjugate gradients that stay in the
 /// free displacements. Contacts open and close between corrections. Where this

@@ -9,6 +9,8 @@ use mtled::problem::{Motion, Newton};
 
 const LINEAR: &str = "The discrete equations of the linear law are linear; Newton's method ends at \
                       1e-12 of the largest force, times a condition of up to 1e5";
+const NEARLY_LINEAR: &str = "Terms of second order in the strain, some 1e-5 here, times the square of the \
+                             slenderness, some 10, times ten for the law's own curvature";
 /// Factor by which loads are made small.
 const SMALL: f64 = 1e-4;
 
@@ -54,12 +56,10 @@ pub const RELATIONS: &[Relation] = &[
         name: "small_and_reversed",
         claim: "Under any law small loads reversed reverse the displacements",
         bound: 1e-2,
-        reason: "Terms of second order in the strain, some 1e-5 here, times the square of the \
-                 slenderness, some 10, times ten for the law's own curvature",
+        reason: NEARLY_LINEAR,
         compare: |subject| {
             let scene = &subject.scene;
-            let turns = scene.holds.iter().any(|hold| matches!(hold.to, Place::Turned(..)));
-            if !scene.is_static() || scene.obstacle.is_some() || turns {
+            if !becomes_linear(scene) {
                 return None;
             }
             let [plus, minus] = [SMALL, -SMALL].map(|by| solved_small(&scaled(scene, by)));
@@ -71,12 +71,10 @@ pub const RELATIONS: &[Relation] = &[
         name: "small_and_linear",
         claim: "Under small loads every law moves like the linear one of its moduli",
         bound: 1e-2,
-        reason: "Terms of second order in the strain, some 1e-5 here, times the square of the \
-                 slenderness, some 10, times ten for the law's own curvature",
+        reason: NEARLY_LINEAR,
         compare: |subject| {
             let scene = &subject.scene;
-            let turns = scene.holds.iter().any(|hold| matches!(hold.to, Place::Turned(..)));
-            if !scene.is_static() || scene.obstacle.is_some() || turns || scene.has_patches() {
+            if !becomes_linear(scene) || scene.has_patches() {
                 return None;
             }
             let small = scaled(scene, SMALL);
@@ -87,6 +85,12 @@ pub const RELATIONS: &[Relation] = &[
         },
     },
 ];
+
+/// Whether a scene is linear in the limit of small loads.
+fn becomes_linear(scene: &Scene) -> bool {
+    let turns = scene.holds.iter().any(|hold| matches!(hold.to, Place::Turned(..)));
+    scene.is_static() && scene.obstacle.is_none() && !turns
+}
 
 fn still(to: &Place) -> Place {
     match to {
