@@ -47,7 +47,8 @@ fn checked_out_commit() -> Option<String> {
 }
 
 /// Of the solver, of all that reads cases and makes records, which is everything here but the
-/// command line, and of the versions of dependencies, where they are locked. DefaultHasher may
+/// command line, of what measures their figures, of the versions of dependencies, where they are
+/// locked, and of what the compiler was told. DefaultHasher may
 /// change with the compiler, which may change results too.
 fn fingerprint() -> u64 {
     let variable = |name: &str| std::env::var(name).unwrap_or_else(|_| panic!("{name} is not set"));
@@ -58,7 +59,11 @@ fn fingerprint() -> u64 {
     // A packed crate has a lock file of its own.
     let locked = [here.join("../Cargo.lock"), here.join("Cargo.lock")];
     let mut hasher = DefaultHasher::new();
-    let folders = [solver, own].into_iter().chain(locked.into_iter().find(|file| file.is_file()));
+    // Beside a packed crate there is none: its version is locked.
+    let measure = Some(here.join("checks/src/measure.rs")).filter(|file| file.is_file());
+    let locked = locked.into_iter().find(|file| file.is_file());
+    let folders = [solver, own].into_iter().chain(measure).chain(locked);
+    options().iter().for_each(|option| hasher.write(option.as_bytes()));
     for folder in folders {
         println!("cargo::rerun-if-changed={}", folder.display());
         let decide = sources(&folder).into_iter().filter(|file| !file.starts_with(&command_line));
@@ -69,6 +74,23 @@ fn fingerprint() -> u64 {
         }
     }
     hasher.finish()
+}
+
+/// Features of this crate, which chooses those of the solver, the processor and its instructions,
+/// and flags of the compiler.
+fn options() -> Vec<String> {
+    println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
+    let decides = |name: &str| {
+        let named =
+            ["CARGO_CFG_TARGET_ARCH", "CARGO_CFG_TARGET_FEATURE", "CARGO_ENCODED_RUSTFLAGS"];
+        name.starts_with("CARGO_FEATURE_") || named.contains(&name)
+    };
+    let mut options: Vec<String> = std::env::vars()
+        .filter(|(name, _)| decides(name))
+        .map(|(name, value)| format!("{name}={value}"))
+        .collect();
+    options.sort();
+    options
 }
 
 /// All files below a folder, in the order of their names, or the file itself.

@@ -50,6 +50,9 @@ pub enum Error {
     /// A number of the problem cannot be used.
     #[error(transparent)]
     Mistake(#[from] Mistake),
+    /// A simulation was run twice.
+    #[error("the simulation has run already, to t = {time} s: set up another one for another run")]
+    HasRun { time: f64 },
     #[error("the background grid gives no quadrature point inside the body: use smaller cells")]
     NoQuadraturePoints,
     #[error("no region contains the point ({}): let the last region contain everything", show(.position))]
@@ -57,9 +60,9 @@ pub enum Error {
     #[error("quadrature point {point} at ({}) has {support_size} nodes in its support and needs {smallest}: \
              raise the dilation, or add nodes there", show(.position))]
     SmallSupport { point: usize, position: Vector3, support_size: usize, smallest: usize },
-    #[error("the moment matrix at quadrature point {point} at ({}) with {support_size} support nodes has condition \
-             {condition:.1e} (largest {largest:.0e}): its nodes lie nearly in a plane or on a quadric; \
-             raise the dilation, or use the linear basis", show(.position))]
+    #[error("the moment matrix at quadrature point {point} at ({}) with {support_size} support nodes has {} \
+             (largest {largest:.0e}): its nodes lie nearly in a plane or on a quadric; \
+             raise the dilation, or use the linear basis", show(.position), condition_text(*.condition))]
     SingularMomentMatrix {
         point: usize,
         position: Vector3,
@@ -169,6 +172,12 @@ pub enum Error {
     ProbeOutside { position: Vector3, reason: String },
     #[error("the fixed step of {fixed:.4e} s is above the critical step of {critical:.4e} s")]
     UnstableStep { fixed: f64, critical: f64 },
+    /// Numbers beyond what a computer holds.
+    #[error(
+        "no time step can be found, the critical one is {critical} s: moduli, densities or lengths are beyond what \
+         numbers hold; check their units"
+    )]
+    NoTimeStep { critical: f64 },
     #[error("diverged at step {step}, t = {time:.6} s: node {node} at ({}) moved by {displacement:.3e} m; \
              the step was {time_step:.3e} s", show(.position))]
     Diverged {
@@ -263,6 +272,14 @@ fn not_held(free: usize) -> String {
         free => format!(
             "; conditions and closed contacts leave {free} rigid motions of the body free: hold it at more nodes"
         ),
+    }
+}
+
+/// The condition of a matrix for a message.
+pub(crate) fn condition_text(condition: f64) -> String {
+    match condition.is_finite() {
+        true => format!("condition {condition:.1e}"),
+        false => "no inverse".to_string(),
     }
 }
 

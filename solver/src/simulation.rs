@@ -30,6 +30,7 @@ pub struct Simulation {
     /// Displacements and velocities.
     pub state: State,
     problem: Problem,
+    has_run: bool,
 }
 
 impl Simulation {
@@ -41,7 +42,7 @@ impl Simulation {
         let model = raise_masses(model, problem, &discretisation)?;
         refuse_zero_energy_modes(problem, &discretisation, &model)?;
         let state = State::new(&model);
-        Ok(Simulation { discretisation, model, state, problem: problem.clone() })
+        Ok(Simulation { discretisation, model, state, problem: problem.clone(), has_run: false })
     }
 
     /// What to know before the result is trusted.
@@ -51,8 +52,13 @@ impl Simulation {
     }
 
     /// Runs to the end of the motion, or to static equilibrium, and notifies `observer`
-    /// after every step. After an error [`Simulation::state`] is the last one reached.
+    /// after every step. After an error [`Simulation::state`] is the last one reached. A
+    /// simulation runs once: the loads of a second run would begin anew on a body that they have
+    /// deformed.
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<Summary, Error> {
+        if std::mem::replace(&mut self.has_run, true) {
+            return Err(Error::HasRun { time: self.state.time });
+        }
         simulate(&self.model, &self.problem.motion, &mut self.state, observer)
     }
 

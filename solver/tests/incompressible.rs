@@ -53,16 +53,14 @@ fn counts(problem: &Problem, tolerance: f64) -> NewtonCounts {
 /// 0.4999; a tangent that has the wrong pressures takes parts of the load and more than these.
 #[test]
 fn corrections_do_not_grow_with_the_bulk_modulus() {
-    for (poisson_ratio, most) in [(0.499, 16), (0.4999, 18), (0.499999, 24)] {
+    for poisson_ratio in [0.499, 0.4999, 0.499999, 0.4999999] {
         let counts = counts(&pressed(projected(cube(6), poisson_ratio)), 1e-6);
         assert!(
             counts.pressures == PatchPressures::Unknowns && counts.increments == 1,
             "{poisson_ratio}: {counts:?}"
         );
-        assert!(
-            counts.iterations <= most && counts.residual <= 1e-6,
-            "{poisson_ratio}: {counts:?}"
-        );
+        assert!(counts.iterations <= 9 && counts.products <= 400, "{poisson_ratio}: {counts:?}");
+        assert!(counts.residual <= 1e-6, "{poisson_ratio}: {counts:?}");
     }
 }
 
@@ -95,31 +93,42 @@ fn the_solution_is_that_of_relaxation() {
     }
 }
 
-/// Between smooth walls, where the volume is prescribed: no displacement relieves the pressure,
-/// of which a correction alone would make up 30 μ/K. It is 2 μ: under some more the cloud folds.
+/// Between six smooth walls, of which the upper one has moved down by a part of the edge.
+fn confined(problem: Problem, strain: f64) -> Problem {
+    let mut problem = problem;
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        for at in [0.0, EDGE] {
+            let mut held = [None; 3];
+            held[axis] = Some(if axis == 2 { -strain * at } else { 0.0 });
+            let mut wall = condition(&format!("{name}{at}"), face(axis, at), held);
+            wall.amplitude = Amplitude::Linear { duration: 1.0 };
+            problem.conditions.push(wall);
+        }
+    }
+    problem
+}
+
+/// The volume is prescribed: the deformation is uniform, and P₃₃ = dψ/dJ of the law is known. Of
+/// the linear one λ + 2 μ is off by less than twice the strain. What flowed between the nodes of
+/// the walls took 17 % of the pressure at ν = 0.4999 and 75 % at 0.49999.
 #[test]
 fn a_confined_block_has_its_whole_bulk_modulus() {
-    for (poisson_ratio, volumetric, strain) in
-        [(0.499, VolumetricTerm::Quadratic, 0.004), (0.4999, VolumetricTerm::SimoTaylor, 0.0004)]
-    {
-        let mut problem = projected(cube(4), poisson_ratio);
-        problem = with_law(problem, rubber(poisson_ratio, volumetric));
-        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            for at in [0.0, EDGE] {
-                let mut held = [None; 3];
-                held[axis] = Some(if axis == 2 { -strain * at } else { 0.0 });
-                let mut wall = condition(&format!("{name}{at}"), face(axis, at), held);
-                wall.amplitude = Amplitude::Linear { duration: 1.0 };
-                problem.conditions.push(wall);
-            }
-        }
+    for (poisson_ratio, volumetric, strain) in [
+        (0.49, VolumetricTerm::Quadratic, 0.0004),
+        (0.499, VolumetricTerm::Quadratic, 0.0004),
+        (0.4999, VolumetricTerm::SimoTaylor, 0.0004),
+        (0.49999, VolumetricTerm::Quadratic, 0.0001),
+    ] {
+        let law = rubber(poisson_ratio, volumetric);
+        let constants = law.constants();
+        let mut problem = confined(with_law(projected(cube(4), poisson_ratio), law), strain);
+        problem.recipe.gradients = Gradients::SecondOrder { tolerance: 1e-8 };
         let solved = solve_by(&problem, to(1e-8));
+        let modulus = constants.lame_modulus() + 2.0 * constants.shear_modulus;
+        let known = modulus * strain * EDGE * EDGE;
+        let force = solved.recorder.reactions.last().unwrap().force.z;
         let counts = solved.summary.newton.unwrap();
-        assert!(counts.pressures == PatchPressures::Unknowns, "{counts:?}");
-        let relaxed = solve_to(&problem, 1e-7);
-        let [force, known] =
-            [&solved, &relaxed].map(|solved| solved.recorder.reactions.last().unwrap().force.z);
-        assert!((force / known - 1.0).abs() < 1e-4, "{force} {known} {counts:?}");
+        assert!((force.abs() / known - 1.0).abs() < 2.0 * strain, "{force} {known} {counts:?}");
     }
 }
 
@@ -212,7 +221,7 @@ fn pressures_taken_from_j_leave_the_force_as_it_is() {
     let mut own = OwnPressures::zero(&model, 30.0);
     internal_force_with(&model, &u, Some(&own), &mut workspace, &mut f);
     assert!(difference(&f, &plain) > 0.1);
-    own.approach(workspace.pressures_of_j(), f64::INFINITY);
+    own.set_values(&workspace.pressures_of_j());
     internal_force_with(&model, &u, Some(&own), &mut workspace, &mut f);
     assert!(difference(&f, &plain) < 1e-13);
 }

@@ -74,19 +74,37 @@ fn newton_converges_for_a_rotation_that_needs_no_force() {
     assert!(largest(&f) < 1e-11 * largest(&solved.model.stiffness) * largest(u));
 }
 
-#[test]
-fn a_load_without_equilibrium_ends_in_an_error_with_the_load_reached() {
+/// A block of a law that softens in compression, under more than it can carry \[m/s²\].
+fn run_crushed(weight: f64, motion: Motion) -> (State, Result<Summary, Error>) {
     let mut problem = square(3);
     problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
-    gravity(&mut problem, Vector3::new(0.0, -1e5, 0.0));
-    // A law that softens in compression.
+    gravity(&mut problem, Vector3::new(0.0, -weight, 0.0));
     problem = with_law(problem, objective_laws()[3]);
-    problem.motion = newton();
+    problem.motion = motion;
     let (_, model) = build(&problem);
     let mut state = State::new(&model);
     let run = simulate(&model, &problem.motion, &mut state, &mut Unobserved);
+    (state, run)
+}
+
+#[test]
+fn a_load_without_equilibrium_ends_in_an_error_with_the_load_reached() {
+    let (_, run) = run_crushed(1e5, newton());
     let Err(Error::NoEquilibrium { reached, iterations, .. }) = run else { panic!("{run:?}") };
     assert!(reached < 1.0 && iterations > 0);
+}
+
+#[test]
+fn where_relaxation_diverges_the_equilibrium_that_newton_came_to_is_kept() {
+    let (kept, run) = run_crushed(1e3, automatic());
+    let Err(Error::NeitherSolver { reached, then }) = run else { panic!("{run:?}") };
+    assert!(
+        reached > 0.0 && matches!(*then, Error::Inverted { .. } | Error::Diverged { .. }),
+        "{then}"
+    );
+    let settings = Motion::Equilibrium(Relaxation::default().newton());
+    let (alone, _) = run_crushed(1e3, settings);
+    assert!(kept.displacement.iter().any(|u| *u != 0.0) && kept.displacement == alone.displacement);
 }
 
 /// A strip of soft tissue that stands on its lower edge, six times as high as wide.

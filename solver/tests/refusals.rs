@@ -7,7 +7,7 @@ use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::{Discretisation, Warning};
 use mtled::error::Error;
 use mtled::geometry::{Selector, Shape};
-use mtled::material::{MaterialError, MooneyRivlin};
+use mtled::material::{ElasticConstants, Law, MaterialError, MooneyRivlin, NeoHookeanLogJ};
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
@@ -15,6 +15,7 @@ use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
 use mtled::motion::summary::Summary;
 use mtled::problem::*;
+use mtled::simulation::Simulation;
 
 fn refusal(problem: &Problem) -> Error {
     let made = Discretisation::new(problem).and_then(|d| Model::new(problem, &d));
@@ -53,6 +54,29 @@ fn a_number_that_cannot_be_used_is_refused_by_its_field() {
     problem.motion = Motion::Dynamic { end: 1.0, step, damping: 0.0 };
     let message = refusal(&problem).to_string();
     assert_eq!(message, "motion.step.safety_factor is 1.3; it must lie in (0, 1]");
+}
+
+#[test]
+fn a_simulation_runs_once() {
+    let mut problem = square(4);
+    problem.motion = Motion::dynamic(1e-3, 0.0);
+    let mut simulation = Simulation::new(&problem).unwrap();
+    simulation.run(&mut Recorder::default()).unwrap();
+    let error = simulation.run(&mut Recorder::default()).unwrap_err();
+    assert!(matches!(error, Error::HasRun { time } if time >= 1e-3), "{error}");
+}
+
+#[test]
+fn moduli_beyond_what_numbers_hold_are_named_before_the_first_step() {
+    let mut problem = square(4);
+    problem.motion = Motion::dynamic(1e-3, 0.0);
+    let constants = ElasticConstants::from_young_poisson(1e308, 0.3).unwrap();
+    problem.regions[0].material.law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
+    let (_, model) = build(&problem);
+    let (mut state, mut recorder) = (State::new(&model), Recorder::default());
+    let error = simulate(&model, &problem.motion, &mut state, &mut recorder).unwrap_err();
+    assert!(matches!(error, Error::NoTimeStep { .. }), "{error}");
+    assert!(!error.to_string().contains("step was NaN"), "{error}");
 }
 
 #[test]
@@ -135,6 +159,11 @@ fn a_node_whose_row_sum_is_negative_is_refused_with_its_place_and_mass() {
     let error = refusal(&problem);
     assert!(matches!(error, Error::MasslessNode { mass, .. } if mass < 0.0), "{error}");
     assert!(error.to_string().contains("even_split"), "{error}");
+    // Statics need the sum alone.
+    problem.motion = Motion::Equilibrium(Newton::default());
+    let (discretisation, model) = build(&problem);
+    let right = 1000.0 * discretisation.volume();
+    assert!((model.lumped_mass.iter().sum::<f64>() / right - 1.0).abs() < 1e-12);
 }
 
 #[test]

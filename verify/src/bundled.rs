@@ -37,7 +37,7 @@ pub static TEMPLATES: [Template; 5] = [
     },
     Template {
         name: "surface",
-        purpose: "a body inside a closed surface (STL)",
+        purpose: "a body inside a closed surface (STL, OBJ, PLY, VTK)",
         text: include_str!("templates/surface.toml"),
     },
     Template {

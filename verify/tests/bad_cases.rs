@@ -193,6 +193,16 @@ fn a_case_file_that_does_not_end_is_refused() {
     assert!(found[0].to_string().starts_with("/dev/zero: cannot be read: it has more than"));
 }
 
+#[cfg(unix)]
+#[test]
+fn a_named_pipe_is_refused_without_waiting_for_a_writer() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("case.toml");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let found = mistakes(&pipe);
+    assert!(found[0].to_string().contains("it is a named pipe"), "{}", found[0]);
+}
+
 #[test]
 fn a_case_file_that_does_not_exist_is_named() {
     let found = mistakes(Path::new("no/such/case.toml"));

@@ -1,4 +1,5 @@
-"""Two run stores have the same records but for their times: check_stores.py ONE OTHER."""
+"""Two run stores have the same records but for their times, and for the checksums that cover those:
+check_stores.py ONE OTHER."""
 
 import json
 import pathlib
@@ -10,6 +11,7 @@ def records(folder):
     for file in sorted(pathlib.Path(folder).glob("??/*.json")):
         record = json.loads(file.read_text())
         assert record.pop("timings"), f"{file} has no timings"
+        assert record.pop("checksum"), f"{file} has no checksum"
         found[file.name] = json.dumps(record, sort_keys=True)
     return found
 

@@ -1,8 +1,11 @@
 //! The gate: what is the same, what got worse, and what a baseline remembers.
 
-use mtled_checks::gate::{Baseline, Clouds, Reason, compare, compare_runs, difference, update};
+use mtled_checks::gate::{
+    Baseline, Clouds, Reason, compare, compare_runs, difference, settle, update,
+};
 use mtled_checks::study::{
-    BandSource, Bound, Check, Comparison, Kind, Provenance, Report, Scale, Study, Verdict,
+    BandSource, Better, Bound, Check, Comparison, Kind, Outcome, Provenance, Report, Scale, Study,
+    Verdict,
 };
 
 /// An error that scatters over clouds, an order, a count, a sum that vanishes
@@ -268,4 +271,31 @@ fn two_runs_are_compared_beyond_round_off() {
     assert_eq!((comparison.count(Verdict::Worse), comparison.count(Verdict::Same)), (1, 5));
     let moved = compare_runs(&run(figures()), &with("study/order", 2.1));
     assert!(moved.holds(), "inside its two bounds an order is neither better nor worse");
+}
+
+#[test]
+fn a_figure_without_a_bound_passes_only_beside_a_baseline_that_holds_it() {
+    let with_new = |value| {
+        let mut checks = figures();
+        let bound = Bound::Baseline(Better::Lower);
+        checks.push(Check::new("study/new", "", Kind::Regression, value, bound, "1", ""));
+        run(checks)
+    };
+    let mut report = with_new(0.5);
+    settle(&mut report, &baseline());
+    assert_eq!(report.outcome(), Outcome::Inconclusive, "no stored figure judges it");
+    let taken_up = update(&report, Some(&baseline()), &Clouds::default(), &reason(), true).unwrap();
+    settle(&mut report, &taken_up);
+    assert_eq!(report.outcome(), Outcome::Passed);
+    let verdict =
+        |value| verdict(&compare(&with_new(value), &taken_up, true).unwrap(), "study/new");
+    assert_eq!([0.5, 0.6, 0.4].map(verdict), [Verdict::Same, Verdict::Worse, Verdict::Improved]);
+}
+
+#[test]
+fn a_theorem_does_not_become_an_earlier_figure_of_ours_without_a_word() {
+    let mut checks = figures();
+    checks[1].kind = Kind::Regression;
+    let comparison = compare(&run(checks), &baseline(), true).unwrap();
+    assert_eq!(verdict(&comparison, "study/order"), Verdict::Worse);
 }

@@ -167,6 +167,20 @@ fn from_two_cases_to_a_gate_that_names_the_figure_that_a_fault_breaks() {
     // A second start writes over nothing.
     let (code, _, err) = mtled(folder.path(), &["init"]);
     assert!(code == 2 && err.contains("suite.toml is there already"), "{err}");
+    // What a start that was killed has left out is finished, and nothing else is touched.
+    let (suite, baseline) = (at("suite.toml"), at("baseline.json"));
+    let kept = std::fs::read(&suite).unwrap();
+    let first = std::fs::read_to_string(&baseline).unwrap();
+    std::fs::remove_file(&baseline).unwrap();
+    std::fs::remove_file(at(".github/workflows/accuracy.yml")).unwrap();
+    replace(&at("egg.toml"), "\ngradients = \"plain\"", "");
+    let (code, out, err) = mtled(folder.path(), &["init"]);
+    assert!(code == 0 && out.starts_with("written: baseline.json"), "{out}\n{err}");
+    assert!(at(".github/workflows/accuracy.yml").is_file());
+    assert_eq!(std::fs::read(&suite).unwrap(), kept);
+    let checks = |text: &str| text[text.find("\"checks\"").unwrap()..].to_string();
+    assert_eq!(checks(&std::fs::read_to_string(&baseline).unwrap()), checks(&first));
+    replace(&at("egg.toml"), "spacing = 0.012", "spacing = 0.012\ngradients = \"plain\"");
     // On purpose: a baseline with the reason for it. Its bounds may be undecided now.
     let update = ["--update-baseline", "--reason", "plain gradients are enough"];
     let (code, out, err) = mtled(folder.path(), &[&gate[..], &update].concat());

@@ -118,12 +118,50 @@ fn records_of_other_versions_and_temporary_files_are_pruned() {
     let file = folder.join("runs").join(&key[..2]).join(format!("{key}.json"));
     let text = std::fs::read_to_string(&file).unwrap();
     let solver = record["solver"].as_str().unwrap();
-    std::fs::write(&file, text.replace(solver, "0.0.0+other")).unwrap();
-    std::fs::write(file.with_file_name(format!(".{key}.json.7.tmp")), "half").unwrap();
+    std::fs::write(&file, sealed(&text.replace(solver, "0.0.0+other"))).unwrap();
+    let (old, young) = (file.with_file_name(".abc.tmp"), file.with_file_name(".1-abc.tmp"));
+    std::fs::write(&old, "half").unwrap();
+    let days_ago = std::time::SystemTime::now() - Duration::from_secs(200_000);
+    std::fs::OpenOptions::new().write(true).open(&old).unwrap().set_modified(days_ago).unwrap();
+    std::fs::write(&young, "half").unwrap();
     let prune = program().current_dir(folder).args(["runs", "prune", "--store", "runs"]).output();
     let output = String::from_utf8(prune.unwrap().stdout).unwrap();
     assert!(output.contains("1 records removed, 1 temporary files"), "{output}");
     assert!(records(folder, "runs").is_empty());
+    assert!(young.exists() && !old.exists(), "somebody may be writing what is young");
+}
+
+/// The text of a record after a change, with the checksum of what it has now.
+fn sealed(text: &str) -> String {
+    use sha2::{Digest, Sha256};
+    let (_, content) = text.trim_end().split_once("\",").unwrap();
+    let digest = Sha256::digest(content.as_bytes());
+    let sum: String = digest.iter().take(16).map(|byte| format!("{byte:02x}")).collect();
+    format!("{{\"checksum\":\"{sum}\",{content}\n")
+}
+
+#[test]
+fn a_changed_digit_and_a_record_without_a_checksum_are_named_and_not_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (text, file) = store_of_one(folder, "runs");
+    let again = ["study", "consistency", "cube_compression", "--quiet", "--dilation", "1.8"];
+    let again = [&again[..], &["--cells-per-spacing", "1.26", "--store", "runs"]].concat();
+    assert_eq!(run(folder, &again).0, 0);
+    let at = text.find("\"figures\"").unwrap();
+    let digit = at + text[at..].find(|c: char| c.is_ascii_digit()).unwrap();
+    let other = if text[digit..].starts_with('1') { "2" } else { "1" };
+    let mut changed = text.clone();
+    changed.replace_range(digit..digit + 1, other);
+    std::fs::write(&file, &changed).unwrap();
+    let (code, _, err) = run(folder, &again);
+    assert!(code == 2 && err.contains("checksum") && err.contains("prune --corrupt"), "{err}");
+    let (_, content) = text.split_once("\",").unwrap();
+    std::fs::write(&file, format!("{{{content}")).unwrap();
+    let (code, _, err) = run(folder, &again);
+    assert!(code == 2 && err.contains("has no checksum"), "{err}");
+    let (code, out, _) = run(folder, &["runs", "prune", "--store", "runs"]);
+    assert!(code == 0 && out.contains("1 records removed") && !file.exists(), "{out}");
 }
 
 /// A store with one record, the text of the record and its file.

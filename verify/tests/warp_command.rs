@@ -7,7 +7,7 @@ mod image;
 use assert_cmd::Command;
 use image::{Kind, around, nifti};
 use mtled::algebra::tensor::Vector3;
-use mtled_verify::files::{LengthUnit, stl};
+use mtled_verify::files::{LengthUnit, surface};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -182,7 +182,7 @@ fn a_damaged_field_is_refused() {
 /// Volume that a surface file in mm along L, P and S encloses \[m³\], and its highest point \[m\].
 fn enclosed(path: &Path) -> (f64, f64) {
     assert!(std::fs::read(path).unwrap().starts_with(b"SPACE=LPS"), "{}", path.display());
-    let surface = stl::read(path, LengthUnit::Millimetre).unwrap();
+    let surface = surface::read(path, LengthUnit::Millimetre).unwrap().surface;
     let volume = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|n| surface.vertices[n as usize]);
         a.cross(&b).dot(&c) / 6.0

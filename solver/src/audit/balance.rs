@@ -88,7 +88,8 @@ impl Run<'_> {
         let balance = Row::numbers(Kind::Energy, "", start, done, ENERGY * largest);
         let mut rows = vec![balance];
         if model.constraints.hold_still(0.0, state.time) {
-            let done = work.constraint;
+            // Without what obstacles keep of the nodes that touch them, and with what they have taken.
+            let done = now.constraint_work - now.contact_loss;
             rows.push(Row::numbers(Kind::ContactWork, "", 0.0, done, WORK * largest));
         }
         rows

@@ -3,6 +3,7 @@
 
 use super::{Kind, Row, Run};
 use crate::algebra::tensor::{Vector3, vector_at};
+use crate::discretisation::Warning;
 use crate::discretisation::neighbours::Neighbours;
 use crate::error::Error;
 use crate::problem::{Obstacle, ObstacleSide};
@@ -10,6 +11,8 @@ use crate::problem::{Obstacle, ObstacleSide};
 /// Depth between nodes over the spacing \[–\]: nodes on the surface of a ball of one spacing let
 /// the chord between them enter by an eighth, and those in the folds of a brain by a quarter.
 const DEPTH: f64 = 0.25;
+/// The same where an obstacle lies inside of the body as a whole, where it exerts no force.
+const SWALLOWED: f64 = 0.05;
 /// Places that are looked at for each obstacle.
 const SAMPLES: usize = 512;
 /// Parts of a facet along each side.
@@ -21,7 +24,7 @@ const INCOMPRESSIBLE: f64 = 20.0;
 const VOLUME: f64 = 0.1;
 
 impl Run<'_> {
-    /// The deepest place of the boundary in each obstacle.
+    /// The deepest place of the boundary in each obstacle, or how deep the obstacle is in the body.
     pub(super) fn depths(&self) -> Result<Vec<Row>, Error> {
         let obstacles = &self.model.contact.obstacles;
         if obstacles.is_empty() {
@@ -42,7 +45,20 @@ impl Run<'_> {
         };
         let facets = self.sampled.facets.iter();
         let now: Vec<Vector3> = facets.map(|facet| moved(&self.at(facet.centre()))).collect();
-        obstacles.iter().map(|obstacle| self.depth(obstacle, &now)).collect()
+        let swallowed = self.model.contact.unresolved(self.discretisation, u);
+        let row = |obstacle: &Obstacle| {
+            let inside = swallowed.iter().find_map(|warning| match warning {
+                Warning::ObstacleInBody { name, position } if *name == obstacle.name => {
+                    Some(-self.body.signed_distance(position))
+                }
+                _ => None,
+            });
+            let row = |depth| {
+                Row::numbers(Kind::Depth, &obstacle.name, 0.0, depth, SWALLOWED * self.spacing)
+            };
+            inside.map_or_else(|| self.depth(obstacle, &now), |depth| Ok(row(depth)))
+        };
+        obstacles.iter().map(row).collect()
     }
 
     fn depth(&self, obstacle: &Obstacle, now: &[Vector3]) -> Result<Row, Error> {

@@ -16,12 +16,13 @@ impl Run<'_> {
     /// Volume and centre of every region, and the mass at the nodes.
     pub(super) fn masses(&self) -> Vec<Row> {
         let regions = &self.problem.regions;
-        let quadrature = &self.discretisation.quadrature;
         let mut sums = vec![(0.0, Vector3::zeros()); regions.len()];
-        let weighted = quadrature.weights.iter().zip(&quadrature.positions);
-        for ((weight, X), &region) in weighted.zip(&quadrature.regions) {
-            sums[region as usize].0 += weight;
-            sums[region as usize].1 += *weight * X;
+        for (quadrature, _) in self.discretisation.volumes() {
+            let weighted = quadrature.weights.iter().zip(&quadrature.positions);
+            for ((weight, X), &region) in weighted.zip(&quadrature.regions) {
+                sums[region as usize].0 += weight;
+                sums[region as usize].1 += *weight * X;
+            }
         }
         let whole = self.sampled.volume();
         let mut rows = Vec::new();

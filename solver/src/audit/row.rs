@@ -116,9 +116,9 @@ kinds! {
     /// Work of conditions and obstacles that do not move.
     ContactWork: "contact_work", "work of what does not move", "J",
         "obstacles and held nodes that do not move have taken or given energy: use a finer cloud where the body touches";
-    /// Depth of the boundary in an obstacle, between nodes too.
+    /// Depth of the boundary in an obstacle, between nodes too, or of an obstacle in the body.
     Depth: "obstacle_depth", "depth in", "m",
-        "the body has entered the obstacle between its nodes: use a finer cloud, at most as coarse as the obstacle is large";
+        "the body has entered the obstacle between its nodes, or closed around it: use a finer cloud, at most as coarse as the obstacle is large";
     /// Part of the edges of the body along which there are no nodes.
     Edges: "edges", "edges without nodes", "1",
         "edges of the body run between nodes and are rounded off: use a finer cloud";

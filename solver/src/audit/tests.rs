@@ -202,7 +202,7 @@ fn arms_that_are_glued_across_a_gap_are_doubted_and_wide_gaps_are_not() {
 
 #[test]
 fn an_obstacle_that_has_been_entered_between_nodes_is_doubted() {
-    let ball = |radius: f64| {
+    let ball = |radius: f64, fall: f64| {
         let mut problem = block();
         problem.loads = Default::default();
         problem.conditions = vec![held("all", 0.0, 0.04)];
@@ -215,13 +215,16 @@ fn an_obstacle_that_has_been_entered_between_nodes_is_doubted() {
             friction: Friction::Frictionless,
         }];
         let mut simulation = Simulation::new(&problem).unwrap();
-        simulation.state.displacement.iter_mut().skip(2).step_by(3).for_each(|u| *u = -0.025);
+        simulation.state.displacement.iter_mut().skip(2).step_by(3).for_each(|u| *u = -fall);
         row(&simulation, Kind::Depth)
     };
-    assert!(!ball(0.003).exceeds(), "{:?}", ball(0.003));
-    let deep = ball(0.0094);
+    assert!(!ball(0.003, 0.025).exceeds(), "{:?}", ball(0.003, 0.025));
+    let deep = ball(0.0094, 0.025);
     let Figure::Number(depth) = deep.done else { panic!() };
     assert!(deep.exceeds() && (depth - 0.0044).abs() < 5e-4, "{deep:?}");
+    let swallowed = ball(0.003, 0.04);
+    let Figure::Number(depth) = swallowed.done else { panic!() };
+    assert!(swallowed.exceeds() && (depth - 0.01).abs() < 0.003, "{swallowed:?}");
 }
 
 #[test]
@@ -236,6 +239,41 @@ fn energy_that_vanishes_and_work_of_what_does_not_move_are_doubted() {
     assert!(doubts(&simulation).contains(&Kind::Energy));
     let mut simulation = run(&problem);
     simulation.state.work.constraint -= 0.2 * simulation.state.work.external;
+    assert!(doubts(&simulation).contains(&Kind::ContactWork));
+}
+
+/// A block above an obstacle that it falls on, stopped while it touches.
+fn falling_on_a_plane() -> Problem {
+    let mut problem = block();
+    problem.loads = Default::default();
+    problem.conditions.clear();
+    problem.loads.initial_velocities = vec![(Selector::All, Vector3::new(0.0, 0.0, -0.5))];
+    problem.obstacles = vec![Obstacle {
+        name: "floor".into(),
+        shape: Shape::HalfSpace { point: Vector3::new(0.0, 0.0, -0.001), normal: Vector3::z() },
+        offset: 0.0,
+        side: ObstacleSide::Outside,
+        friction: Friction::Frictionless,
+    }];
+    problem.motion = Motion::dynamic(0.02, 0.0);
+    problem
+}
+
+#[test]
+fn what_nodes_that_touch_keep_is_not_the_work_of_something_that_does_not_move() {
+    let simulation = run(&falling_on_a_plane());
+    let energies = simulation.energies();
+    assert!(!simulation.state.contact_forces().is_empty(), "it must touch at the end");
+    let largest = energies.kinetic.max(energies.strain);
+    assert!(simulation.state.work.constraint.abs() > 0.02 * largest, "{energies:?}");
+    assert!(!doubts(&simulation).contains(&Kind::ContactWork), "{energies:?}");
+}
+
+#[test]
+fn what_obstacles_take_is_doubted() {
+    let mut simulation = run(&falling_on_a_plane());
+    let energies = simulation.energies();
+    simulation.state.contact.impacts.lost += 0.1 * (energies.kinetic + energies.strain);
     assert!(doubts(&simulation).contains(&Kind::ContactWork));
 }
 

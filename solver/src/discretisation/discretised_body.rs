@@ -6,6 +6,7 @@ use crate::discretisation::bridged_gap::BridgedGap;
 use crate::discretisation::consistency::{
     Correction, Layout, Targets, connected_bodies, make_consistent,
 };
+use crate::discretisation::held_volume::{HeldShape, HeldVolume, selects};
 use crate::discretisation::mls::{Approximation, PoorSupport, Stiffness};
 use crate::discretisation::neighbours::Neighbours;
 use crate::discretisation::nodes::{HeldParts, NodeCloud, node_cloud, place_nodes_on_borders};
@@ -13,12 +14,11 @@ use crate::discretisation::patch_pieces::part_at_gaps;
 use crate::discretisation::patches::sort_into_patches;
 use crate::discretisation::quadrature::{Moves, NodalSpacing, Quadrature, quadrature_following};
 use crate::discretisation::rows::{Evaluated, Requested, Rows};
-use crate::discretisation::surface_rule::SurfaceRule;
-use crate::error::Error;
+use crate::discretisation::surface_rule::{SurfaceRule, is_held};
+use crate::error::{Error, condition_text};
 use crate::geometry::{CoveredPanel, Extent, GeometryError, Panel, Shape};
 use crate::problem::{
-    BackgroundGrid, Cloud, Dimension, EssentialCondition, Gradients, Loads, Problem, Recipe,
-    Region, refuse,
+    BackgroundGrid, Cloud, Dimension, Gradients, Loads, Problem, Recipe, Region, refuse,
 };
 use rayon::prelude::*;
 
@@ -48,6 +48,8 @@ pub struct Discretisation {
     pub worst_condition: f64,
     /// Where nodes on both sides of a gap act as one; `None` where none do.
     pub bridged: Option<BridgedGap>,
+    /// What is held as a volume; `None` where nothing is.
+    pub held: Option<HeldVolume>,
 }
 
 /// Edge of the boundary panels over the smallest nodal spacing \[–\].
@@ -61,39 +63,50 @@ impl Discretisation {
         problem.body.validate_body()?;
         let dimension = problem.dimension;
         // In a plane the body is its cross-section, whose ends are no boundary.
-        let body = problem.body.section(&dimension)?;
+        let whole = problem.body.section(&dimension)?;
+        let held = HeldShape::of(problem, &whole);
+        let body = held.as_ref().map_or(&whole, |held| &held.rest);
         let recipe = &problem.recipe;
-        let mut cloud = node_cloud(&problem.body, &recipe.cloud, &dimension)?;
-        let panels = panels_of(problem, &body, &mut cloud)?;
+        let mut cloud = match &held {
+            Some(held) => node_cloud(&held.rest, &recipe.cloud, &dimension)?,
+            None => node_cloud(&problem.body, &recipe.cloud, &dimension)?,
+        };
+        let panels = panels_of(problem, body, &mut cloud)?;
         let stiffness = Stiffness::at_sharp_borders(problem);
         if let (Some(stiffness), false) = (&stiffness, matches!(recipe.cloud, Cloud::Given { .. }))
         {
-            place_nodes_on_borders(&mut cloud, &body, stiffness);
+            place_nodes_on_borders(&mut cloud, body, stiffness);
         }
         flatten(&mut cloud.positions, &dimension);
+        let deforming = cloud.positions.len();
+        let on_boundary =
+            held.as_ref().map(|held| held.add_nodes(problem, &whole, &mut cloud)).transpose()?;
         let prescribed = prescribed_nodes(problem, &cloud);
-        let approximation =
-            approximation_of(&cloud, recipe, stiffness, &dimension).within(&body, recipe.dilation);
+        let mut approximation = approximation_of(&cloud, recipe, stiffness, &dimension);
+        if let Some(HeldShape { held, .. }) = &held {
+            approximation = approximation.with_held(held, recipe.dilation);
+        }
+        let approximation = approximation.within(body, recipe.dilation);
         let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
         let regions = &problem.regions;
         let mut quadrature = if recipe.gradients.is_second_order() {
             let held = held_nodes(&prescribed, &cloud);
             let stays = |X: &Vector3| is_within(&held, X, approximation.mean_radius(X));
             let moves = Moves { stays: &stays };
-            quadrature_of(problem, regions, (&body, &recipe.grid), &approximation, Some(&moves))?
+            quadrature_of(problem, regions, (body, &recipe.grid), &approximation, Some(&moves))?
         } else {
-            quadrature_of(problem, regions, (&body, &recipe.grid), &approximation, None)?
+            quadrature_of(problem, regions, (body, &recipe.grid), &approximation, None)?
         };
         flatten(&mut quadrature.positions, &dimension);
         let spacing: Vec<f64> = quadrature.positions.par_iter().map(spacing_at).collect();
         let (thickness, components) = (dimension.thickness(), dimension.components());
         let patches = sort_into_patches(&mut quadrature, &spacing, thickness, components);
         let beside_gap = |X: &Vector3| approximation.is_beside_gap(X);
-        let patches = part_at_gaps(&mut quadrature, &patches, &body, &spacing_at, &beside_gap);
+        let patches = part_at_gaps(&mut quadrature, &patches, body, &spacing_at, &beside_gap);
         let Evaluated { rows: supports, enlarged, worst_condition, bridging } =
             evaluate_all(&approximation, &quadrature.positions)?;
         let bridged = BridgedGap::widest(&approximation, &quadrature, &supports, &bridging);
-        check_coverage(&cloud, &supports)?;
+        check_coverage(&cloud.positions[..deforming], &supports)?;
         let surface = surface_of(problem, panels, &cloud, &approximation, &prescribed)?;
         let mut discretisation = Discretisation {
             dimension,
@@ -107,19 +120,31 @@ impl Discretisation {
             enlarged,
             worst_condition,
             bridged,
+            held: None,
         };
         if let Some(tolerance) = recipe.gradients.tolerance() {
-            discretisation.make_consistent(tolerance, recipe.gradients.is_second_order())?;
+            let second_order = recipe.gradients.is_second_order();
+            discretisation.make_consistent(deforming, tolerance, second_order)?;
+        }
+        if let Some((held, on_boundary)) = held.zip(on_boundary) {
+            discretisation.cloud.on_boundary = on_boundary;
+            discretisation.hold(problem, held, deforming)?;
         }
         Ok(discretisation)
     }
 
     /// Scales the quadrature weights of each connected body to the volume that its
-    /// boundary encloses (method book, eq. 9.7) and makes Grad φ consistent.
-    fn make_consistent(&mut self, tolerance: f64, second_order: bool) -> Result<(), Error> {
-        let (nodes, d) = (self.cloud.positions.len(), self.dimension.components());
-        let bodies = connected_bodies(&self.supports, nodes);
-        let (areas, volumes) = self.close(&bodies);
+    /// boundary encloses (method book, eq. 9.7) and makes Grad φ consistent. Of all nodes, the
+    /// first `nodes` are in supports.
+    fn make_consistent(
+        &mut self,
+        nodes: usize,
+        tolerance: f64,
+        second_order: bool,
+    ) -> Result<(), Error> {
+        let d = self.dimension.components();
+        let bodies = connected_bodies(&[&self.supports], nodes);
+        let (areas, volumes) = close(&self.surface, &bodies, d);
         for (body, volume) in volumes.into_iter().enumerate().filter(|(_, volume)| *volume > 0.0) {
             self.scale_weights(volume, |node| bodies[node as usize] as usize == body);
         }
@@ -130,8 +155,8 @@ impl Discretisation {
         };
         self.surface.store_areas(areas);
         let layout = Layout {
-            nodes: &self.cloud.positions,
-            spacing: &self.cloud.spacing,
+            nodes: &self.cloud.positions[..nodes],
+            spacing: &self.cloud.spacing[..nodes],
             points: &self.quadrature.positions,
             weights: &self.quadrature.weights,
             components: d,
@@ -141,29 +166,11 @@ impl Discretisation {
         Ok(())
     }
 
-    /// Vector areas A_i N_i of the points of the boundary, closed \[m²\].
-    pub(crate) fn closed_areas(&self) -> Vec<Vector3> {
-        let bodies = connected_bodies(&self.supports, self.cloud.positions.len());
-        self.close(&bodies).0
-    }
-
-    /// As [`Self::closed_areas`], with the volume \[m³\] that the boundary of each connected
-    /// body encloses.
-    fn close(&self, bodies: &[u32]) -> (Vec<Vector3>, Vec<f64>) {
-        let d = self.dimension.components();
-        let mut areas = self.surface.strengths(bodies.len(), |_, panel| panel.mean_normal());
-        let count = bodies.iter().max().map_or(0, |&last| last + 1);
-        let mut close = |body: u32| {
-            self.surface.close(&mut areas, d, |node: u32| bodies[node as usize] == body)
-        };
-        let volumes = (0..count).map(&mut close).collect();
-        (areas, volumes)
-    }
-
     /// ∮ (x − X_a) ⊗ φ_a N dA/h_a of each node \[m²\] from the vector areas of the points of
     /// the boundary and their `total` ∮ φ_a N dA at each node.
     fn boundary_moments(&self, areas: &[Vector3], total: &[Vector3]) -> Vec<Matrix3> {
-        let NodeCloud { positions, spacing, .. } = &self.cloud;
+        let NodeCloud { spacing, .. } = &self.cloud;
+        let positions = &self.cloud.positions[..total.len()];
         let mut moments = vec![Matrix3::zeros(); positions.len()];
         for k in 0..self.dimension.components() {
             let weighted: Vec<Vector3> =
@@ -200,9 +207,16 @@ impl Discretisation {
         covered: &[CoveredPanel],
     ) -> Result<SurfaceRule, Error> {
         let panels = covered.iter().map(|covered| covered.panel).collect();
+        self.surface_rule(problem, (panels, self.surface.panel_size))
+    }
+
+    pub(super) fn surface_rule(
+        &self,
+        problem: &Problem,
+        panels: (Vec<Panel>, f64),
+    ) -> Result<SurfaceRule, Error> {
         let prescribed = prescribed_nodes(problem, &self.cloud);
-        let panels = Some((panels, self.surface.panel_size));
-        surface_of(problem, panels, &self.cloud, &self.approximation, &prescribed)
+        surface_of(problem, Some(panels), &self.cloud, &self.approximation, &prescribed)
     }
 
     /// Mean number of support nodes per quadrature point.
@@ -211,10 +225,26 @@ impl Discretisation {
     }
 }
 
+/// Vector areas of the points of a boundary, closed \[m²\], with the volume \[m³\] that the
+/// boundary of each connected body encloses.
+pub(super) fn close(
+    surface: &SurfaceRule,
+    bodies: &[u32],
+    components: usize,
+) -> (Vec<Vector3>, Vec<f64>) {
+    let mut areas = surface.strengths(bodies.len(), |_, panel| panel.mean_normal());
+    let count = bodies.iter().max().map_or(0, |&last| last + 1);
+    let mut close = |body: u32| {
+        surface.close(&mut areas, components, |node: u32| bodies[node as usize] == body)
+    };
+    let volumes = (0..count).map(&mut close).collect();
+    (areas, volumes)
+}
+
 /// Puts places of a plane exactly there: to the correction of gradients a distance of
 /// round-off across it would be a third direction, along which next to nothing changes
 /// gradients as it likes.
-fn flatten(positions: &mut [Vector3], dimension: &Dimension) {
+pub(super) fn flatten(positions: &mut [Vector3], dimension: &Dimension) {
     if let Dimension::PlaneStrain { z, .. } = dimension {
         positions.iter_mut().for_each(|X| X.z = *z);
     }
@@ -240,8 +270,8 @@ fn approximation_of(
 /// The held nodes of the boundary. Quadrature points in their supports are not moved:
 /// stresses are singular at the edges of what is held, and what holds for smooth ones makes
 /// bonded blocks 2 % stiffer.
-fn held_nodes(prescribed: &[bool], cloud: &NodeCloud) -> Option<Neighbours> {
-    let own = |&node: &usize| cloud.on_boundary[node] && prescribed[node];
+fn held_nodes(prescribed: &[[bool; 3]], cloud: &NodeCloud) -> Option<Neighbours> {
+    let own = |&node: &usize| cloud.on_boundary[node] && is_held(&prescribed[node]);
     let nodes = (0..cloud.positions.len()).filter(own);
     let positions: Vec<Vector3> = nodes.map(|node| cloud.positions[node]).collect();
     (!positions.is_empty()).then(|| Neighbours::new(&positions, 2.0 * cloud.smallest_spacing()))
@@ -287,14 +317,12 @@ fn panels_of(
         return Ok(None);
     }
     let size = PANEL * cloud.smallest_spacing();
-    let panels = problem.body.boundary_panels(size, &problem.dimension)?;
+    let panels = body.boundary_panels(size, &problem.dimension)?;
     // A solid without itself has no boundary.
     if panels.is_empty() {
         return Err(GeometryError::NoVolume.into());
     }
-    if held {
-        HeldParts::new(body, &problem.conditions, &panels, size).place_nodes(cloud);
-    }
+    held.then(|| HeldParts::new(body, &problem.conditions, &panels, size).place_nodes(cloud));
     Ok(Some((panels, size)))
 }
 
@@ -309,7 +337,7 @@ fn surface_of(
     panels: Option<(Vec<Panel>, f64)>,
     cloud: &NodeCloud,
     approximation: &Approximation,
-    prescribed: &[bool],
+    prescribed: &[[bool; 3]],
 ) -> Result<SurfaceRule, Error> {
     let Some(panels) = panels.filter(|_| needs_surface(problem)) else {
         return Ok(SurfaceRule::default());
@@ -318,21 +346,23 @@ fn surface_of(
         .map_err(|(position, poor)| outside(position, &poor))
 }
 
-/// Which nodes some condition selects.
-fn prescribed_nodes(problem: &Problem, cloud: &NodeCloud) -> Vec<bool> {
-    let selected = |node| problem.conditions.iter().any(|c| selects(c, cloud, node));
+/// Which components of which nodes some condition prescribes; in a plane the third one is as well.
+fn prescribed_nodes(problem: &Problem, cloud: &NodeCloud) -> Vec<[bool; 3]> {
+    let components = problem.dimension.components();
+    let selected = |node| {
+        let mut held = [false; 3];
+        for condition in problem.conditions.iter().filter(|c| selects(c, cloud, node)) {
+            (0..components).for_each(|k| held[k] |= condition.prescribes(k));
+            held[components..].fill(true);
+        }
+        held
+    };
     (0..cloud.positions.len()).map(selected).collect()
 }
 
-/// Whether a condition selects a node.
-pub fn selects(condition: &EssentialCondition, cloud: &NodeCloud, node: usize) -> bool {
-    (condition.extent == Extent::Volume || cloud.on_boundary[node])
-        && condition.part.contains(&cloud.positions[node])
-}
-
 fn outside(position: Vector3, poor: &PoorSupport) -> Error {
-    let (size, condition) = (poor.support_size, poor.condition);
-    let reason = format!("{size} nodes in its support, condition {condition:.1e}");
+    let (size, condition) = (poor.support_size, condition_text(poor.condition));
+    let reason = format!("{size} nodes in its support, whose moment matrix has {condition}");
     Error::ProbeOutside { position, reason }
 }
 
@@ -360,11 +390,11 @@ fn evaluate_all(approximation: &Approximation, positions: &[Vector3]) -> Result<
 /// Every node must be covered. Horton 2007, section 2.3, also requires that each
 /// boundary node shares a support with an interior one; a body one spacing thick has
 /// no interior nodes and is sound where its moment matrices are.
-fn check_coverage(cloud: &NodeCloud, supports: &Rows) -> Result<(), Error> {
-    let mut covered = vec![false; cloud.positions.len()];
+fn check_coverage(positions: &[Vector3], supports: &Rows) -> Result<(), Error> {
+    let mut covered = vec![false; positions.len()];
     supports.nodes.iter().for_each(|&node| covered[node as usize] = true);
     match covered.iter().position(|covered| !covered) {
-        Some(node) => Err(Error::UncoveredNode { node, position: cloud.positions[node] }),
+        Some(node) => Err(Error::UncoveredNode { node, position: positions[node] }),
         None => Ok(()),
     }
 }

@@ -120,6 +120,20 @@ pub enum Warning {
         /// Where it is now in the undeformed body.
         position: Vector3,
     },
+    /// A linear law is strained by more than it is made for.
+    LargeLinearStrain {
+        /// Where it is strained most.
+        position: Vector3,
+        /// The largest principal value of ½(∇u + ∇uᵀ) there \[–\].
+        strain: f64,
+    },
+    /// A compressible part has lost most of its volume.
+    LostVolume {
+        /// Where it has lost most.
+        position: Vector3,
+        /// J = det F there \[–\].
+        jacobian: f64,
+    },
 }
 
 impl std::fmt::Display for Warning {
@@ -193,6 +207,18 @@ impl std::fmt::Display for Warning {
                  exerts no force: it is narrow for the spacing of the nodes; use a finer cloud, or a larger obstacle",
                 show(position)
             ),
+            Warning::LargeLinearStrain { position, strain } => write!(
+                f,
+                "the linear law is strained by {strain:.3} at ({}), and holds for strains and rotations of a few hundredths: \
+                 its stress there is that of no material; use another law, such as neo_hookean_log_j, or a smaller load",
+                show(position)
+            ),
+            Warning::LostVolume { position, jacobian } => write!(
+                f,
+                "J fell to {jacobian:.3} at ({}), in a part that may change its volume: hardly any tissue has been measured at \
+                 such a compression, and J near 0 shows that the part is too soft for what is around it",
+                show(position)
+            ),
         }
     }
 }
@@ -200,7 +226,7 @@ impl std::fmt::Display for Warning {
 impl Discretisation {
     /// Doubts that a user should know of before trusting a result.
     pub fn warnings(&self) -> Vec<Warning> {
-        let (points, nodes) = (self.supports.len(), self.cloud.positions.len());
+        let (points, nodes) = (self.supports.len(), self.deforming_nodes());
         let mut warnings = Vec::new();
         if points < nodes {
             warnings.push(Warning::FewerPointsThanNodes { points, nodes });
@@ -236,7 +262,12 @@ mod tests {
     fn a_correction_that_stops_above_its_tolerance_is_reported() {
         let discretisation = |residual: f64| Discretisation {
             dimension: Dimension::Three,
-            cloud: NodeCloud { positions: vec![], spacing: vec![], on_boundary: vec![] },
+            cloud: NodeCloud {
+                positions: vec![],
+                spacing: vec![],
+                on_boundary: vec![],
+                on_border: vec![],
+            },
             approximation: Approximation::new(
                 vec![Vector3::zeros()],
                 vec![1.0],
@@ -259,6 +290,7 @@ mod tests {
             enlarged: 0,
             worst_condition: 1.0,
             bridged: None,
+            held: None,
         };
         assert!(discretisation(9e-4).warnings().is_empty());
         let warnings = discretisation(2e-3).warnings();

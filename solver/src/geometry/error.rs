@@ -1,5 +1,8 @@
 //! Reasons to refuse a shape or a node cloud.
 
+use crate::algebra::tensor::Vector3;
+use std::fmt::{Display, Formatter};
+
 /// Why a shape or a node cloud is refused; lengths in \[m\].
 #[allow(missing_docs, reason = "the messages name every field")]
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -56,24 +59,20 @@ pub enum GeometryError {
     SurfaceEmpty { vertices: usize, triangles: usize },
     #[error("triangle {triangle} uses vertex {vertex} of {count}")]
     SurfaceVertex { triangle: usize, vertex: u32, count: usize },
+    #[error("the surface is not closed: {0}")]
+    SurfaceOpen(#[from] Box<EdgeFaults>),
     #[error(
-        "the surface is not closed: the edge from {from:?} m to {to:?} m has {forward} triangles on one side and {backward} on the other; {more} more edges are alike"
+        "the triangles enclose nothing: they lie on each other, as where each is there once in either direction; export the surface with one side only"
     )]
-    SurfaceOpen { from: [f64; 3], to: [f64; 3], forward: usize, backward: usize, more: usize },
-    #[error("the surface encloses {volume} m³: its triangles face inwards; turn them outwards")]
-    SurfaceInsideOut { volume: f64 },
+    SurfaceFlat,
     #[error(
-        "shells {first} and {second} of the {count} that the surface consists of cross or coincide near {at:?} m, so that what lies in both would count twice: make one of them where the surface comes from, or give each a file of its own and use their `union`"
+        "shells {first} and {second} of the {count} that the surface consists of cross near {at:?} m: give each a surface of its own and make a union of these"
     )]
     ShellsCross { first: usize, second: usize, count: usize, at: [f64; 3] },
     #[error(
-        "shell {inner} of the {count} that the surface consists of, at {at:?} m, lies inside shell {outer} and faces outwards like it, so that its volume would count twice: remove it or, if it is a cavity, turn its triangles inwards"
+        "shells {first} and {second} of the {count} that the surface consists of cross near {at:?} m, and one of them faces inwards: if it is to be taken away, give each a file of its own and use their `difference`; else turn its triangles outwards"
     )]
-    ShellInside { inner: usize, outer: usize, count: usize, at: [f64; 3] },
-    #[error(
-        "shell {shell} of the {count} that the surface consists of, at {at:?} m, faces inwards, and there is no body around it that it could be a cavity of: turn its triangles outwards"
-    )]
-    ShellInwards { shell: usize, count: usize, at: [f64; 3] },
+    CavityCrosses { first: usize, second: usize, count: usize, at: [f64; 3] },
 
     #[error("the body encloses no volume: its shapes leave nothing of each other")]
     NoVolume,
@@ -106,5 +105,57 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), GeometryErr
         Ok(())
     } else {
         Err(GeometryError::NotPositive { name, value })
+    }
+}
+
+/// Edges at which triangles are not closed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EdgeFaults {
+    /// With one triangle alone.
+    pub open: EdgeFault,
+    /// With two that run along the edge in the same direction.
+    pub turned: EdgeFault,
+    /// With three or more, not as many in one direction as in the other.
+    pub crowded: EdgeFault,
+}
+
+/// Edges with the same fault.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EdgeFault {
+    /// Number of edges.
+    pub count: usize,
+    /// Ends of the first \[m\].
+    pub first: Option<[[f64; 3]; 2]>,
+}
+
+impl EdgeFault {
+    /// Counts an edge with its ends \[m\].
+    pub(crate) fn add(&mut self, ends: [Vector3; 2]) {
+        self.count += 1;
+        self.first.get_or_insert(ends.map(Into::into));
+    }
+}
+
+impl std::error::Error for EdgeFaults {}
+
+impl Display for EdgeFaults {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        let kinds = [
+            (self.open, "have one triangle only, as at a hole", "close it"),
+            (self.turned, "lie between triangles of which one faces inwards", "orient them alike"),
+            (self.crowded, "have three or more triangles that do not pair", "remove inner ones"),
+        ];
+        let mut start = "";
+        for (fault, what, cure) in kinds {
+            if let Some([from, to]) = fault.first {
+                let count = fault.count;
+                write!(
+                    f,
+                    "{start}{count} edges {what}, the first from {from:?} m to {to:?} m ({cure})"
+                )?;
+                start = "; ";
+            }
+        }
+        Ok(())
     }
 }

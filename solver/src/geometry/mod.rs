@@ -22,12 +22,13 @@ mod voxels;
 
 pub use boundary::Panel;
 pub(crate) use boundary::{
-    BoundaryPoints, TargetSpacing, boundary_points, lattice_cells, merges_voxels, project,
+    BoundaryPoints, TargetSpacing, boundary_points, lattice_cells, merges_voxels, nearest_count,
+    project,
 };
 pub use dimension::Dimension;
 pub use distance_function::DistanceFunction;
-pub use error::GeometryError;
 pub(crate) use error::positive;
+pub use error::{EdgeFault, EdgeFaults, GeometryError};
 pub use field::{Field, Scattered, TooFewData};
 pub(crate) use line_of_sight::Place;
 pub(crate) use part::CoveredPanel;
@@ -36,7 +37,7 @@ pub use polygon::Outline;
 pub use selection::{Extent, Selector};
 pub use shape::Shape;
 pub(crate) use size_limit::{CELLS, DISTANCE_SAMPLES, NODES, POINTS};
-pub use surface::Surface;
+pub use surface::{Mended, Surface, SurfaceNote};
 pub(crate) use voxels::{KnownDistance, ScalarGrid, indices};
 pub use voxels::{LabelField, LabelMap};
 

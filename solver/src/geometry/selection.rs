@@ -13,7 +13,8 @@ use std::sync::Arc;
 pub enum Extent {
     /// Nodes on the boundary of the body only.
     Surface,
-    /// Every node of the body, boundary nodes included.
+    /// Every node of the body, boundary nodes included. What is held as a volume for ever, in all
+    /// components, does not deform.
     Volume,
 }
 
@@ -31,6 +32,16 @@ const BEYOND: f64 = 1e300;
 /// Places next to X on both sides along every axis.
 fn around(X: &Vector3, distance: f64) -> impl Iterator<Item = Vector3> {
     (0..3).flat_map(move |axis| [-distance, distance].map(|way| X + Vector3::ith(axis, way)))
+}
+
+/// Whether any is true, where that is known.
+fn whether_any(mut all: impl Iterator<Item = Option<bool>>) -> Option<bool> {
+    all.try_fold(Some(false), |any, one| match (any, one) {
+        (_, Some(true)) => Err(Some(true)),
+        (Some(false), Some(false)) => Ok(Some(false)),
+        _ => Ok(None),
+    })
+    .unwrap_or_else(|any| any)
 }
 
 /// A predicate on reference positions.
@@ -93,6 +104,37 @@ impl Selector {
             Selector::Union(parts) => parts.iter().any(Selector::is_everything),
             Selector::Intersection(parts) => parts.iter().all(Selector::is_everything),
             _ => false,
+        }
+    }
+
+    /// The same with fewer words: what is not in what is not in a part is in it.
+    pub(crate) fn in_few_words(&self) -> &Selector {
+        match self {
+            Selector::Not(part) => match &**part {
+                Selector::Not(part) => part.in_few_words(),
+                _ => self,
+            },
+            _ => self,
+        }
+    }
+
+    /// The solid whose part in a body it selects; `None` where it is none, such as a plane or
+    /// directions, where voxels decide, and where it reaches beyond its shape by more than `thin` \[m\].
+    pub(crate) fn solid(&self, body: &Shape, thin: f64) -> Option<Shape> {
+        let all = |parts: &[Selector]| {
+            let parts = parts.iter().filter(|part| !part.is_everything());
+            parts.map(|part| part.solid(body, thin)).collect::<Option<Vec<Shape>>>()
+        };
+        match self.in_few_words() {
+            part if part.is_everything() => Some(body.clone()),
+            Selector::Inside { shape, tolerance } if *tolerance <= thin => Some(shape.clone()),
+            Selector::Union(parts) => Some(Shape::Union(all(parts)?)),
+            Selector::Intersection(parts) => Some(Shape::Intersection(all(parts)?)),
+            Selector::Not(part) => {
+                let hole = Box::new(part.solid(body, thin)?);
+                Some(Shape::Difference(Box::new(body.clone()), hole))
+            }
+            _ => None,
         }
     }
 
@@ -159,6 +201,32 @@ impl Selector {
         }
     }
 
+    /// Whether all places within `reach` \[m\] of X are selected, or none of them; `None` where
+    /// that is not known.
+    pub(crate) fn holds_around(&self, X: &Vector3, reach: f64) -> Option<bool> {
+        let of = |part: &Selector| part.holds_around(X, reach);
+        let beyond = |level: f64, reach: f64| (level.abs() > reach).then_some(level < 0.0);
+        match self {
+            Selector::All => Some(true),
+            Selector::Plane { point, normal, tolerance } => {
+                beyond((X - point).dot(normal).abs() - tolerance, reach)
+            }
+            Selector::Inside { shape, tolerance } => {
+                beyond(shape.signed_distance(X) - tolerance, shape.steepness() * reach)
+            }
+            Selector::Label { map, label } => match map.range_around(X, reach) {
+                (low, high) if low == high => Some(low == *label),
+                (low, high) => (*label < low || *label > high).then_some(false),
+            },
+            Selector::Facing { .. } => None,
+            Selector::Union(parts) => whether_any(parts.iter().map(of)),
+            Selector::Intersection(parts) => {
+                whether_any(parts.iter().map(|part| of(part).map(|holds| !holds))).map(|any| !any)
+            }
+            Selector::Not(part) => of(part).map(|holds| !holds),
+        }
+    }
+
     fn selects(&self, X: &Vector3, normal: Option<&Vector3>) -> bool {
         match self {
             Selector::All => true,
@@ -216,5 +284,47 @@ mod tests {
                 assert_eq!(cap.contains(&panel.centre), angle < 0.8, "{angle}");
             }
         }
+    }
+
+    #[test]
+    fn what_is_known_about_a_place_holds_at_every_place_about_it() {
+        let size = [9, 8, 7];
+        let label = |n: usize| [0, 4, 4, 2, 7][n / 29 % 5];
+        let labels = (0..size.iter().product()).map(label).collect();
+        let directions = nalgebra::Matrix3::identity() * 0.1;
+        let map = Arc::new(LabelMap::new(size, Vector3::zeros(), directions, labels).unwrap());
+        let label = |label| Selector::Label { map: map.clone(), label };
+        let ball = Shape::Sphere { centre: Vector3::repeat(0.4), radius: 0.3 };
+        let ball = Selector::Inside { shape: ball, tolerance: 0.01 };
+        let (point, normal) = (Vector3::repeat(0.3), Vector3::new(0.6, 0.0, 0.8));
+        let plane = Selector::Plane { point, normal, tolerance: 0.05 };
+        let not = |part: &Selector| Selector::Not(Box::new(part.clone()));
+        let simple = [label(4), label(2), label(5), ball, plane, Selector::All];
+        let mut all = simple.to_vec();
+        for one in &simple {
+            all.extend([not(one)]);
+            for other in &simple {
+                all.push(Selector::Union(vec![one.clone(), not(other)]));
+                all.push(Selector::Intersection(vec![one.clone(), other.clone()]));
+            }
+        }
+        let mut known = 0;
+        for (selector, n) in all.iter().flat_map(|one| (0..150).map(move |n| (one, n as f64))) {
+            let random = |seed: f64| ((n + 0.7) * seed).fract();
+            let X = Vector3::new(random(0.137), random(0.291), random(0.511));
+            let reach = 0.15 * random(0.619);
+            let Some(holds) = selector.holds_around(&X, reach) else { continue };
+            known += 1;
+            for m in 0..27 {
+                let way = Vector3::new((m % 3) as f64, (m / 3 % 3) as f64, (m / 9) as f64);
+                let way = (way - Vector3::repeat(1.0)).try_normalize(0.0).unwrap_or_default();
+                assert_eq!(
+                    selector.contains(&(X + reach * way)),
+                    holds,
+                    "{selector:?} {X} {reach}"
+                );
+            }
+        }
+        assert!(known > 3000, "{known}");
     }
 }

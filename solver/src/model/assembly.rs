@@ -1,7 +1,6 @@
 //! The model of a body: its parts and how they are made.
 
 use crate::algebra::tensor::{Vector3, bounding_box};
-use crate::discretisation::consistency::connected_bodies;
 use crate::discretisation::{Discretisation, Rows, Warning};
 use crate::error::Error;
 use crate::model::blocks::{Block, Sums, blocks};
@@ -12,7 +11,7 @@ use crate::model::mass::{fictitious_mass, lumped_mass};
 use crate::model::pressure::{PressureLoad, pressure_loads};
 use crate::model::stiffness::stiffness_diagonal;
 use crate::model::time_step_bound::per_point_bound;
-use crate::problem::{Dimension, Motion, Problem, Region, RelaxationMass};
+use crate::problem::{Dimension, MassRule, Motion, Problem, Region, RelaxationMass};
 
 /// A discretised body with its materials, conditions and loads.
 #[derive(Debug, Clone)]
@@ -63,18 +62,20 @@ impl Model {
     /// Binds materials, conditions and loads to a discretisation.
     pub fn new(problem: &Problem, discretisation: &Discretisation) -> Result<Model, Error> {
         let quadrature = &discretisation.quadrature;
-        let density: Vec<f64> = quadrature
-            .regions
-            .iter()
-            .map(|&region| problem.regions[region as usize].material.density)
-            .collect();
-        let lumped_mass = lumped_mass(discretisation, &density, problem.recipe.mass)?;
-        let components = problem.dimension.components();
-        let blocks = blocks(problem, discretisation)?;
-        let stiffness = stiffness_diagonal(&blocks, components, lumped_mass.len(), f64::INFINITY);
+        let density: Vec<f64> =
+            problem.regions.iter().map(|region| region.material.density).collect();
         let relaxation = problem.motion.relaxation();
         let lumped = matches!(problem.motion, Motion::Dynamic { .. })
             || relaxation.is_some_and(|settings| settings.mass == RelaxationMass::Lumped);
+        let of_rule = |rule| lumped_mass(discretisation, &density, rule);
+        let lumped_mass = match of_rule(problem.recipe.mass) {
+            // Only the sum counts where nothing moves by this mass.
+            Err(Error::MasslessNode { .. }) if !lumped => of_rule(MassRule::EvenSplit)?,
+            mass => mass?,
+        };
+        let components = problem.dimension.components();
+        let blocks = blocks(problem, discretisation)?;
+        let stiffness = stiffness_diagonal(&blocks, components, lumped_mass.len(), f64::INFINITY);
         let inertia = match lumped {
             true => lumped_mass.clone(),
             false => fictitious_mass(&stiffness, &lumped_mass),
@@ -87,7 +88,7 @@ impl Model {
         let (cloud, end) = (&discretisation.cloud, problem.motion.end());
         warnings.extend(check_obstacles(&contact, cloud, &constraints, components, end)?);
         contact.refuse_swallowed(&cloud.positions, &problem.body)?;
-        let bodies = connected_bodies(&discretisation.supports, cloud.positions.len());
+        let bodies = discretisation.connected_bodies();
         check_rank(discretisation, &constraints, &bodies)?;
         let per_point_bound = per_point_bound(problem, discretisation, &lumped_mass);
         let (lower, upper) = bounding_box(&discretisation.cloud.positions);
@@ -136,10 +137,12 @@ impl Model {
 /// Regions without a point, which have no effect. A last region of everything may be empty:
 /// it is there for what the others leave.
 fn empty_regions(problem: &Problem, discretisation: &Discretisation) -> Vec<Warning> {
-    let owners = &discretisation.quadrature.regions;
+    let is_owner = |region: u16| {
+        discretisation.volumes().any(|(quadrature, _)| quadrature.regions.contains(&region))
+    };
     let empty = |(index, region): (usize, &Region)| {
         let rest = index + 1 == problem.regions.len() && region.part.is_everything();
-        let unused = !rest && !owners.contains(&(index as u16));
+        let unused = !rest && !is_owner(index as u16);
         unused.then(|| Warning::EmptyRegion { name: region.name.clone() })
     };
     problem.regions.iter().enumerate().filter_map(empty).collect()

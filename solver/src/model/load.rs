@@ -8,6 +8,7 @@ use crate::geometry::Selector;
 use crate::model::essential::Constraints;
 use crate::model::loaded_part::LoadedPart;
 use crate::model::loaded_volume::LoadedVolume;
+use crate::model::mass::masses;
 use crate::problem::{Amplitude, Loads, Motion, Problem, Traction};
 
 /// A nodal force pattern with the amplitude that scales it.
@@ -30,9 +31,6 @@ pub fn load_patterns(
     let d = problem.dimension.components();
     let size = d * discretisation.cloud.positions.len();
     let mut patterns = Vec::new();
-    let quadrature = &discretisation.quadrature;
-    let masses: Vec<f64> =
-        density.iter().zip(&quadrature.weights).map(|(density, weight)| density * weight).collect();
     for (index, body_force) in problem.loads.body_forces.iter().enumerate() {
         let mut force = vec![0.0; size];
         let mut add_points = |positions: &[Vector3], masses: &[f64], rows: &Rows| {
@@ -46,7 +44,10 @@ pub fn load_patterns(
             !positions.is_empty()
         };
         let acts = if body_force.part.is_everything() {
-            add_points(&quadrature.positions, &masses, &discretisation.supports)
+            discretisation.volumes().fold(false, |acts, (quadrature, rows)| {
+                let masses: Vec<f64> = masses(quadrature, density).collect();
+                acts | add_points(&quadrature.positions, &masses, rows)
+            })
         } else {
             let part = LoadedVolume::new(problem, discretisation, (index, &body_force.part))?;
             add_points(&part.positions, &part.masses, &part.rows)

@@ -28,7 +28,7 @@ impl<'a> LoadedPart<'a> {
         discretisation: &'a Discretisation,
         part: &Selector,
     ) -> Result<Option<LoadedPart<'a>>, Error> {
-        let base = &discretisation.surface;
+        let base = discretisation.loaded_surface();
         let covered = problem.body.covered_panels(part, base.panel_size, &problem.dimension)?;
         if covered.is_empty() {
             return Ok(None);

@@ -1,31 +1,29 @@
 //! Lumped and fictitious masses.
 
 use crate::discretisation::Discretisation;
+use crate::discretisation::quadrature::Quadrature;
 use crate::error::Error;
 use crate::problem::MassRule;
 
-/// Lumped mass per node \[kg\] from the density of each quadrature point
-/// \[kg/m³\]: the even split m_a = Σ_q ρ w_q/n_q (Horton 2007, section 2.5) or the
+/// Lumped mass per node \[kg\] from the density of each region \[kg/m³\]: the even split m_a = Σ_q ρ w_q/n_q (Horton 2007, section 2.5) or the
 /// row sum m_a = Σ_q ρ w_q φ_a (method book, eqs. 13.1 and 13.2). The total is the
-/// body's mass either way.
+/// body's mass either way, that of what is held as a volume included.
 pub fn lumped_mass(
     discretisation: &Discretisation,
     density: &[f64],
     rule: MassRule,
 ) -> Result<Vec<f64>, Error> {
-    let supports = &discretisation.supports;
     let mut mass = vec![0.0; discretisation.cloud.positions.len()];
-    for (point, (density, weight)) in
-        density.iter().zip(&discretisation.quadrature.weights).enumerate()
-    {
-        let point_mass = density * weight;
-        let row = supports.row(point);
-        let even_part = point_mass / row.len() as f64;
-        for entry in row {
-            mass[supports.nodes[entry] as usize] += match rule {
-                MassRule::EvenSplit => even_part,
-                MassRule::RowSum => point_mass * supports.phi[entry],
-            };
+    for (quadrature, rows) in discretisation.volumes() {
+        for (point, point_mass) in masses(quadrature, density).enumerate() {
+            let row = rows.row(point);
+            let even_part = point_mass / row.len() as f64;
+            for entry in row {
+                mass[rows.nodes[entry] as usize] += match rule {
+                    MassRule::EvenSplit => even_part,
+                    MassRule::RowSum => point_mass * rows.phi[entry],
+                };
+            }
         }
     }
     let mean = mass.iter().sum::<f64>() / mass.len() as f64;
@@ -37,6 +35,12 @@ pub fn lumped_mass(
         }),
         None => Ok(mass),
     }
+}
+
+/// Masses of points \[kg\] from the density of each region \[kg/m³\].
+pub fn masses(quadrature: &Quadrature, density: &[f64]) -> impl Iterator<Item = f64> {
+    let points = quadrature.regions.iter().zip(&quadrature.weights);
+    points.map(|(&region, weight)| density[region as usize] * weight)
 }
 
 /// Masses \[node\] \[kg\] in proportion to `stiffness` \[node\] \[N/m\], with the

@@ -41,7 +41,7 @@ impl PressureLoad {
             return Err(Error::EmptyPressure { name: pressure.name.clone() });
         };
         let nodes = discretisation.cloud.positions.len();
-        let all = discretisation.surface.strengths(nodes, |_, panel| panel.mean_normal());
+        let all = discretisation.loaded_surface().strengths(nodes, |_, panel| panel.mean_normal());
         let closed = discretisation.closed_areas();
         let part = loaded.strengths(nodes, Panel::mean_normal);
         // What closes the whole boundary belongs to the part as far as the point does.

@@ -76,11 +76,22 @@ fn expand<S: Simd>(simd: S, patch: &[BasisBlock], moments: [f64; 4], values: &mu
     }
 }
 
-/// Replaces values at the points of a patch by their projection; the values at the
-/// padding must be finite.
+/// Replaces values at the points of a patch by their projection, whose moments it returns; the
+/// values at the padding must be finite.
 #[inline(always)]
-fn project<S: Simd>(simd: S, patch: &[BasisBlock], values: &mut [SimdBlock]) {
-    expand(simd, patch, moments(simd, patch, values), values);
+fn project<S: Simd>(simd: S, patch: &[BasisBlock], values: &mut [SimdBlock]) -> [f64; 4] {
+    let moments = moments(simd, patch, values);
+    expand(simd, patch, moments, values);
+    moments
+}
+
+/// What the displacements make of a patch.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PatchMoments {
+    /// Σ_q w_q B_b(X_q) U'(θ_q) \[Pa·m^(3/2)\].
+    pub pressure: [f64; 4],
+    /// Σ_q w_q B_b(X_q) J_q \[m^(3/2)\], or its slope along a displacement.
+    pub volume: [f64; 4],
 }
 
 /// Moments of the pressure of a patch that has one of its own, beside that which J gives.
@@ -88,6 +99,8 @@ fn project<S: Simd>(simd: S, patch: &[BasisBlock], values: &mut [SimdBlock]) {
 pub struct OwnPressure {
     /// Σ_q w_q B_b(X_q) p_q \[Pa·m^(3/2)\].
     pub moments: [f64; 4],
+    /// Their slope along a displacement, beside that which J gives.
+    pub slopes: [f64; 4],
     /// Part c of the difference between the two that acts beside it \[–\].
     pub part: f64,
 }
@@ -96,10 +109,20 @@ impl OwnPressure {
     /// p + c (P − p) with the moments P that J gives (method book, eq. 21.13).
     #[inline(always)]
     pub fn approached(&self, found: [f64; 4]) -> [f64; 4] {
-        let OwnPressure { moments, part } = self;
+        let OwnPressure { moments, part, .. } = self;
         [0, 1, 2, 3].map(
             #[inline(always)]
             |b| moments[b] + part * (found[b] - moments[b]),
+        )
+    }
+
+    /// The slope of [`OwnPressure::approached`] with that of P.
+    #[inline(always)]
+    fn slope(&self, found: [f64; 4]) -> [f64; 4] {
+        let OwnPressure { slopes, part, .. } = self;
+        [0, 1, 2, 3].map(
+            #[inline(always)]
+            |b| slopes[b] + part * found[b],
         )
     }
 }
@@ -111,7 +134,7 @@ impl Projection {
     }
 
     /// s (p_q − U'(J_q)) \[Pa\] from J at the points of a patch, which may have a pressure of
-    /// its own. Returns the moments of the pressure that J gives.
+    /// its own.
     #[inline(always)]
     pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
         &self,
@@ -121,14 +144,14 @@ impl Projection {
         own: Option<OwnPressure>,
         jacobians: &Parts<SimdBlock>,
         pressures: &mut Parts<SimdBlock>,
-    ) -> [f64; 4] {
+    ) -> PatchMoments {
         let count = groups.len();
         let patch = &self.blocks[groups];
         pressures.values[..count].copy_from_slice(&jacobians.values[..count]);
-        project(simd, patch, &mut pressures.values[..count]);
+        let mut volume = project(simd, patch, &mut pressures.values[..count]);
         if R::SLOPES {
             pressures.slopes[..count].copy_from_slice(&jacobians.slopes[..count]);
-            project(simd, patch, &mut pressures.slopes[..count]);
+            volume = project(simd, patch, &mut pressures.slopes[..count]);
         }
         for entry in 0..count {
             for piece in 0..R::PER_BLOCK {
@@ -148,7 +171,7 @@ impl Projection {
         expand(simd, patch, acting, &mut pressures.values[..count]);
         if R::SLOPES {
             let found = moments(simd, patch, &pressures.slopes[..count]);
-            let acting = own.map_or(found, |own| found.map(|slope| own.part * slope));
+            let acting = own.map_or(found, |own| own.slope(found));
             expand(simd, patch, acting, &mut pressures.slopes[..count]);
         }
         for entry in 0..count {
@@ -158,7 +181,7 @@ impl Projection {
                 ((pressure - pointwise) * self.fraction).store(pressures, entry, piece);
             }
         }
-        found
+        PatchMoments { pressure: found, volume }
     }
 
     /// Σ_q w_q s (U(θ_q) − U(J_q)) \[J\] of a patch.

@@ -33,7 +33,9 @@ impl ModuliAtRest {
 
 /// Diagonal of K at rest, the mean over the components of a node \[node\]
 /// \[N/m\] (method book, eq. 13.3). A point adds w |Grad φ|² (μ + (λ − s U''(1) +
-/// μ)/d), a patch s U''(1) Σ_b |Σ_q w B_b Grad φ|²/d, its modulus no more than `most` μ.
+/// μ)/d), a patch s U''(1) Σ_b |Σ_q w B_b Grad φ|²/d, its modulus no more than `most` μ. Nodes
+/// without points lie within held volumes: they get the mean of the others, which matters to no
+/// result.
 pub fn stiffness_diagonal(
     blocks: &[Block],
     components: usize,
@@ -49,6 +51,11 @@ pub fn stiffness_diagonal(
         for (&node, value) in block.nodes.iter().zip(local) {
             diagonal[node as usize] += value;
         }
+    }
+    let filled = diagonal.iter().filter(|value| **value != 0.0).count();
+    if (1..nodes).contains(&filled) {
+        let mean = diagonal.iter().sum::<f64>() / filled as f64;
+        diagonal.iter_mut().filter(|value| **value == 0.0).for_each(|value| *value = mean);
     }
     diagonal
 }

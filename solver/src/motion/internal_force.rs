@@ -6,6 +6,7 @@ use crate::algebra::lanes::{Lanes, Number, with_vectors};
 use crate::algebra::real::Dual;
 use crate::algebra::tensor::Matrix3;
 use crate::model::blocks::{LocalVectors, with_gradients};
+use crate::model::projection::PatchMoments;
 use crate::model::{Block, Chunk, Model};
 pub use crate::motion::kernel::OwnPressures;
 use crate::motion::kernel::{self, BlockPressures, Local, Scratch, block_force};
@@ -47,10 +48,14 @@ impl Workspace {
         Workspace { level: Level::new(), blocks: model.blocks.iter().map(Scratch::new).collect() }
     }
 
-    /// Moments of the pressures that J gave in the last evaluation \[block\]\[patch\]
-    /// \[Pa·m^(3/2)\].
-    pub fn pressures_of_j(&self) -> impl Iterator<Item = &[[f64; 4]]> {
-        self.blocks.iter().map(|scratch| &scratch.pressures_of_j[..])
+    /// What the last displacements made of the patches, block by block.
+    pub fn patches(&self) -> impl Iterator<Item = &PatchMoments> {
+        self.blocks.iter().flat_map(|scratch| &scratch.patches)
+    }
+
+    /// Moments of the pressures that J gave in the last evaluation \[Pa·m^(3/2)\].
+    pub fn pressures_of_j(&self) -> Vec<f64> {
+        self.patches().flat_map(|patch| patch.pressure).collect()
     }
 }
 

@@ -14,5 +14,6 @@ pub(crate) mod stability;
 pub mod state;
 pub mod step;
 pub mod step_control;
+pub mod strain;
 pub mod summary;
 pub mod tangent;

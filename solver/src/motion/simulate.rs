@@ -48,7 +48,8 @@ pub fn simulate(
 }
 
 /// Newton's method, and relaxation from the start where that fails or is not the way: a body
-/// that sticks to obstacles depends on how the load comes.
+/// that sticks to obstacles depends on how the load comes. Where relaxation diverges, the state
+/// is the equilibrium at the part of the load that Newton's method came to.
 fn solve_static(
     model: &Model,
     settings: &Relaxation,
@@ -61,16 +62,30 @@ fn solve_static(
     let start = state.copy();
     match equilibrate(model, &settings.newton(), state, observer) {
         Err(Error::NoEquilibrium { reached, iterations, evaluations, .. }) => {
-            *state = start;
+            let equilibrium = std::mem::replace(state, start);
             observer.restart();
-            let mut summary = relax(model, settings, state, observer)
-                .map_err(|then| Error::NeitherSolver { reached, then: Box::new(then) })?;
+            let relaxed = relax(model, settings, state, observer);
+            if matches!(relaxed, Err(Error::Diverged { .. } | Error::Inverted { .. })) {
+                *state = equilibrium;
+                show_again(model, state, reached, observer);
+            }
+            let mut summary =
+                relaxed.map_err(|then| Error::NeitherSolver { reached, then: Box::new(then) })?;
             summary.force_evaluations += evaluations;
             summary.newton_failed = Some(NewtonFailure { reached, iterations });
             Ok(summary)
         }
         solved => solved,
     }
+}
+
+/// Shows an observer the equilibrium at a part of the load, in place of what diverged.
+fn show_again(model: &Model, state: &State, reached: f64, observer: &mut dyn Observer) {
+    let mut buffers = Buffers::new(model, false);
+    let smallest =
+        internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
+    observer.restart();
+    notify(model, state, smallest.jacobian, reached, observer);
 }
 
 /// Resultant of the loads over the sum of their sizes above which it is not round-off \[–\].

@@ -84,6 +84,11 @@ impl StepController {
     ) -> Result<StepController, Error> {
         let (u, t) = (&state.displacement, state.time);
         let critical = critical_time_step(model, u, t, None, &mut buffers.workspace);
+        // A displacement that is no number ends the run where it is, as diverged.
+        let can_step = critical.time_step > 0.0 || !u.iter().all(|u| u.is_finite());
+        if !can_step {
+            return Err(Error::NoTimeStep { critical: critical.time_step });
+        }
         if let Some(fixed) = control.fixed
             && fixed > critical.time_step
         {

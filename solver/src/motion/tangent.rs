@@ -12,7 +12,7 @@ pub(crate) struct Tangent<'a> {
     model: &'a Model,
     u: &'a [f64],
     t: f64,
-    own: Option<&'a OwnPressures>,
+    own: Option<OwnPressures>,
     workspace: &'a mut Workspace,
     /// √m per component of node \[√kg\].
     pub root_mass: Vec<f64>,
@@ -35,7 +35,7 @@ impl<'a> Tangent<'a> {
     }
 
     /// Of patches with pressures of their own.
-    pub fn with_pressures(self, own: Option<&'a OwnPressures>) -> Tangent<'a> {
+    pub fn with_pressures(self, own: Option<OwnPressures>) -> Tangent<'a> {
         Tangent { own, ..self }
     }
 
@@ -75,9 +75,25 @@ impl<'a> Tangent<'a> {
         product
     }
 
+    /// As [`Tangent::stiffness_times`] with the slopes of the patches' own pressures, and the
+    /// slopes of their volumes along the direction, four a patch.
+    pub fn saddle_times(&mut self, direction: &[f64], slopes: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        if let Some(own) = &mut self.own {
+            own.set_slopes(slopes);
+        }
+        let product = self.stiffness_times(direction);
+        (product, self.workspace.patches().flat_map(|patch| patch.volume).collect())
+    }
+
     fn internal_stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.u.len()];
-        linearised_stiffness_times(self.model, direction, self.own, self.workspace, &mut product);
+        linearised_stiffness_times(
+            self.model,
+            direction,
+            self.own.as_ref(),
+            self.workspace,
+            &mut product,
+        );
         product
     }
 }

@@ -18,6 +18,20 @@ pub fn printable_lines(text: &str) -> String {
     shown(text, &['\n', '\t'])
 }
 
+/// Text for a terminal or a log whose lines no runner of workflows takes for commands: those
+/// begin with `::`, older ones contain `##[`.
+pub fn without_commands(text: &str) -> String {
+    let line = |line: &str| {
+        let start = line.len() - line.trim_start().len();
+        let line = match line[start..].strip_prefix("::") {
+            Some(rest) => format!("{}\\u{{3a}}:{rest}", &line[..start]),
+            None => line.to_string(),
+        };
+        line.replace("##[", "##\\u{5b}")
+    };
+    text.split_inclusive('\n').map(line).collect()
+}
+
 fn shown(text: &str, kept: &[char]) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -76,6 +90,13 @@ mod tests {
         assert_eq!(printable("\u{202e}txt.exe"), "\\u{202e}txt.exe");
         assert_eq!(printable_lines("a\n\tb\r\u{7}"), "a\n\tb\\r\\u{7}");
         assert_eq!(printable("10⁻³ ≤ “Größe”"), "10⁻³ ≤ “Größe”");
+    }
+
+    #[test]
+    fn no_line_is_a_command_of_a_workflow() {
+        let shown = without_commands("::error::x\n a\n\t::warning ::y\nb ##[group]::z\n");
+        assert_eq!(shown, "\\u{3a}:error::x\n a\n\t\\u{3a}:warning ::y\nb ##\\u{5b}group]::z\n");
+        assert_eq!(without_commands("a::b\n"), "a::b\n");
     }
 
     #[test]

@@ -43,7 +43,9 @@
 #![deny(missing_docs)]
 
 pub mod escape;
+pub mod input;
 pub mod measure;
+pub mod temporary;
 
 pub mod study;
 

@@ -15,6 +15,7 @@ const MAY_BE_NULL: &[&str] = &[
     "largest_time_step_s",
     "critical_time_step_s",
     "per_point_bound_s",
+    "smallest_patch_jacobian",
     "estimated_memory_bytes",
     "peak_memory_bytes",
     "energies",

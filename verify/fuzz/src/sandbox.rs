@@ -79,7 +79,7 @@ impl Sandbox {
             }
         }
         let place = target.place(&input.extension);
-        write(&work.join(&place), &self.with_paths(&input.bytes))?;
+        write(&work.join(&place), &target.sealed(self.with_paths(&input.bytes)))?;
         Ok(place)
     }
 

@@ -8,7 +8,7 @@ pub enum Target {
     Case,
     /// Label maps (NRRD, NIfTI) as the body of a case.
     LabelMap,
-    /// Surfaces (STL) as the body of a case.
+    /// Surfaces (STL, OBJ, PLY, VTK) as the body of a case.
     Surface,
     /// Node files (CSV, NPY, VTU, VTK) of a case.
     Points,
@@ -172,7 +172,7 @@ impl Target {
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
             Target::LabelMap => &["nrrd", "nhdr", "nii", "nii.gz"],
-            Target::Surface => &["stl"],
+            Target::Surface => &["stl", "obj", "ply", "vtp", "vtk"],
             Target::Points => &["csv", "npy", "vtu", "vtk"],
             Target::Store
             | Target::Report
@@ -191,6 +191,17 @@ impl Target {
             Target::Store => RECORD.into(),
             Target::Reference => "data/cook_membrane.json".into(),
             _ => format!("input.{extension}"),
+        }
+    }
+
+    /// The input as it is written: a record with the checksum of what it has become, without
+    /// which every other one would be refused at its first line.
+    pub fn sealed(self, bytes: Vec<u8>) -> Vec<u8> {
+        match std::str::from_utf8(&bytes) {
+            Ok(text) if self == Target::Store && text.starts_with('{') => {
+                mtled_verify::explore::store::sealed(text).into_bytes()
+            }
+            _ => bytes,
         }
     }
 }

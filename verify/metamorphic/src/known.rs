@@ -2,7 +2,7 @@
 //! is not counted as a finding again, and is shown in every report.
 
 use crate::relation::Relation;
-use crate::scene::{Form, Scene};
+use crate::scene::{Form, Part, Scene};
 
 /// A fault that is known.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +38,16 @@ pub const KNOWN: &[Known] = &[
                  which is right",
     },
     Known {
+        relation: "cloud_of_a_moved_body",
+        scenes: "scenes with a part held on the surface that may end within a face",
+        has: |scene| {
+            scene.holds.iter().any(|hold| !hold.inner && may_end_within_a_face(&hold.part))
+        },
+        figure: "0.01",
+        reason: "some nodes along the edge of what is held (`discretisation::nodes::held_edges`) hang on the \
+                 last digit; on which choice there is not found yet",
+    },
+    Known {
         relation: "prescribed_values_are_taken",
         scenes: "motions with an obstacle beside what is held",
         has: |scene| !scene.is_static() && scene.obstacle.is_some(),
@@ -46,6 +56,14 @@ pub const KNOWN: &[Known] = &[
                  is a mean over its neighbours; the audit doubts the run where it matters",
     },
 ];
+
+fn may_end_within_a_face(part: &Part) -> bool {
+    match part {
+        Part::End { depth, .. } => *depth > 1e-3,
+        Part::Spot { .. } => true,
+        Part::Whole => false,
+    }
+}
 
 /// The known fault by which a relation fails for a scene.
 pub fn known(relation: &Relation, scene: &Scene) -> Option<&'static Known> {

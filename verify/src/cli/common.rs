@@ -1,6 +1,6 @@
 //! What every command needs: options, exit codes, results.
 
-use super::streams::{print_data, print_json, print_text};
+use super::streams::{print_coloured, print_json, print_text};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use std::ffi::OsString;
@@ -87,7 +87,7 @@ impl Common {
         match self.format {
             Format::Json => print_json(&json()?)?,
             _ if self.quiet => {}
-            _ => print_data(&text())?,
+            _ => print_coloured(&text())?,
         }
         Ok(())
     }

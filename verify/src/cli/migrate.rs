@@ -7,6 +7,7 @@ use crate::scene::migrated;
 use anyhow::{Context, Result};
 use clap::Args;
 use mtled_checks::escape::printable;
+use mtled_checks::input::read_text;
 use mtled_checks::report::write_atomically;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -44,7 +45,7 @@ pub fn migrate(arguments: &MigrateArgs, common: &Common) -> Result<u8> {
 /// The changes of a file, which is written unless it is only checked.
 fn migrate_file(file: &Path, check: bool) -> Result<Vec<String>> {
     let name = file.display();
-    let text = std::fs::read_to_string(file).with_context(|| format!("{name}: cannot be read"))?;
+    let text = read_text(file).with_context(|| format!("{name}: cannot be read"))?;
     let (new, changes) = migrated(&text).with_context(|| name.to_string())?;
     if !changes.is_empty() && !check {
         write_atomically(file, new.as_bytes())?;

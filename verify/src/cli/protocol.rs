@@ -12,6 +12,7 @@ use crate::scene::{one_error, read_case};
 use crate::speed::solvers::{Spacing, absolute, solve_job};
 use anyhow::{Context, Result, bail};
 use clap::{Subcommand, ValueEnum};
+use mtled_checks::input::read_text;
 use mtled_checks::report::{ensure_writable, write_atomically};
 use std::path::{Path, PathBuf};
 
@@ -83,7 +84,7 @@ pub fn protocol(command: &ProtocolCommand, common: &Common) -> Result<u8> {
 
 fn read_job(path: &Path) -> Result<Job> {
     let shown = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {shown}"))?;
+    let text = read_text(path).with_context(|| format!("cannot read {shown}"))?;
     parse_job(&text).with_context(|| format!("{shown} is not a job"))
 }
 

@@ -1,12 +1,17 @@
 //! The two output streams: data on standard output, messages on standard error. Nothing
 //! else in the program writes to them.
 
-use mtled_checks::escape::{printable_json, printable_lines};
+use mtled_checks::escape::{printable_json, printable_lines, without_commands};
 use std::io::{self, ErrorKind, Write};
 
-/// Writes a line to standard error. Where nobody can read it, the program goes on: what it
-/// computes is worth more than its messages.
-pub fn to_standard_error(line: &str) {
+/// Writes a message to standard error, no line of which is a command of a workflow. Where nobody
+/// can read it, the program goes on: what it computes is worth more than its messages.
+pub fn to_standard_error(message: &str) {
+    command_to_standard_error(&without_commands(message));
+}
+
+/// Writes a command of a workflow to standard error.
+pub fn command_to_standard_error(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
@@ -17,9 +22,14 @@ pub fn print_data(data: &str) -> io::Result<()> {
     or_reader_has_ended(out.write_all(data.as_bytes()).and_then(|()| out.flush()))
 }
 
-/// Writes text for people, which may contain texts from files.
+/// Writes text for people, which may contain texts from files: none is a command of a workflow.
 pub fn print_text(text: &str) -> io::Result<()> {
-    print_data(&printable_lines(text))
+    print_data(&without_commands(&printable_lines(text)))
+}
+
+/// As [`print_text`], for text with colours, in which texts from files have been escaped.
+pub fn print_coloured(text: &str) -> io::Result<()> {
+    print_data(&without_commands(text))
 }
 
 /// Writes a JSON document.

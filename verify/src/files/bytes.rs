@@ -79,6 +79,36 @@ fn readable<T: Default>(read: std::io::Result<T>) -> Result<T, Mistake> {
     }
 }
 
+/// Removes the first line, and gives it without the spaces around it.
+pub fn take_line(rest: &mut &[u8]) -> Option<String> {
+    if rest.is_empty() {
+        return None;
+    }
+    let end = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len() - 1);
+    let line = String::from_utf8_lossy(&rest[..=end]).trim().to_string();
+    *rest = &rest[end + 1..];
+    Some(line)
+}
+
+/// Removes the first numbers.
+pub fn take_numbers(
+    rest: &mut &[u8],
+    count: usize,
+    scalar: Scalar,
+    order: ByteOrder,
+) -> Result<Vec<f64>, Mistake> {
+    let (expected, found) = (count.saturating_mul(scalar.size()), rest.len());
+    let split = rest.split_at_checked(expected);
+    let (data, behind) = split.ok_or(Mistake::Truncated { expected, found })?;
+    *rest = behind;
+    Ok(numbers(data, scalar, order).collect())
+}
+
+/// Numbers that lie one behind the other.
+pub fn numbers(bytes: &[u8], scalar: Scalar, order: ByteOrder) -> impl Iterator<Item = f64> {
+    bytes.chunks_exact(scalar.size()).map(move |word| scalar.read(word, order))
+}
+
 /// The first characters of a file for a message.
 pub fn start_of(bytes: &[u8]) -> String {
     let start = &bytes[..bytes.len().min(12)];

@@ -1,7 +1,7 @@
 //! NRRD label maps, versions 1 to 5, attached or detached; raw, gzip or text
 //! (format: teem.sourceforge.net/nrrd/format.html).
 
-use super::bytes::{LONGEST, at_most, open, skip, voxel_bytes};
+use super::bytes::{self, LONGEST, at_most, open, skip, voxel_bytes};
 use super::error::{FileError, Mistake};
 use super::nrrd_header::{Encoding, Header};
 use super::unit::LengthUnit;
@@ -54,11 +54,17 @@ pub(super) fn open_image(path: &Path) -> Result<Opened, FileError> {
     Ok(Opened { header, text: start, data, length, files })
 }
 
-/// Reads a label map into RAS metres; `unit` overrides the file's.
-pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileError> {
+/// Reads a label map into RAS metres; `unit` overrides the file's. Of a file of several layers
+/// `layer` says which is read, from 0.
+pub fn read(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    layer: Option<usize>,
+) -> Result<LabelMapFile, FileError> {
     let Opened { header, data, length, files, .. } = open_image(path)?;
     let mut notes = header.doubts();
-    let map = map(&header, data, length, unit, &mut notes).map_err(|mistake| mistake.of(path))?;
+    let map = map(&header, data, length, (unit, layer), &mut notes)
+        .map_err(|mistake| mistake.of(path))?;
     Ok(LabelMapFile { map, files, notes })
 }
 
@@ -67,10 +73,11 @@ fn map(
     header: &Header,
     data: impl BufRead,
     length: u64,
-    unit: Option<LengthUnit>,
+    (unit, layer): (Option<LengthUnit>, Option<usize>),
     notes: &mut Vec<String>,
 ) -> Result<LabelMap, Mistake> {
-    let (size, scalar, encoding) = (header.sizes()?, header.scalar()?, header.encoding()?);
+    let ((layers, size), scalar) = (header.layers_and_sizes()?, header.scalar()?);
+    let (encoding, layer) = (header.encoding()?, which(header, layer, layers)?);
     let order = header.byte_order(scalar, encoding)?;
     let (origin, directions) = header.frame()?;
     let metres = match unit {
@@ -78,16 +85,39 @@ fn map(
         None => header.unit()?.in_metres(),
     };
     let count = voxels::voxel_count(&size)?;
+    let all = voxels::voxel_count(&[count, layers])?;
     let labels = match encoding {
         Encoding::Text => {
-            Labels::of(text_labels(behind_lines(header, data)?.0, count)?, scalar, order)?
+            let numbers = text_labels(behind_lines(header, data)?.0, all)?;
+            Labels::of(numbers.into_iter().skip(layer).step_by(layers), scalar, order)?
         }
         Encoding::Raw | Encoding::Gzip => {
-            let bytes = stored(header, data, length, count * scalar.size())?;
-            voxels::labels(&bytes, scalar, order, (1.0, 0.0))?
+            let bytes = stored(header, data, length, all * scalar.size())?;
+            let numbers = bytes::numbers(&bytes, scalar, order).skip(layer).step_by(layers);
+            Labels::of(numbers, scalar, order)?
         }
     };
     voxels::label_map(size, origin * metres, directions * metres, labels, notes)
+}
+
+/// The layer to read, of so many.
+fn which(header: &Header, layer: Option<usize>, layers: usize) -> Result<usize, Mistake> {
+    match layer {
+        None if layers == 1 => Ok(0),
+        Some(layer) if layer < layers => Ok(layer),
+        Some(layer) => Err(Mistake::NoSuchLayer { layer, layers }),
+        None => {
+            let named = |layer: usize| {
+                let segments = header.segments().into_iter().filter(|(of, ..)| *of == layer);
+                let names: Vec<String> =
+                    segments.map(|(_, label, name)| format!("{label} {name}")).collect();
+                format!("layer {layer} ({})", names.join(", "))
+            };
+            const NAMED: usize = 8;
+            let found: Vec<String> = (0..layers.min(NAMED)).map(named).collect();
+            Err(Mistake::SeveralLayers { layers, found: found.join("; ") })
+        }
+    }
 }
 
 /// The data behind the lines that are to be skipped, and how many bytes these have.

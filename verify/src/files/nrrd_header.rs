@@ -10,6 +10,8 @@ use std::collections::HashMap;
 /// Fields by name in lower case, as text.
 pub struct Header {
     fields: HashMap<String, String>,
+    /// Keys with their values, which other programs add.
+    pairs: HashMap<String, String>,
     /// Length of the header with its empty line \[byte\].
     pub length: usize,
 }
@@ -31,7 +33,7 @@ impl Header {
             let format = "an NRRD file of version 1 to 5 (NRRD0001 to NRRD0005)";
             return Err(Mistake::WrongFormat { format, start: start_of(bytes) });
         }
-        let mut header = Header { fields: HashMap::new(), length: 0 };
+        let mut header = Header { fields: HashMap::new(), pairs: HashMap::new(), length: 0 };
         for (number, line) in bytes.split_inclusive(|&b| b == b'\n').enumerate() {
             header.length += line.len();
             let line = String::from_utf8_lossy(line);
@@ -47,8 +49,14 @@ impl Header {
     }
 
     fn line(&mut self, number: usize, line: &str) -> Result<(), Mistake> {
+        if line.starts_with('#') {
+            return Ok(());
+        }
         let colon = line.find(':');
-        if line.starts_with('#') || colon.is_some_and(|at| line[at + 1..].starts_with('=')) {
+        if let Some((key, value)) =
+            colon.and_then(|at| Some((&line[..at], line[at + 1..].strip_prefix('=')?)))
+        {
+            self.pairs.insert(key.to_string(), value.to_string());
             return Ok(());
         }
         let Some((name, value)) = line.split_once(": ").or_else(|| line.split_once(':')) else {
@@ -70,15 +78,44 @@ impl Header {
     }
 
     pub fn sizes(&self) -> Result<[usize; 3], Mistake> {
+        match self.layers_and_sizes()? {
+            (1, sizes) => Ok(sizes),
+            _ => Err(Mistake::bad_field("dimension", "4", "3, one number per voxel")),
+        }
+    }
+
+    /// Numbers of a voxel, which 3D Slicer calls layers, and voxels along the three axes.
+    pub fn layers_and_sizes(&self) -> Result<(usize, [usize; 3]), Mistake> {
         let dimension = self.need("dimension", "dimension")?;
-        if dimension != "3" {
-            return Err(Mistake::bad_field("dimension", dimension, "3, one label per voxel"));
+        if dimension != "3" && !(dimension == "4" && self.starts_with_layers()) {
+            let expected = "3, one label per voxel, or 4, the first of layers as of 3D Slicer";
+            return Err(Mistake::bad_field("dimension", dimension, expected));
         }
         let text = self.need("sizes", "sizes")?;
         let sizes: Option<Vec<usize>> = text.split_whitespace().map(|n| n.parse().ok()).collect();
-        sizes
-            .and_then(|sizes| sizes.try_into().ok())
-            .ok_or_else(|| Mistake::bad_field("sizes", text, "three whole numbers"))
+        match (dimension, sizes.as_deref()) {
+            ("3", Some(&[x, y, z])) => Ok((1, [x, y, z])),
+            ("4", Some(&[layers, x, y, z])) if layers > 0 => Ok((layers, [x, y, z])),
+            ("4", _) => Err(Mistake::bad_field("sizes", text, "four whole numbers")),
+            _ => Err(Mistake::bad_field("sizes", text, "three whole numbers")),
+        }
+    }
+
+    /// Whether the first of four axes is none of space.
+    fn starts_with_layers(&self) -> bool {
+        self.get("spacedirections").is_some_and(|text| text.starts_with("none"))
+    }
+
+    /// The segments that 3D Slicer names: layer, label, name.
+    pub fn segments(&self) -> Vec<(usize, u32, String)> {
+        let of = |segment: usize, what: &str| self.pairs.get(&format!("Segment{segment}_{what}"));
+        let segment = |segment: usize| {
+            let layer = of(segment, "Layer")?.trim().parse().ok()?;
+            let label = of(segment, "LabelValue")?.trim().parse().ok()?;
+            let name = of(segment, "Name").cloned().unwrap_or_default();
+            Some((layer, label, name))
+        };
+        (0..).map_while(segment).collect()
     }
 
     pub fn scalar(&self) -> Result<Scalar, Mistake> {
@@ -181,7 +218,8 @@ impl Header {
             }
             None => Vector3::zeros(),
         };
-        let directions = match (self.get("spacedirections"), self.get("spacings")) {
+        let directions = self.get("spacedirections").map(|text| text.trim_start_matches("none"));
+        let directions = match (directions, self.get("spacings")) {
             (Some(text), _) => vectors(text)
                 .filter(|found| found.len() == 3)
                 .map(|found| Matrix3::from_columns(&found))

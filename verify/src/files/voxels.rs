@@ -82,18 +82,6 @@ pub struct Labels {
     notes: Vec<String>,
 }
 
-/// Decodes numbers as labels, value = slope × stored + intercept.
-pub fn labels(
-    bytes: &[u8],
-    scalar: Scalar,
-    order: ByteOrder,
-    (slope, intercept): (f64, f64),
-) -> Result<Labels, Mistake> {
-    let chunks = bytes.chunks_exact(scalar.size());
-    let values = chunks.map(|chunk| slope * scalar.read(chunk, order) + intercept);
-    Labels::of(values, scalar, order)
-}
-
 impl Labels {
     /// From numbers; negative ones and NaN mean outside, as 0 does.
     pub fn of(

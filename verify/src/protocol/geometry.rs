@@ -28,12 +28,21 @@ pub enum Shape {
     Intersection { of: Vec<Shape> },
     /// In the first, not in the second.
     Difference { of: Box<[Shape; 2]> },
-    /// A closed surface from an STL file. The file has the given unit.
+    /// A closed surface from a file that is, as its extension says, STL, OBJ, PLY, or PolyData of
+    /// VTK (.vtp or legacy .vtk). The file has the given unit.
     Stl { file: PathBuf, unit: UnitFormat },
     /// The voxels of some labels of an NRRD or NIfTI file, in its world coordinates turned to
     /// RAS. The unit is that of the file where it is null (mm if the file states none). The
     /// surface is the level 1/2 of the voxels smoothed with this standard deviation.
-    LabelMap { file: PathBuf, labels: Vec<u32>, unit: Option<UnitFormat>, smoothing_voxels: f64 },
+    /// Of a file with layers of overlapping segments the layer says which is meant, from 0.
+    LabelMap {
+        file: PathBuf,
+        labels: Vec<u32>,
+        unit: Option<UnitFormat>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        layer: Option<usize>,
+        smoothing_voxels: f64,
+    },
 }
 
 /// A part of the body or of its boundary.
@@ -53,7 +62,13 @@ pub enum Selection {
     /// In a shape, or closer than the tolerance.
     Shape { shape: Shape, tolerance_m: f64 },
     /// In a voxel of this label; the label map is that of the body where it is null.
-    Label { value: u32, file: Option<PathBuf>, unit: Option<UnitFormat> },
+    Label {
+        value: u32,
+        file: Option<PathBuf>,
+        unit: Option<UnitFormat>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        layer: Option<usize>,
+    },
     /// Where the outward normal of the body and a direction (of any length) enclose at most an
     /// angle.
     Facing { direction: Triple, angle_rad: f64 },
@@ -94,10 +109,11 @@ impl From<&ShapeFormat> for Shape {
                 Shape::Difference { of: Box::new([(&**whole).into(), (&**hole).into()]) }
             }
             ShapeFormat::Stl { file, unit } => Shape::Stl { file: file.clone(), unit: *unit },
-            ShapeFormat::LabelMap { file, labels, unit, smoothing } => Shape::LabelMap {
+            ShapeFormat::LabelMap { file, labels, unit, layer, smoothing } => Shape::LabelMap {
                 file: file.clone(),
                 labels: labels.clone(),
                 unit: *unit,
+                layer: *layer,
                 smoothing_voxels: smoothing.unwrap_or(LabelField::SMOOTHING),
             },
         }
@@ -135,8 +151,8 @@ impl Selection {
             SelectorFormat::Shape(shape) => {
                 Selection::Shape { shape: shape.into(), tolerance_m: preset }
             }
-            SelectorFormat::Label { value, file, unit } => {
-                Selection::Label { value: *value, file: file.clone(), unit: *unit }
+            SelectorFormat::Label { value, file, unit, layer } => {
+                Selection::Label { value: *value, file: file.clone(), unit: *unit, layer: *layer }
             }
             SelectorFormat::Facing { direction, angle } => {
                 Selection::Facing { direction: *direction, angle_rad: *angle }

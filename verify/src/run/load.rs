@@ -75,6 +75,7 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         | Error::SingularMomentMatrix { .. }
         | Error::LargeSupports { .. } => "discretisation.dilation",
         Error::UnstableStep { .. } => "time.fixed_step",
+        Error::NoTimeStep { .. } => "material",
         Error::TooMuchAddedMass { .. } | Error::UnscaledMass { .. } => "time.mass_scaling",
         Error::ProbeOutside { .. } => "probe",
         Error::PointWithoutRegion { .. } => "region",
@@ -82,7 +83,8 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         Error::Geometry(GeometryError::NoVolume) => "geometry.shape",
         Error::Geometry(_) => "discretisation",
         Error::NoEquilibrium { .. } => "time.solver",
-        Error::Diverged { .. }
+        Error::HasRun { .. }
+        | Error::Diverged { .. }
         | Error::Inverted { .. }
         | Error::NotConverged { .. }
         | Error::Unstable { .. }

@@ -1,8 +1,9 @@
 //! Memory that a run takes, and refusal of cases that need more than is available.
 
 use crate::display::expected_boxes;
-use crate::machine::available_memory;
+use crate::machine::{available_memory, peak_memory};
 use crate::run::record::Sample;
+use crate::run::solve::Solved;
 use crate::scene::Case;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::{Discretisation, Footprint};
@@ -85,6 +86,23 @@ fn refuse_beyond(footprint: Footprint, available: f64) -> Result<(), MemoryShort
         true => Ok(()),
         false => Err(MemoryShortage { footprint, available }),
     }
+}
+
+/// Peak memory, in total, per point and per node, beside the estimate.
+pub fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
+    let peak = peak_memory()? as f64;
+    let (d, model) = (&solved.prepared.discretisation, &solved.prepared.model);
+    let (nodes, points) = (model.positions.len() as f64, d.supports.len() as f64);
+    let estimate = estimated_memory(case, d);
+    Some(format!(
+        "  {:.0} MB of memory at the peak ({:.0} estimated): {:.0} bytes per point, {:.0} per node; {:.0} bytes \
+         per point are read in each step",
+        peak / 1e6,
+        estimate / 1e6,
+        peak / points,
+        peak / nodes,
+        model.bytes_per_step() as f64 / points
+    ))
 }
 
 #[cfg(test)]

@@ -36,15 +36,16 @@ pub fn centres_of_mass(problem: &Problem, discretisation: &Discretisation) -> Ve
     let nodes = discretisation.cloud.positions.len();
     let empty = MassCentre { reference: Vector3::zeros(), mass: 0.0, weights: vec![0.0; nodes] };
     let mut centres = vec![empty; problem.regions.len()];
-    let (quadrature, supports) = (&discretisation.quadrature, &discretisation.supports);
-    for point in 0..supports.len() {
-        let region = quadrature.regions[point] as usize;
-        let mass = problem.regions[region].material.density * quadrature.weights[point];
-        let centre = &mut centres[region];
-        centre.mass += mass;
-        centre.reference += quadrature.positions[point] * mass;
-        for entry in supports.row(point) {
-            centre.weights[supports.nodes[entry] as usize] += mass * supports.phi[entry];
+    for (quadrature, rows) in discretisation.volumes() {
+        for point in 0..rows.len() {
+            let region = quadrature.regions[point] as usize;
+            let mass = problem.regions[region].material.density * quadrature.weights[point];
+            let centre = &mut centres[region];
+            centre.mass += mass;
+            centre.reference += quadrature.positions[point] * mass;
+            for entry in rows.row(point) {
+                centre.weights[rows.nodes[entry] as usize] += mass * rows.phi[entry];
+            }
         }
     }
     for centre in centres.iter_mut().filter(|centre| centre.mass > 0.0) {

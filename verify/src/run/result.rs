@@ -1,8 +1,8 @@
 //! The result of a run as JSON and as a screen of text.
 
 use super::contact::{contacts_json, contacts_text};
-use super::error_bar::{Estimated, error_bars_json, error_bars_text, plus_minus};
-use super::memory::estimated_memory;
+use super::error_bar::{Estimated, error_bars_json, error_bars_text, no_bars_text, plus_minus};
+use super::memory::{estimated_memory, memory_text};
 use super::prepare::Prepared;
 use super::probes::left_out_text;
 use super::record::Recording;
@@ -89,7 +89,7 @@ fn recorded_json(case: &Case, prepared: &Prepared, record: &Recording) -> Value 
             "mean_support": discretisation.mean_support(),
             "worst_condition": discretisation.worst_condition,
             "enlarged_supports": discretisation.enlarged,
-            "volume_m3": quadrature.weights.iter().sum::<f64>(),
+            "volume_m3": discretisation.volume(),
             "mass_kg": model.lumped_mass.iter().sum::<f64>(),
             "added_mass_kg": model.added_mass,
         },
@@ -203,6 +203,7 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
         // Of the lumped masses, which a static run does not have.
         "per_point_bound_s": dynamic.then_some(solved.prepared.model.per_point_bound),
         "smallest_jacobian": summary.smallest_jacobian.jacobian,
+        "smallest_patch_jacobian": solved.smallest_patch_jacobian(),
         "instability": unstable,
         "relaxation": relaxation,
         "newton": newton,
@@ -279,6 +280,7 @@ pub fn summary_text(
     let model = &solved.prepared.model;
     let mut lines = vec![format!("{}: {}", printable(&case.name), printable(&case.title))];
     lines.extend(case.overrides().iter().map(|set| printable(&format!("  with {set}"))));
+    lines.extend(bars.and_then(no_bars_text));
     lines.extend([
         format!(
             "  {} nodes, {} quadrature points, {:.1} nodes per support",
@@ -288,22 +290,22 @@ pub fn summary_text(
         ),
         match s.newton {
             Some(newton) => format!(
-                "  {}: {} in {} parts of the load, {} products with the tangent, smallest J {}, \
+                "  {}: {} in {} parts of the load, {} products with the tangent, {}, \
                  residual {} of the largest nodal force",
                 ending(s),
                 newton.corrections(),
                 newton.increments,
                 newton.products,
-                four_digits(s.smallest_jacobian.jacobian),
+                solved.smallest_jacobian_text(),
                 four_digits(newton.residual)
             ),
             None => format!(
-                "  {} steps of {} to {} s (critical at rest {} s), smallest J {}",
+                "  {} steps of {} to {} s (critical at rest {} s), {}",
                 s.steps,
                 four_digits(s.time_steps.0),
                 four_digits(s.time_steps.1),
                 four_digits(s.critical_time_step),
-                four_digits(s.smallest_jacobian.jacobian)
+                solved.smallest_jacobian_text()
             ),
         },
     ]);
@@ -373,23 +375,6 @@ pub fn summary_text(
         solved.prepared.setup_seconds, solved.solve_seconds, solved.cpu_seconds
     ));
     lines.join("\n")
-}
-
-/// Peak memory, in total, per point and per node, beside the estimate.
-fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
-    let peak = peak_memory()? as f64;
-    let (d, model) = (&solved.prepared.discretisation, &solved.prepared.model);
-    let (nodes, points) = (model.positions.len() as f64, d.supports.len() as f64);
-    let estimate = estimated_memory(case, d);
-    Some(format!(
-        "  {:.0} MB of memory at the peak ({:.0} estimated): {:.0} bytes per point, {:.0} per node; {:.0} bytes \
-         per point are read in each step",
-        peak / 1e6,
-        estimate / 1e6,
-        peak / points,
-        peak / nodes,
-        model.bytes_per_step() as f64 / points
-    ))
 }
 
 fn triple(v: &Vector3) -> String {

@@ -9,8 +9,10 @@ use mtled::error::Error;
 use mtled::motion::observe::Observer;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
+use mtled::motion::strain::{smallest_patch_jacobian, strain_warnings};
 use mtled::motion::summary::Summary;
 use mtled::problem::Problem;
+use mtled_checks::report::four_digits;
 use std::time::Instant;
 
 /// The end of a run.
@@ -57,7 +59,29 @@ impl Solved {
         let discretisation = &self.prepared.discretisation;
         let unresolved = model.contact.unresolved(discretisation, &self.state.displacement);
         doubts.extend(unresolved.iter().map(Warning::to_string));
+        let strained = strain_warnings(model, discretisation, &self.state.displacement);
+        doubts.extend(strained.iter().map(Warning::to_string));
         doubts
+    }
+
+    /// The smallest J of the patches on which changes of volume are projected, if any are, at the
+    /// end \[–\].
+    pub fn smallest_patch_jacobian(&self) -> Option<f64> {
+        let Prepared { model, discretisation, .. } = &self.prepared;
+        smallest_patch_jacobian(model, discretisation, &self.state.displacement)
+    }
+
+    /// J at points over the whole run. Where changes of volume are projected on patches, the volume is
+    /// that of the patches, at the end, and both are named.
+    pub fn smallest_jacobian_text(&self) -> String {
+        let at_points = four_digits(self.summary.smallest_jacobian.jacobian);
+        match self.smallest_patch_jacobian() {
+            Some(of_patches) => format!(
+                "smallest J {at_points} at points and {} of the patches on which it is projected",
+                four_digits(of_patches)
+            ),
+            None => format!("smallest J {at_points}"),
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use crate::scene::document::Document;
 use crate::scene::edit::Override;
 use crate::scene::format::CaseFormat;
 use crate::scene::migrate::outdated;
+use mtled_checks::input::refuse_named_pipe;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -25,17 +26,22 @@ pub fn read_overridden(path: &Path, overrides: &[Override]) -> Result<Case, Vec<
     parse_overridden(&text, &file, path.parent().unwrap_or(Path::new(".")), overrides)
 }
 
-/// The longest case file or plan that is read \[byte\].
-const LONGEST: u64 = 1 << 26;
+/// The longest case file or plan that is read \[byte\]; its tables take a hundred times as much
+/// memory.
+const LONGEST: u64 = 1 << 24;
 
-/// The text of a case file or plan, which may come from a pipe but must end.
+/// The text of a case file or plan, which may come from a pipe of a shell but must end.
 pub fn read_text(path: &Path) -> io::Result<String> {
+    refuse_named_pipe(path)?;
     let mut text = String::new();
     File::open(path)?.take(LONGEST + 1).read_to_string(&mut text)?;
     match text.len() as u64 <= LONGEST {
         true => Ok(text),
         false => {
-            let reason = format!("it has more than {LONGEST} bytes");
+            let reason = format!(
+                "it has more than {LONGEST} bytes: put points into a file that it names \
+                 (`points`), or leave some out"
+            );
             Err(io::Error::new(io::ErrorKind::FileTooLarge, reason))
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::reference::{ReferenceError, ReferenceFile, read_reference};
 use crate::scene::{Case, one_error, read_case};
-use crate::studies::regression::StoredBounds;
+use crate::studies::regression::{StoredBounds, is_missed};
 use anyhow::Result;
 use mtled::problem::{Cloud, Problem};
 use mtled_checks::study::{Bound, Check, Kind};
@@ -109,16 +109,17 @@ impl Workbench {
         Check::new(id, label, Kind::Regression, value, bound, unit, &source)
     }
 
-    /// A check of a target of theory or of our own, in units of 1; where a bound is stored for
-    /// it, the target is known to be missed, and the check is a regression.
+    /// A check of a target of theory or of our own, in units of 1. Where [`is_missed`] says that
+    /// the target is known to be missed, and nowhere else, the check is a regression.
     pub fn target(&self, id: &str, label: &str, value: f64, target: Bound, source: &str) -> Check {
-        if !self.bounds.contains(id) {
+        if !is_missed(self.suite == Suite::Full, id) {
             return Check::new(id, label, Kind::Exact, value, target, "1", source);
         }
         let target = match target {
             Bound::AtMost(limit) => format!("at most {limit}"),
             Bound::AtLeast(limit) => format!("at least {limit}"),
             Bound::Between(low, high) => format!("{low} to {high}"),
+            Bound::Baseline(_) => "that of the baseline".into(),
         };
         self.regression(
             id,
@@ -143,4 +144,30 @@ pub fn relative_error(computed: f64, exact: f64) -> f64 {
 /// Smallest and largest of positive values; NaN is skipped.
 pub fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, 0.0), |(low, high), x| (low.min(x), high.max(x)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studies::regression::{MISSED, MISSED_IN_FULL};
+
+    #[test]
+    fn a_missed_target_has_a_stored_bound_and_no_stored_bound_makes_another_target_a_regression() {
+        let folder = tempfile::tempdir().unwrap();
+        for suite in [Suite::Quick, Suite::Full] {
+            let bench = Workbench::new(suite, 0, folder.path()).unwrap();
+            let target = |id| bench.target(id, "", 1.0, Bound::AtMost(0.5), "theory");
+            for id in MISSED {
+                assert!(target(id).kind == Kind::Regression && target(id).is_judged(), "{id}");
+            }
+            // Its figure is stored as a regression, with a bound that 1 keeps.
+            let other = target("hard_cases/far");
+            assert!(other.kind == Kind::Exact && !other.pass, "{other:?}");
+        }
+        let full = Workbench::new(Suite::Full, 0, folder.path()).unwrap();
+        for id in MISSED_IN_FULL {
+            let check = full.target(id, "", 1.0, Bound::AtMost(0.5), "theory");
+            assert!(check.kind == Kind::Regression && check.is_judged(), "{id}");
+        }
+    }
 }

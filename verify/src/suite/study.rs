@@ -6,7 +6,7 @@ use crate::explore::label::percent;
 use crate::explore::store::{RunOutcome, RunRecord};
 use crate::reference::{Family, Quantity, is_dynamic, quantities};
 use mtled_checks::report::four_digits;
-use mtled_checks::study::{Bound, Cell, Check, Kind, Study, Table, number, text};
+use mtled_checks::study::{Better, Bound, Cell, Check, Kind, Study, Table, number, text};
 use std::collections::BTreeMap;
 
 /// Changes of an answer below this part of the largest of its kind are no change: static
@@ -150,7 +150,7 @@ fn answers(study: &mut Study, case: &SuiteCase, values: &[Vec<f64>]) {
                     &label,
                     Kind::Regression,
                     value,
-                    Bound::Between(f64::MIN, f64::MAX),
+                    Bound::Baseline(Better::Neither),
                     quantity.family.unit(),
                     BASELINE,
                 )
@@ -216,7 +216,7 @@ fn soundness(study: &mut Study, suite: &Suite, case: &SuiteCase, runs: &CaseRuns
     ] {
         let Some(error) = patch(figure) else { continue };
         let label = format!("affine patch test on this body: largest relative error of the {what}");
-        let any = Bound::AtMost(f64::MAX);
+        let any = Bound::Baseline(Better::Lower);
         study.checks.push(Check::new(
             &id(case, part),
             &label,
@@ -247,7 +247,7 @@ fn soundness(study: &mut Study, suite: &Suite, case: &SuiteCase, runs: &CaseRuns
             "neighbours visited by all evaluations of the force",
             Kind::Regression,
             work.neighbour_visits as f64,
-            Bound::AtMost(f64::MAX),
+            Bound::Baseline(Better::Lower),
             "1",
             BASELINE,
         ));

@@ -4,6 +4,7 @@
 use super::error::WarpError;
 use crate::run::StoredField;
 use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::HeldShape;
 use mtled::discretisation::mls::{Approximation, Stiffness};
 use mtled::geometry::Shape;
 use mtled::problem::{Dimension, Problem};
@@ -55,7 +56,12 @@ impl DisplacementField {
             approximation = approximation.with_sides(stiffness, recipe.dilation);
         }
         let body = problem.body.section(dimension)?;
-        approximation = approximation.within(&body, recipe.dilation);
+        approximation = match HeldShape::of(problem, &body) {
+            Some(HeldShape { held, rest }) => {
+                approximation.with_held(&held, recipe.dilation).within(&rest, recipe.dilation)
+            }
+            None => approximation.within(&body, recipe.dilation),
+        };
         let plane = match dimension {
             Dimension::Three => None,
             Dimension::PlaneStrain { z, .. } => Some(*z),

@@ -4,7 +4,7 @@
 use super::error::WarpError;
 use super::field::DisplacementField;
 use crate::display::solid;
-use crate::files::stl::Triangles;
+use crate::files::surface::Triangles;
 use mtled::geometry::Shape;
 use mtled::problem::{Dimension, Problem};
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 use crate::discretisation::rows::Rows;
 
 /// The connected body of each node: nodes that share a support belong together.
-pub fn connected_bodies(rows: &Rows, nodes: usize) -> Vec<u32> {
+pub fn connected_bodies(supports: &[&Rows], nodes: usize) -> Vec<u32> {
     let mut parent: Vec<u32> = (0..nodes as u32).collect();
     fn root(parent: &mut [u32], mut node: u32) -> u32 {
         while parent[node as usize] != node {
@@ -12,7 +12,7 @@ pub fn connected_bodies(rows: &Rows, nodes: usize) -> Vec<u32> {
         }
         node
     }
-    for q in 0..rows.len() {
+    for (rows, q) in supports.iter().flat_map(|rows| (0..rows.len()).map(move |q| (rows, q))) {
         let row = rows.row(q);
         let first = root(&mut parent, rows.nodes[row.start]);
         for entry in row {

@@ -3,11 +3,14 @@
 
 use crate::algebra::lanes::with_vectors;
 use crate::algebra::tensor::Vector3;
+use crate::discretisation::mls::held_sides::HeldSides;
 use crate::discretisation::mls::inverse::{inverse, norm_1};
 use crate::discretisation::mls::regularised::{linear_part, regularise, restore_linear};
 use crate::discretisation::mls::sides::{Sides, Stiffness};
-use crate::discretisation::mls::sums::{fill, moment_matrix, slope_moments, weigh};
-use crate::discretisation::mls::support::{Near, PoorSupport, Scratch, Support, dimension};
+use crate::discretisation::mls::sums::{
+    fill, moment_matrix, slope_moments, slope_right_sides, weigh,
+};
+use crate::discretisation::mls::support::{Near, PoorSupport, Scratch, Support};
 use crate::discretisation::mls::visibility::Visibility;
 use crate::discretisation::neighbours::Neighbours;
 use crate::geometry::Shape;
@@ -29,11 +32,13 @@ pub struct Approximation {
     components: usize,
     /// Where points do not see all nodes around them.
     sides: Option<Sides>,
+    /// Where a part is held as a volume.
+    held: Option<HeldSides>,
     /// Where gaps of the body bar the way to some of them.
     visibility: Option<Visibility>,
-    smallest_radius: f64,
-    largest_radius: f64,
-    neighbours: Neighbours,
+    pub(super) smallest_radius: f64,
+    pub(super) largest_radius: f64,
+    pub(super) neighbours: Neighbours,
     /// How far away nodes may be that cover a point of each cell of `neighbours` \[m\]; empty
     /// where all radii are equal.
     reaches: Vec<f64>,
@@ -67,6 +72,7 @@ impl Approximation {
             weight_function,
             components,
             sides: None,
+            held: None,
             visibility: None,
             smallest_radius,
             largest_radius,
@@ -76,7 +82,7 @@ impl Approximation {
     }
 
     /// No node farther away covers X \[m\] with radii enlarged by a factor.
-    fn reach(&self, X: &Vector3, enlargement: f64) -> f64 {
+    pub(super) fn reach(&self, X: &Vector3, enlargement: f64) -> f64 {
         match self.reaches.is_empty() || enlargement > 1.0 {
             true => self.largest_radius * enlargement,
             false => self.reaches[self.neighbours.cell_of(X)],
@@ -91,10 +97,27 @@ impl Approximation {
         Approximation { sides, ..self }
     }
 
-    /// The same where points see nodes through the body only. Radii are `dilation` spacings.
+    /// The same where a part is held as a volume, whose border nobody sees through.
+    pub fn with_held(self, held: &Shape, dilation: f64) -> Approximation {
+        let held = Some(HeldSides::new(held, &self.nodes, self.smallest_radius / dilation));
+        Approximation { held, ..self }
+    }
+
+    /// Makes places within what is held see what is held, after the rows of what deforms.
+    pub fn open_held(&mut self) {
+        self.held.as_mut().into_iter().for_each(HeldSides::open);
+    }
+
+    /// Whether what deforms sees a node.
+    fn deforms(&self, node: u32) -> bool {
+        self.held.as_ref().is_none_or(|held| held.deforms(node))
+    }
+
+    /// The same where points see nodes through the body, or what deforms of it, only.
     pub fn within(self, body: &Shape, dilation: f64) -> Approximation {
-        let Approximation { nodes, influence_radius, neighbours, .. } = &self;
-        let visibility = Visibility::new(body, nodes, influence_radius, neighbours, dilation);
+        let Approximation { nodes, influence_radius: radii, neighbours, .. } = &self;
+        let has = |node: usize| self.deforms(node as u32);
+        let visibility = Visibility::new(body, (nodes, radii), neighbours, dilation, &has);
         Approximation { visibility, ..self }
     }
 
@@ -154,56 +177,6 @@ impl Approximation {
         }
     }
 
-    /// Mean influence radius of the nodes that cover X \[m\]; that of all nodes
-    /// where none does.
-    pub fn mean_radius(&self, X: &Vector3) -> f64 {
-        if self.smallest_radius == self.largest_radius {
-            return self.largest_radius;
-        }
-        let (mut sum, mut count) = (0.0, 0.0);
-        self.neighbours.for_each_within(X, self.reach(X, 1.0), |node, offset| {
-            let radius = self.influence_radius[node];
-            if offset.norm_squared() < radius * radius {
-                sum += radius;
-                count += 1.0;
-            }
-        });
-        match count > 0.0 {
-            true => sum / count,
-            false => self.influence_radius.iter().sum::<f64>() / self.influence_radius.len() as f64,
-        }
-    }
-
-    /// The smallest influence radius of the nodes within `reach` of X \[m\]; the mean of
-    /// those that cover it where there is none.
-    pub fn smallest_radius_within(&self, X: &Vector3, reach: f64) -> f64 {
-        let mut smallest = f64::INFINITY;
-        self.for_each_node_within(X, reach, |node, _| {
-            smallest = smallest.min(self.influence_radius[node as usize]);
-        });
-        if smallest.is_finite() { smallest } else { self.mean_radius(X) }
-    }
-
-    /// Calls `visit(node, distance)` for every node within `radius` of X \[m\].
-    pub(crate) fn for_each_node_within(
-        &self,
-        X: &Vector3,
-        radius: f64,
-        mut visit: impl FnMut(u32, f64),
-    ) {
-        self.neighbours.for_each_within(X, radius, |node, offset| {
-            let distance = offset.norm();
-            if distance < radius {
-                visit(node as u32, distance);
-            }
-        });
-    }
-
-    /// The largest influence radius \[m\].
-    pub fn largest_radius(&self) -> f64 {
-        self.largest_radius
-    }
-
     /// φ_a(X) = w_a pᵀ(X_a) A⁻¹(X) p(X) and its full derivatives (Lancaster,
     /// Salkauskas 1981; Belytschko, Lu, Gu 1994, eqs. 9–18; method book,
     /// eqs. 6.2 and 6.3). Where the support is poor the radii are enlarged in
@@ -223,18 +196,27 @@ impl Approximation {
         scratch: &mut Scratch,
         support: &mut Support,
     ) -> Result<(), PoorSupport> {
+        if let Some(held) = self.held.as_ref().filter(|held| held.is_held(X)) {
+            let seen = |node: u32| held.holds(node);
+            if self.evaluate_seeing(X, seen, false, scratch, support).is_ok() {
+                return Ok(());
+            }
+            // So little is held here that its border alone has nodes.
+            return self.evaluate_seeing(X, |_| true, false, scratch, support);
+        }
         if let Some(sides) = &self.sides {
             let softest = sides.softest_seen(X);
-            let seen = |node: u32| sides.is_seen(node, softest);
+            let seen = |node: u32| sides.is_seen(node, softest) && self.deforms(node);
             if self.evaluate_seeing(X, seen, true, scratch, support).is_ok() {
                 return Ok(());
             }
         }
-        let result = self.evaluate_seeing(X, |_| true, true, scratch, support);
+        let deforms = |node: u32| self.deforms(node);
+        let result = self.evaluate_seeing(X, deforms, true, scratch, support);
         if result.is_ok() || self.visibility.is_none() {
             return result;
         }
-        let result = self.evaluate_seeing(X, |_| true, false, scratch, support);
+        let result = self.evaluate_seeing(X, deforms, false, scratch, support);
         support.across_gap = result.is_ok();
         result
     }
@@ -378,23 +360,4 @@ impl Approximation {
         }
         (s, total)
     }
-}
-
-/// e_{k+1}/s − A,_k c from the second term: with A⁻¹ they give the derivatives of the
-/// coefficients A⁻¹ p(X) along the directions k.
-fn slope_right_sides<const M: usize>(
-    moments: [SVector<f64, M>; 3],
-    penalty: Option<Vector3>,
-    c: &SVector<f64, M>,
-    s: f64,
-) -> [SVector<f64, M>; 3] {
-    let mut right = moments.map(|moment| -moment);
-    for (k, column) in right.iter_mut().enumerate().take(dimension(M)) {
-        column[k + 1] += 1.0 / s;
-        let Some(slope) = penalty else { continue };
-        for i in dimension(M) + 1..M {
-            column[i] -= slope[k] * c[i];
-        }
-    }
-    right
 }

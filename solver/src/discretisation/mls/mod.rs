@@ -1,7 +1,9 @@
 //! Moving least squares: φ and Grad φ at a point (method book, section 6).
 
 mod approximation;
+mod held_sides;
 mod inverse;
+mod radii;
 mod regularised;
 mod sides;
 mod sums;

@@ -144,3 +144,22 @@ fn polynomial<S: Simd, const M: usize>(
     }
     sum
 }
+
+/// e_{k+1}/s − A,_k c from the second term: with A⁻¹ they give the derivatives of the
+/// coefficients A⁻¹ p(X) along the directions k.
+pub(super) fn slope_right_sides<const M: usize>(
+    moments: [SVector<f64, M>; 3],
+    penalty: Option<Vector3>,
+    c: &SVector<f64, M>,
+    s: f64,
+) -> [SVector<f64, M>; 3] {
+    let mut right = moments.map(|moment| -moment);
+    for (k, column) in right.iter_mut().enumerate().take(dimension(M)) {
+        column[k + 1] += 1.0 / s;
+        let Some(slope) = penalty else { continue };
+        for i in dimension(M) + 1..M {
+            column[i] -= slope[k] * c[i];
+        }
+    }
+    right
+}

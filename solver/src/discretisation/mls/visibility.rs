@@ -32,13 +32,13 @@ pub(super) struct Visibility {
 
 impl Visibility {
     /// Of nodes with their influence radii \[m\], which are `dilation` spacings; `None` where
-    /// nothing is barred.
+    /// nothing is barred. A body may not have all of them: about the others nothing is known.
     pub fn new(
         body: &Shape,
-        nodes: &[Vector3],
-        radii: &[f64],
+        (nodes, radii): (&[Vector3], &[f64]),
         near: &Neighbours,
         dilation: f64,
+        has: &(dyn Fn(usize) -> bool + Sync),
     ) -> Option<Visibility> {
         if body.is_convex() {
             return None;
@@ -47,10 +47,16 @@ impl Visibility {
         let nodes: Vec<Place> = nodes.par_iter().map(|X| body.place(X)).collect();
         let found = |a: usize| {
             let mut barred = Vec::new();
+            if !has(a) {
+                return barred;
+            }
             near.for_each_within(&nodes[a].X, SOUGHT * radii[a], |b, offset| {
                 // Once for each pair, by the first that is close enough.
                 let is_first = a < b || offset.norm_squared() >= (SOUGHT * radii[b]).powi(2);
-                if is_first && body.parts(&nodes[a], &nodes[b], spacing[a].min(spacing[b])) {
+                if is_first
+                    && has(b)
+                    && body.parts(&nodes[a], &nodes[b], spacing[a].min(spacing[b]))
+                {
                     barred.push(b as u32);
                 }
             });

@@ -1,7 +1,7 @@
 //! A node cloud and its finest spacing.
 
 use crate::algebra::tensor::Vector3;
-use crate::geometry::{GeometryError, NODES, Shape};
+use crate::geometry::{GeometryError, NODES, Shape, lattice_cells};
 use crate::problem::Dimension;
 
 /// Nodes in the reference configuration.
@@ -13,6 +13,9 @@ pub struct NodeCloud {
     pub spacing: Vec<f64>,
     /// Whether a node lies on the boundary of the body \[node\].
     pub on_boundary: Vec<bool>,
+    /// Whether a node lies on the border of what is held as a volume \[node\]; empty where
+    /// nothing is.
+    pub on_border: Vec<bool>,
 }
 
 impl NodeCloud {
@@ -24,7 +27,7 @@ impl NodeCloud {
     ) -> NodeCloud {
         let spacing = positions.iter().map(spacing).collect();
         let on_boundary = (0..positions.len()).map(|node| node < boundary).collect();
-        NodeCloud { positions, spacing, on_boundary }
+        NodeCloud { positions, spacing, on_boundary, on_border: Vec::new() }
     }
 
     /// Keeps the nodes for which `stays` \[node\] is true.
@@ -52,5 +55,5 @@ pub fn refuse_fine_spacing(
 ) -> Result<(), GeometryError> {
     let (lower, upper) = body.finite_bounds(dimension)?;
     let edges = (upper - lower).rows(0, dimension.components()).clone_owned();
-    NODES.check(edges.map(|edge| (edge / spacing).round().max(1.0) + 1.0).product())
+    NODES.check(edges.map(|edge| lattice_cells(edge, spacing) as f64 + 1.0).product())
 }

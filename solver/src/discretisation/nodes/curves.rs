@@ -3,6 +3,7 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::neighbours::Neighbours;
+use crate::geometry::nearest_count;
 use std::collections::VecDeque;
 
 /// Points ordered along curves: from an end to the nearest that is left and not farther
@@ -59,7 +60,7 @@ pub(super) fn evenly(curve: &[Vector3], spacing_at: &impl Fn(&Vector3) -> f64) -
         return vec![curve[0]];
     }
     let closed = curve[0] == curve[curve.len() - 1];
-    let count = sum.round().max(1.0) as usize;
+    let count = nearest_count(sum);
     let last = if closed { count - 1 } else { count };
     (0..=last)
         .map(|n| {

@@ -37,7 +37,8 @@ pub(super) fn given(
         .into_par_iter()
         .map(|node| hash.nearest(&nodes[node], node, 2 * dimension.components()))
         .collect();
-    let mut cloud = NodeCloud { positions: nodes.to_vec(), spacing: vec![], on_boundary: vec![] };
+    let mut cloud = NodeCloud::boundary_first(Vec::new(), 0, |_| 0.0);
+    cloud.positions = nodes.to_vec();
     for (node, near) in nearest.iter().enumerate() {
         let spacing = near.iter().map(|(d, _)| d).sum::<f64>() / near.len() as f64;
         let (distance, other) = near[0];

@@ -57,7 +57,7 @@ pub(super) fn in_box(
         on_boundary.push((0..dimension.components()).any(face));
     }
     let spacing = vec![step.max(); positions.len()];
-    NodeCloud { positions, spacing, on_boundary }
+    NodeCloud { positions, spacing, on_boundary, on_border: Vec::new() }
 }
 
 /// Boundary points, and lattice points that are far enough inside.

@@ -246,3 +246,18 @@ fn lattice_nodes_half_a_spacing_from_the_boundary_do_not_hang_on_round_off() {
         assert_eq!(home.positions.len(), cloud(size).positions.len(), "{size}");
     }
 }
+
+#[test]
+fn edges_of_whole_and_a_half_spacings_are_divided_alike_wherever_the_body_lies() {
+    let cloud = |at: Vector3| {
+        let block = Shape::Box { min: at, max: at + Vector3::new(0.1, 0.05, 0.05) };
+        let ball = Shape::Sphere { centre: at + Vector3::new(0.1, 0.02, 0.02), radius: 0.04 };
+        let body = Shape::Union(vec![block, ball]);
+        node_cloud(&body, &Cloud::Regular { spacing: 0.02 / 3.0 }, &Dimension::Three).unwrap()
+    };
+    let home = cloud(Vector3::zeros());
+    for at in [[0.1, 0.2, 0.3], [-0.0137, 0.0211, 0.5], [-7.3, 6.9, 5.2], [1000.0, -1000.0, 500.0]]
+    {
+        assert_eq!(home.positions.len(), cloud(at.into()).positions.len(), "{at:?}");
+    }
+}

@@ -105,6 +105,13 @@ impl<'a> Borders<'a> {
 
     /// Whether the sample points of a cell belong to more than one region.
     fn is_mixed(&self, cell: &Cell) -> bool {
+        let reach = cell.half_diagonal(self.components);
+        let around = |region: &Region| region.part.holds_around(&cell.centre, reach);
+        if let Some(Some(true)) =
+            self.regions.iter().map(around).find(|holds| *holds != Some(false))
+        {
+            return false;
+        }
         let owner = |X: &Vector3| self.regions.iter().position(|region| region.part.contains(X));
         let at_centre = owner(&cell.centre);
         cell.samples(self.components).any(|X| owner(&X) != at_centre)

@@ -19,6 +19,9 @@ use rayon::prelude::*;
 /// Halvings below a sub-cell when its inside volume is measured.
 const FRACTION_DEPTH: usize = 4;
 const FRACTION_DEPTH_PLANE: usize = 5;
+/// A grid that fits but for this fraction of a cell gets no other layer: a body may be that much
+/// larger by round-off, far from the origin or turned \[–\].
+const FITS: f64 = 1e-6;
 /// The boundary is flat in a cell where the signed distance differs by less than this
 /// fraction of its edge from that of a plane \[–\].
 const FLAT: f64 = 1e-9;
@@ -79,8 +82,7 @@ pub fn quadrature_following(
     subdivision.validate()?;
     let edge = subdivision.largest_edge();
     let counts = [0, 1, 2].map(|k| match k < components {
-        // A grid that fits exactly must not get another layer from round-off.
-        true => ((max[k] - min[k]) / edge - 1e-9).ceil().max(1.0),
+        true => ((max[k] - min[k]) / edge - FITS).ceil().max(1.0),
         false => 1.0,
     });
     let middle = (min + max) * 0.5;

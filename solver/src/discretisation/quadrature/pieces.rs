@@ -103,12 +103,15 @@ fn touching(cell: &Cell, leaves: &[Leaf], finest: usize, components: usize) -> V
             *owner = number;
         }
     }
-    for at in indices(size) {
+    let steps = [1, size[0], size[0] * size[1]];
+    for (at, own) in indices(size).zip(0..) {
+        let a = owner[own];
+        if a == NONE {
+            continue;
+        }
         for axis in (0..components).filter(|&axis| at[axis] + 1 < size[axis]) {
-            let mut next = at;
-            next[axis] += 1;
-            let (a, b) = (owner[index(at)], owner[index(next)]);
-            if a != NONE && b != NONE && a != b && pairs.last() != Some(&(a, b)) {
+            let b = owner[own + steps[axis]];
+            if b != NONE && a != b && pairs.last() != Some(&(a, b)) {
                 pairs.push((a, b));
             }
         }

@@ -4,3 +4,4 @@ mod panel_fractions;
 mod rule;
 
 pub use rule::SurfaceRule;
+pub(crate) use rule::is_held;

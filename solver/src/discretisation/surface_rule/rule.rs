@@ -35,6 +35,8 @@ pub struct SurfaceRule {
     /// The points: `prescribed` nodes first, then free panels \[m\].
     positions: Vec<Vector3>,
     prescribed: Vec<u32>,
+    /// Which components of the displacement are prescribed there.
+    held: Vec<[bool; 3]>,
     /// φ at the prescribed nodes.
     prescribed_rows: Rows,
     /// The panels that are points.
@@ -49,20 +51,23 @@ pub struct SurfaceRule {
 /// oscillate.
 const SWEEPS: usize = 3;
 
+/// Component of a strength over the largest one up to which it does not act \[–\]: round-off.
+const ALONG: f64 = 1e-6;
+
 impl SurfaceRule {
-    /// The points of a boundary; nodes with `prescribed` have a prescribed displacement.
+    /// The points of a boundary; of the nodes some components of the displacement are `held`.
     pub fn new(
         (panels, panel_size): (Vec<Panel>, f64),
         cloud: &NodeCloud,
         approximation: &Approximation,
-        prescribed: &[bool],
+        held: &[[bool; 3]],
         components: usize,
     ) -> Result<SurfaceRule, (Vector3, PoorSupport)> {
         let nodes = || 0..cloud.positions.len() as u32;
         let on_boundary = |node: &u32| cloud.on_boundary[*node as usize];
         let boundary: Vec<u32> = nodes().filter(on_boundary).collect();
         let prescribed: Vec<u32> =
-            nodes().filter(|node| on_boundary(node) && prescribed[*node as usize]).collect();
+            nodes().filter(|node| on_boundary(node) && is_held(&held[*node as usize])).collect();
         let near = BoundaryNodes::new(cloud, &boundary, approximation);
         let (centres, panel_rows) = panel_rows(&panels, approximation, &near)?;
         let positions: Vec<Vector3> =
@@ -86,6 +91,7 @@ impl SurfaceRule {
             panel_rows,
             starts: vec![0],
             positions,
+            held: prescribed.iter().map(|&node| held[node as usize]).collect(),
             prescribed,
             prescribed_rows,
             ..SurfaceRule::default()
@@ -142,6 +148,7 @@ impl SurfaceRule {
         let mut strengths = vec![Vector3::zeros(); self.positions.len()];
         let count = self.prescribed.len();
         let mut sizes = vec![0.0; count];
+        let mut acting = vec![Vector3::zeros(); count];
         let mut target = vec![Vector3::zeros(); nodes];
         for (p, panel) in self.panels.iter().enumerate() {
             let strength = panel.area * g(p, panel);
@@ -152,13 +159,14 @@ impl SurfaceRule {
                 strengths[point] += self.fractions[entry] * strength;
                 if divided {
                     sizes[point] += (self.fractions[entry] * panel.area).abs();
+                    acting[point] += (self.fractions[entry] * strength).abs();
                 }
             }
             if divided {
                 add((&self.panel_rows, p), &strength, &mut target);
             }
         }
-        let own: Vec<usize> = (0..count).collect();
+        let changing = self.changing(&acting);
         for _ in 0..SWEEPS {
             let mut rest = target.clone();
             for (c, strength) in strengths[..count].iter().enumerate() {
@@ -166,12 +174,43 @@ impl SurfaceRule {
             }
             let rows = &self.prescribed_rows;
             let value = |entry: usize| rows.phi[entry] * rest[rows.nodes[entry] as usize];
-            let mut change: Vec<Vector3> =
-                (0..count).map(|c| rows.row(c).map(value).sum()).collect();
-            reduce_moments(&mut change, &sizes, &self.positions, &own, |moments, _| moments);
-            strengths.iter_mut().zip(&change).for_each(|(strength, change)| *strength += change);
+            let change: Vec<Vector3> = (0..count).map(|c| rows.row(c).map(value).sum()).collect();
+            self.add_change(&change, &changing, &sizes, &mut strengths);
         }
         strengths
+    }
+
+    /// Which components of the strengths at prescribed nodes may change, by what acts there: those
+    /// that are prescribed, or act already. What flowed along a face of which only the normal
+    /// component is held, nothing would take up.
+    fn changing(&self, acting: &[Vector3]) -> Vec<[bool; 3]> {
+        let of = |(held, acting): (&[bool; 3], &Vector3)| {
+            [0, 1, 2].map(|k| held[k] || acting[k] > ALONG * acting.max())
+        };
+        self.held.iter().zip(acting).map(of).collect()
+    }
+
+    /// Adds the part of changes at the prescribed nodes without affine moments.
+    fn add_change(
+        &self,
+        change: &[Vector3],
+        changing: &[[bool; 3]],
+        sizes: &[f64],
+        strengths: &mut [Vector3],
+    ) {
+        let own: Vec<usize> = (0..self.prescribed.len()).collect();
+        let mut add = |of: &dyn Fn(usize) -> Vector3| {
+            let held = |c: usize| of(c).component_mul(&change[c]);
+            let mut change: Vec<Vector3> = own.iter().map(|&c| held(c)).collect();
+            let sizes: Vec<f64> = own.iter().map(|&c| sizes[c] * of(c).max()).collect();
+            reduce_moments(&mut change, &sizes, &self.positions, &own, |moments, _| moments);
+            strengths.iter_mut().zip(&change).for_each(|(strength, change)| *strength += change);
+        };
+        if changing.iter().flatten().all(|changes| *changes) {
+            return add(&|_| Vector3::repeat(1.0));
+        }
+        let along = |k: usize, c: usize| Vector3::ith(k, f64::from(u8::from(changing[c][k])));
+        (0..3).for_each(|k| add(&|c| along(k, c)));
     }
 
     /// Stores the closed areas of the points where none of them is free.
@@ -217,6 +256,11 @@ impl SurfaceRule {
         });
         volume
     }
+}
+
+/// Whether some component is.
+pub(crate) fn is_held(components: &[bool; 3]) -> bool {
+    components.iter().any(|held| *held)
 }
 
 fn add((rows, row): (&Rows, usize), strength: &Vector3, sums: &mut [Vector3]) {

@@ -4,7 +4,7 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::boundary::marching::contours;
-use crate::geometry::boundary::target_spacing::{TargetSpacing, lattice_cells};
+use crate::geometry::boundary::target_spacing::{TargetSpacing, lattice_cells, nearest_count};
 use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::{Outline, anticlockwise};
 use crate::geometry::primitives::perpendicular;
@@ -103,7 +103,7 @@ pub(super) fn divide(curve: &[Vector3], target: &TargetSpacing, closed: bool) ->
             sums.push(sum);
         }
     }
-    let count = sum.round().max(if closed { 3.0 } else { 1.0 }) as usize;
+    let count = nearest_count(sum).max(if closed { 3 } else { 1 });
     let mut segment = 0;
     (usize::from(!closed)..count)
         .map(|n| {

@@ -5,6 +5,7 @@ mod creases;
 mod curve_panels;
 mod features;
 mod marching;
+mod merged_triangles;
 mod panel;
 mod panels;
 mod patch;
@@ -16,7 +17,7 @@ mod voxel_panels;
 pub use panel::Panel;
 pub(crate) use patch::{Level, Patch};
 pub(crate) use points::{BoundaryPoints, boundary_points, project};
-pub(crate) use target_spacing::{TargetSpacing, lattice_cells};
+pub(crate) use target_spacing::{TargetSpacing, lattice_cells, nearest_count};
 pub(crate) use voxel_panels::merges_voxels;
 
 #[cfg(test)]

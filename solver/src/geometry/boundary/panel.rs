@@ -29,9 +29,10 @@ impl Panel {
     }
 }
 
-/// Number of pieces of at most `size` in `length`.
+/// Number of pieces of at most `size` in `length`, but for a millionth: a body may be that much
+/// larger by round-off, far from the origin or turned.
 pub(super) fn pieces(length: f64, size: f64) -> usize {
-    ((length / size) * (1.0 - 1e-9)).ceil().max(1.0) as usize
+    ((length / size) * (1.0 - 1e-6)).ceil().max(1.0) as usize
 }
 
 /// About how many pieces of `size` cover the faces of a box, in a plane its outline.

@@ -4,6 +4,7 @@ use crate::algebra::tensor::Vector3;
 use crate::geometry::boundary::composite::composite_patches;
 use crate::geometry::boundary::curve_panels::{ellipse_patches, line_patches, segment_patches};
 use crate::geometry::boundary::marching;
+use crate::geometry::boundary::merged_triangles::merged_patches;
 use crate::geometry::boundary::panel::{Panel, pieces_of_box};
 use crate::geometry::boundary::patch::Patch;
 use crate::geometry::boundary::solid_panels::{
@@ -129,6 +130,9 @@ fn surface_pieces<T: From<Patch> + Send>(
         }
         Shape::Labels(_) | Shape::Function(_) => {
             isosurface_pieces(shape, size / 3_f64.sqrt(), size)?
+        }
+        Shape::Surface(surface) if surface.merges_triangles(size) => {
+            merged_patches(surface.corners(), size)
         }
         Shape::Surface(surface) => triangle_patches(surface.corners(), size),
         _ => solid_patches(shape, size, around)?.into_iter().map(T::from).collect(),

@@ -16,8 +16,16 @@ impl TargetSpacing<'_> {
     }
 }
 
-/// Number of cells of about `spacing` in a length, at least one; the larger one of two that fit
-/// equally well but for round-off.
+/// Lengths that differ by less are equal but for round-off \[spacing\].
+const TIE: f64 = 1e-6;
+
+/// Number of cells of about `spacing` in a length, at least one.
 pub(crate) fn lattice_cells(length: f64, spacing: f64) -> usize {
-    (length / spacing + 1e-9).round().max(1.0) as usize
+    nearest_count(length / spacing)
+}
+
+/// Number of parts, at least one, in which a length of so many spacings is divided; the larger one
+/// of two that fit equally well but for round-off.
+pub(crate) fn nearest_count(spacings: f64) -> usize {
+    (spacings + TIE).round().max(1.0) as usize
 }

@@ -1,58 +1,117 @@
 //! Solids enclosed by triangles.
 #![allow(non_snake_case)]
 
+mod edges;
+mod nearest;
+mod note;
+#[cfg(test)]
+mod shell_tests;
 mod shells;
+mod sides;
 #[cfg(test)]
 mod tests;
+mod union;
 
 use crate::algebra::sets::Sets;
 use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::{closed_chains, polygon_area};
-use crate::geometry::triangles::{Triangle, area_vector, enclosed_volume, merged, parry};
-use parry3d_f64::query::PointQueryWithLocation;
-use parry3d_f64::shape::{TriMesh, TriMeshFlags};
-use shells::check_shells;
+use crate::geometry::triangles::{Triangle, area_vector, enclosed_volume, merged};
+use edges::{Closed, closed};
+pub use note::SurfaceNote;
+use rustc_hash::FxHashMap;
+use sides::Sides;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use union::united;
 
 /// A closed surface of triangles that run anticlockwise seen from outside.
 #[derive(Debug, Clone)]
 pub struct Surface {
     vertices: Vec<Vector3>,
     triangles: Vec<[u32; 3]>,
-    mesh: TriMesh,
+    sides: Sides,
     bounds: (Vector3, Vector3),
 }
 
+/// Solids of which triangles are the boundary.
+#[derive(Debug, Clone)]
+pub struct Mended {
+    /// The solid is the union of these, several only where shells cross.
+    pub surfaces: Vec<Surface>,
+    /// What was changed in the triangles.
+    pub notes: Vec<SurfaceNote>,
+}
+
 impl Surface {
-    /// From vertices \[m\] and their indices. Vertices no further apart than
-    /// 1e-9 of the size of the surface are merged and triangles that thereby
-    /// vanish are dropped; what is left must be closed, each edge run through
-    /// once in either direction, with the normals outwards. Of several shells
-    /// none may cross another, and none may lie in another except as a cavity
-    /// or in one, since volumes would count twice. The order of vertices and
-    /// triangles, and which corner of a triangle comes first, change no bit.
+    /// As [`Self::mended`], of triangles whose shells do not cross.
     pub fn new(vertices: Vec<Vector3>, triangles: Vec<[u32; 3]>) -> Result<Self, GeometryError> {
+        let Mended { mut surfaces, notes } = Surface::mended(vertices, triangles)?;
+        match (surfaces.pop(), surfaces.is_empty()) {
+            (Some(surface), true) => Ok(surface),
+            _ => {
+                let crossing = notes.into_iter().find_map(|note| match note {
+                    SurfaceNote::United { first, second, count, at } => {
+                        Some(GeometryError::ShellsCross { first, second, count, at })
+                    }
+                    _ => None,
+                });
+                Err(crossing.unwrap_or(GeometryError::SurfaceFlat))
+            }
+        }
+    }
+
+    /// From vertices \[m\] and their indices. Vertices no further apart than 1e-9 of the size of
+    /// the surface are merged and triangles that thereby vanish, and repeated ones, are dropped;
+    /// what is left must be closed, each edge run through as often in one direction as in the
+    /// other. The solid is where the winding number is at least 1: shells in others that face
+    /// the same way are left out, shells that cross are united. Outermost shells that face
+    /// inwards are turned, with what is in them. The order of vertices and triangles, and which
+    /// corner of a triangle comes first, change no bit.
+    pub fn mended(
+        vertices: Vec<Vector3>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Mended, GeometryError> {
         if !vertices.iter().all(|v| v.iter().all(|c| c.is_finite())) {
             return Err(GeometryError::NotFinite { name: "the surface" });
         }
         let (vertices, triangles) = merge(vertices, triangles)?;
-        let empty =
-            GeometryError::SurfaceEmpty { vertices: vertices.len(), triangles: triangles.len() };
         if triangles.is_empty() {
-            return Err(empty);
+            let (vertices, triangles) = (vertices.len(), 0);
+            return Err(GeometryError::SurfaceEmpty { vertices, triangles });
         }
-        check_closed(&vertices, &triangles)?;
-        check_shells(&vertices, &triangles)?;
         let (vertices, triangles) = sorted(&vertices, &triangles);
-        let points = vertices.iter().map(parry).collect();
-        let mesh = TriMesh::with_flags(points, triangles.clone(), TriMeshFlags::ORIENTED)
-            .map_err(|_| empty)?;
+        let mut notes = Vec::new();
+        let triangles = without_doubles(&vertices, triangles, &mut notes);
+        let Closed { vertices, triangles, shells } = closed(vertices, triangles)?;
+        let count = shells.iter().max().map_or(0, |most| most + 1);
+        let mut parts = vec![Vec::new(); count];
+        shells.iter().zip(triangles).for_each(|(shell, t)| parts[*shell].push(t));
+        let (lower, upper) = bounding_box(&vertices);
+        let (solids, changes) = united(&vertices, parts, (upper - lower).norm())?;
+        notes.extend(changes);
+        if solids.is_empty() {
+            return Err(GeometryError::SurfaceFlat);
+        }
+        let surfaces = solids.iter().map(|solid| Surface::of(&vertices, solid)).collect();
+        Ok(Mended { surfaces, notes })
+    }
+
+    /// Of closed triangles and the vertices that these use.
+    fn of(vertices: &[Vector3], triangles: &[[u32; 3]]) -> Surface {
+        let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        let mut numbers = vec![0; vertices.len()];
+        for (&v, number) in used.iter().zip(0..) {
+            numbers[v as usize] = number;
+        }
+        let vertices: Vec<Vector3> = used.iter().map(|&v| vertices[v as usize]).collect();
+        let triangles: Vec<[u32; 3]> =
+            triangles.iter().map(|t| t.map(|v| numbers[v as usize])).collect();
+        let sides = Sides::new(&vertices, &triangles);
         let bounds = bounding_box(&vertices);
-        let surface = Surface { vertices, triangles, mesh, bounds };
-        let volume = surface.volume();
-        if volume > 0.0 { Ok(surface) } else { Err(GeometryError::SurfaceInsideOut { volume }) }
+        Surface { vertices, triangles, sides, bounds }
     }
 
     /// Enclosed volume \[m³\].
@@ -66,6 +125,12 @@ impl Surface {
         self.triangles.len()
     }
 
+    /// Whether panels of edge `size` \[m\] are made of several triangles.
+    pub(crate) fn merges_triangles(&self, size: f64) -> bool {
+        let area: f64 = self.corners().map(|t| area_vector(&t).norm()).sum();
+        area < SMALL * size * size * self.triangles.len() as f64
+    }
+
     pub(super) fn corners(&self) -> impl Iterator<Item = Triangle> + '_ {
         self.triangles.iter().map(|t| t.map(|v| self.vertices[v as usize]))
     }
@@ -73,9 +138,7 @@ impl Surface {
     /// Signed distance \[m\], the sign from angle-weighted normals
     /// (Bærentzen, Aanæs 2005).
     pub fn signed_distance(&self, X: &Vector3) -> f64 {
-        let (projection, _) = self.mesh.project_local_point_and_get_location(parry(X), false);
-        let distance = (projection.point - parry(X)).length();
-        if projection.is_inside { -distance } else { distance }
+        self.sides.signed_distance(X)
     }
 
     pub(super) fn bounding_box(&self) -> (Vector3, Vector3) {
@@ -100,22 +163,30 @@ impl Surface {
 
     /// Whether it is one shell that bends outwards at no edge.
     pub(crate) fn is_convex(&self) -> bool {
-        let mut across = BTreeMap::new();
+        let mut triangle_at = FxHashMap::default();
         let mut shells = Sets::new(self.vertices.len());
-        for t in &self.triangles {
+        for (t, number) in self.triangles.iter().zip(0..) {
             for k in 0..3 {
-                across.insert((t[k], t[(k + 1) % 3]), t[(k + 2) % 3]);
+                triangle_at.insert((t[k], t[(k + 1) % 3]), number);
                 shells.join(t[k], t[(k + 1) % 3]);
             }
         }
         let first = shells.first(self.triangles[0][0]);
-        let flat = WELD * (self.bounds.1 - self.bounds.0).norm();
-        let behind = |(t, corners): (&[u32; 3], Triangle)| {
-            let Some(normal) = area_vector(&corners).try_normalize(0.0) else { return true };
-            let others = (0..3).filter_map(|k| across.get(&(t[(k + 1) % 3], t[k])));
-            others.into_iter().all(|&v| (self.vertex(v) - corners[0]).dot(&normal) <= flat)
+        let normals: Vec<Option<Vector3>> =
+            self.corners().map(|t| area_vector(&t).try_normalize(0.0)).collect();
+        let size = (self.bounds.1 - self.bounds.0).norm();
+        let behind = |(t, normal): (&[u32; 3], &Option<Vector3>)| {
+            let Some(normal) = normal else { return true };
+            (0..3).all(|k| {
+                let Some(&other) = triangle_at.get(&(t[(k + 1) % 3], t[k])) else { return true };
+                let Some(beyond) = normals[other as usize] else { return true };
+                // Of the vertices of the other one two are on the edge.
+                let rise = |v: u32| (self.vertex(v) - self.vertex(t[0])).dot(normal);
+                let rise = self.triangles[other as usize].map(rise).into_iter().fold(0.0, f64::max);
+                rise <= WELD * size || (rise <= ROUGH * size && normal.dot(&beyond) > LEVEL)
+            })
         };
-        self.triangles.iter().zip(self.corners()).all(behind)
+        self.triangles.iter().zip(&normals).all(behind)
             && self.triangles.iter().all(|t| shells.first(t[0]) == first)
     }
 
@@ -158,6 +229,14 @@ impl Surface {
         loops
     }
 }
+
+/// Dents of single precision in a convex surface, in terms of its size \[–\].
+const ROUGH: f64 = 1e-6;
+/// Triangles that a dent divides enclose less than some 30°, those of a crack do not: the cosine.
+const LEVEL: f64 = 0.866;
+/// Triangles whose mean area is below this are merged in panels \[size²\]; halves of large ones
+/// have about three times as much.
+const SMALL: f64 = 0.1;
 
 type Mesh = (Vec<Vector3>, Vec<[u32; 3]>);
 
@@ -246,24 +325,40 @@ fn sorted(vertices: &[Vector3], triangles: &[[u32; 3]]) -> Mesh {
     (used.iter().map(|&v| vertices[v as usize]).collect(), sorted)
 }
 
-fn check_closed(vertices: &[Vector3], triangles: &[[u32; 3]]) -> Result<(), GeometryError> {
-    let mut edges: BTreeMap<(u32, u32), (usize, usize)> = BTreeMap::new();
-    for t in triangles {
-        for k in 0..3 {
-            let (a, b) = (t[k], t[(k + 1) % 3]);
-            let count = edges.entry((a.min(b), a.max(b))).or_default();
-            if a < b { count.0 += 1 } else { count.1 += 1 }
+/// Each triangle once; none where as many face one way as the other.
+fn without_doubles(
+    vertices: &[Vector3],
+    triangles: Vec<[u32; 3]>,
+    notes: &mut Vec<SurfaceNote>,
+) -> Vec<[u32; 3]> {
+    // Each starts with its smallest vertex, so that its other way round swaps the last two.
+    let place = |t: &[u32; 3]| [t[0], t[1].min(t[2]), t[1].max(t[2])];
+    let mut order = triangles;
+    order.sort_unstable_by_key(|t| (place(t), *t));
+    let (mut repeated, mut opposite) = ((0, None), (0, None));
+    let mut kept = Vec::with_capacity(order.len());
+    for same in order.chunk_by(|t, s| place(t) == place(s)) {
+        let along = same.iter().filter(|t| t[1] < t[2]).count();
+        let against = same.len() - along;
+        if along > against {
+            kept.push(same[0]);
+        } else if against > along {
+            kept.push(same[same.len() - 1]);
+        }
+        let at = vertices[same[0][0] as usize];
+        let (pairs, alike) = (along.min(against), along.abs_diff(against));
+        for (found, sum) in [(alike.saturating_sub(1), &mut repeated), (pairs, &mut opposite)] {
+            if found > 0 {
+                *sum = (sum.0 + found, sum.1.or(Some(at.into())));
+            }
         }
     }
-    let mut open = edges.into_iter().filter(|(_, count)| *count != (1, 1));
-    match open.next() {
-        None => Ok(()),
-        Some(((a, b), (forward, backward))) => Err(GeometryError::SurfaceOpen {
-            from: vertices[a as usize].into(),
-            to: vertices[b as usize].into(),
-            forward,
-            backward,
-            more: open.count(),
-        }),
+    if let (triangles, Some(at)) = repeated {
+        notes.push(SurfaceNote::Repeated { triangles, at });
     }
+    if let (pairs, Some(at)) = opposite {
+        notes.push(SurfaceNote::Opposite { pairs, at });
+    }
+    kept.sort_unstable();
+    kept
 }

@@ -66,6 +66,60 @@ impl ScalarGrid {
     }
 }
 
+/// The cell along an axis in which a position \[sample\] is, and its fraction.
+fn cell_along(t: f64) -> (usize, f64) {
+    let low = t as usize;
+    (low, t - low as f64)
+}
+
+impl ScalarGrid {
+    /// The trilinear value, and its differences over half a sample about `local` along each axis.
+    pub(super) fn value_and_slope(&self, local: &Vector3) -> (f64, Vector3) {
+        const ASIDE: f64 = 0.25;
+        let at = local.component_div(&self.step);
+        let is_deep =
+            |axis: usize| at[axis] >= ASIDE && at[axis] + ASIDE < self.size[axis] as f64 - 1.0;
+        if !(0..3).all(is_deep) {
+            let slope = Vector3::from_fn(|axis, _| {
+                let aside = Vector3::ith(axis, ASIDE * self.step[axis]);
+                let rise = self.sample(&(local + aside)) - self.sample(&(local - aside));
+                rise / (2.0 * ASIDE * self.step[axis])
+            });
+            return (self.sample(local), slope);
+        }
+        let strides = self.strides();
+        let cells = [0, 1, 2].map(|axis| cell_along(at[axis]));
+        let base: usize = (0..3).map(|axis| cells[axis].0 * strides[axis]).sum();
+        let mut slope = Vector3::zeros();
+        let mut value = 0.0;
+        for axis in 0..3 {
+            let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];
+            let (fa, fb) = (cells[a].1, cells[b].1);
+            // Bilinear in the layer across the axis that holds a sample.
+            let layer = |at: usize| {
+                let row =
+                    |at: usize| self.values[at] * (1.0 - fa) + self.values[at + strides[a]] * fa;
+                row(at) * (1.0 - fb) + row(at + strides[b]) * fb
+            };
+            let (low, f) = cells[axis];
+            let (here, next) = (layer(base), layer(base + strides[axis]));
+            let along = |t: f64| {
+                let (cell, f) = cell_along(t);
+                let (low, high) = match cell {
+                    cell if cell < low => (layer(base - strides[axis]), here),
+                    cell if cell > low => (next, layer(base + 2 * strides[axis])),
+                    _ => (here, next),
+                };
+                low * (1.0 - f) + high * f
+            };
+            let rise = along(at[axis] + ASIDE) - along(at[axis] - ASIDE);
+            slope[axis] = rise / (2.0 * ASIDE * self.step[axis]);
+            value = here * (1.0 - f) + next * f;
+        }
+        (value, slope)
+    }
+}
+
 /// All index triples below `size`, the first index fastest.
 pub(crate) fn indices(size: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     let [nx, ny, nz] = size;

@@ -3,12 +3,17 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::error::GeometryError;
+use crate::geometry::voxels::label_blocks::LabelBlocks;
 use std::ops::RangeInclusive;
+use std::sync::OnceLock;
 
 /// Edges that voxels may have \[m\]: those of microscopes and of landscapes.
 const POSSIBLE_EDGES: RangeInclusive<f64> = 1e-9..=1e3;
 /// How far from the origin an image may begin \[m\].
 const FARTHEST: f64 = 1e7;
+
+/// For round-off where a place is near the border of a voxel \[voxel\].
+const ROUND_OFF: f64 = 1e-6;
 
 /// A segmented image: one label per voxel, label 0 is outside.
 #[derive(Debug, Clone)]
@@ -22,6 +27,7 @@ pub struct LabelMap {
     /// Labels, first index fastest.
     pub labels: Vec<u32>,
     to_index: Matrix3,
+    blocks: OnceLock<LabelBlocks>,
 }
 
 impl LabelMap {
@@ -63,7 +69,7 @@ impl LabelMap {
             }
         }
         let to_index = directions.try_inverse().ok_or(singular)?;
-        Ok(LabelMap { size, origin, directions, labels, to_index })
+        Ok(LabelMap { size, origin, directions, labels, to_index, blocks: OnceLock::new() })
     }
 
     /// Edges of a voxel \[m\].
@@ -81,22 +87,45 @@ impl LabelMap {
         self.to_index * (X - self.origin)
     }
 
+    fn blocks(&self) -> &LabelBlocks {
+        self.blocks.get_or_init(|| LabelBlocks::new(self.size, &self.labels))
+    }
+
     /// The label of the voxel that contains `X`, 0 outside the image.
     pub fn label_at(&self, X: &Vector3) -> u32 {
         let index = self.index_of(X);
         let mut voxel = [0; 3];
         for axis in 0..3 {
-            let rounded = (index[axis] + 0.5).floor();
-            if !(rounded >= 0.0 && rounded < self.size[axis] as f64) {
+            let shifted = index[axis] + 0.5;
+            if !(shifted >= 0.0 && shifted < self.size[axis] as f64) {
                 return 0;
             }
-            voxel[axis] = rounded as usize;
+            voxel[axis] = shifted as usize;
         }
         self.label(voxel)
     }
 
     fn label(&self, [i, j, k]: [usize; 3]) -> u32 {
         self.labels[i + self.size[0] * (j + self.size[1] * k)]
+    }
+
+    /// No label within `reach` \[m\] of a place is smaller or larger than these; 0 is outside.
+    pub(crate) fn range_around(&self, X: &Vector3, reach: f64) -> (u32, u32) {
+        let (middle, mut is_within) = (self.index_of(X), true);
+        let (mut first, mut last) = ([0; 3], [0; 3]);
+        for axis in 0..3 {
+            let reach = reach * self.to_index.row(axis).norm() + ROUND_OFF;
+            let [low, high] = [-reach, reach].map(|way| middle[axis] + way + 0.5);
+            let end = self.size[axis] as f64;
+            is_within &= low >= 0.0 && high < end;
+            if !(high >= 0.0 && low < end) {
+                return (0, 0);
+            }
+            first[axis] = low.max(0.0) as usize;
+            last[axis] = (high as usize).min(self.size[axis] - 1);
+        }
+        let (low, high) = self.blocks().within(first, last);
+        if is_within { (low, high) } else { (0, high) }
     }
 
     /// The label at `X` if it is allowed, otherwise that of the nearest

@@ -2,6 +2,7 @@
 
 mod grid;
 mod hand_on;
+mod label_blocks;
 mod label_field;
 mod label_map;
 mod surface_piece;

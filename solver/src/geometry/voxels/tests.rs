@@ -170,3 +170,50 @@ fn distances_far_from_the_level_are_those_to_its_nearest_point() {
     let mean = sum / (n * n * n) as f64;
     assert!(mean.abs() < 0.15 && most < 0.6, "{mean}, {most}");
 }
+
+#[test]
+fn the_labels_about_a_place_lie_in_the_range_that_its_blocks_give() {
+    let size = [13, 9, 11];
+    let labels = (0..size.iter().product::<usize>()).map(|n| [0, 0, 3, 3, 3, 8, 1][n / 37 % 7]);
+    let directions = turn() * Matrix3::from_diagonal(&Vector3::new(1e-3, 2e-3, 1.5e-3));
+    let map = LabelMap::new(size, Vector3::new(0.1, 0.2, -0.3), directions, labels.collect());
+    let map = map.unwrap();
+    let mut narrow = 0;
+    for n in 0..400 {
+        let along = |step: f64| (n as f64 * step).fract() * 1.4 - 0.2;
+        let size = Vector3::new(13.0, 9.0, 11.0);
+        let index = Vector3::new(along(0.137), along(0.291), along(0.511)).component_mul(&size);
+        let X = map.origin + map.directions * index;
+        let reach = 1e-3 * (n % 5) as f64;
+        let (low, high) = map.range_around(&X, reach);
+        for m in 0..125 {
+            let way = [m % 5, m / 5 % 5, m / 25].map(|c| 0.5 * (c as f64 - 2.0));
+            let aside = Vector3::from(way);
+            let aside = aside * (reach / aside.norm().max(1.0));
+            let label = map.label_at(&(X + aside));
+            assert!(low <= label && label <= high, "{label} is not in {low}..={high}");
+        }
+        narrow += (low == high) as usize;
+    }
+    assert!(narrow > 50, "{narrow}");
+}
+
+#[test]
+fn a_value_and_its_slope_are_those_of_seven_samples() {
+    let size = [6, 5, 7];
+    let values = indices(size).map(|[i, j, k]| ((7 * i + 3 * j * j + 5 * k) as f64).sin());
+    let step = Vector3::new(1.0, 0.5, 2.0);
+    let grid = ScalarGrid { size, step, values: values.collect() };
+    for n in 0..300 {
+        let along = |step: f64| (n as f64 * step).fract() * 1.2 - 0.1;
+        let extent = Vector3::new(5.0, 2.0, 12.0);
+        let x = Vector3::new(along(0.137), along(0.291), along(0.511)).component_mul(&extent);
+        let (value, slope) = grid.value_and_slope(&x);
+        assert!((value - grid.sample(&x)).abs() < 1e-14);
+        for axis in 0..3 {
+            let aside = Vector3::ith(axis, 0.25 * step[axis]);
+            let rise = grid.sample(&(x + aside)) - grid.sample(&(x - aside));
+            assert!((slope[axis] - rise / (0.5 * step[axis])).abs() < 1e-13);
+        }
+    }
+}

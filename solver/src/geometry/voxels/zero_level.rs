@@ -93,15 +93,9 @@ impl ScalarGrid {
     /// Distance to the zero level of the field by the iteration of Chopp 2001 (method book,
     /// section 4), from a `foot` near it and a distance that is too large.
     fn distance_to_level(&self, here: &Vector3, mut foot: Vector3, too_large: f64) -> f64 {
-        let slope = |x: &Vector3| {
-            Vector3::from_fn(|axis, _| {
-                let aside = Vector3::ith(axis, 0.25 * self.step[axis]);
-                (self.sample(&(x + aside)) - self.sample(&(x - aside))) / (0.5 * self.step[axis])
-            })
-        };
         let mut nearest = too_large;
         for _ in 0..CLOSER {
-            let (value, g) = (self.sample(&foot), slope(&foot));
+            let (value, g) = self.value_and_slope(&foot);
             let square = g.norm_squared();
             if square == 0.0 {
                 break;

@@ -65,7 +65,7 @@ pub fn zero_energy_modes(
 /// Number of points of the finer rule by which [`refuse_zero_energy_modes`] tests a recipe;
 /// 0 where it does not.
 pub fn tested_points(discretisation: &Discretisation) -> f64 {
-    let (points, nodes) = (discretisation.supports.len(), discretisation.cloud.positions.len());
+    let (points, nodes) = (discretisation.supports.len(), discretisation.deforming_nodes());
     let few = points as f64 <= FEW * nodes as f64;
     match few || points_per_spacing(discretisation).iter().any(|&density| density < FEW) {
         true => f64::max(POINTS_PER_POINT * points as f64, POINTS_PER_NODE * nodes as f64),
@@ -81,7 +81,7 @@ pub fn refuse_zero_energy_modes(
     discretisation: &Discretisation,
     model: &Model,
 ) -> Result<(), Error> {
-    let (points, nodes) = (discretisation.supports.len(), model.positions.len());
+    let (points, nodes) = (discretisation.supports.len(), discretisation.deforming_nodes());
     let few = points as f64 <= FEW * nodes as f64;
     let density = points_per_spacing(discretisation);
     let sparse: Vec<u32> = (0..nodes as u32).filter(|&node| density[node as usize] < FEW).collect();

@@ -17,7 +17,7 @@ const MOST_NODES: usize = 32;
 
 /// Quadrature points per nodal spacing squared, cubed in space, about a node \[–\]: the
 /// number of points that it supports over their volume, both weighted by φ (method book,
-/// eq. 22.3).
+/// eq. 22.3); infinite within what is held as a volume.
 pub(super) fn points_per_spacing(discretisation: &Discretisation) -> Vec<f64> {
     let (rows, cloud) = (&discretisation.supports, &discretisation.cloud);
     let mut counted = vec![(0.0, 0.0); cloud.positions.len()];
@@ -30,8 +30,9 @@ pub(super) fn points_per_spacing(discretisation: &Discretisation) -> Vec<f64> {
     }
     let (d, thickness) =
         (discretisation.dimension.components(), discretisation.dimension.thickness());
-    let density = |(node, (count, volume)): (usize, (f64, f64))| {
-        count * thickness * cloud.spacing[node].powi(d as i32) / volume
+    let density = |(node, (count, volume)): (usize, (f64, f64))| match volume {
+        0.0 => f64::INFINITY,
+        volume => count * thickness * cloud.spacing[node].powi(d as i32) / volume,
     };
     counted.into_iter().enumerate().map(density).collect()
 }

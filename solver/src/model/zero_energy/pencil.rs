@@ -164,7 +164,10 @@ fn finer_rule(
         let asked = grid.cells_per_spacing.map_or(0.0, |asked| asked / factor);
         grid.cells_per_spacing = Some(cells.max(asked));
     }
-    let body = problem.body.section(&problem.dimension)?;
+    let body = match &discretisation.held {
+        Some(held) => held.shape.rest.clone(),
+        None => problem.body.section(&problem.dimension)?,
+    };
     let approximation = &discretisation.approximation;
     let rule = quadrature_of(problem, &problem.regions, (&body, &grid), approximation, None)?;
     Ok((discretisation.rows_at(&rule.positions)?, rule.weights))

@@ -10,6 +10,7 @@ mod points;
 use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock};
 use crate::material::with_law;
 use crate::model::blocks::{LocalVectors, with_gradients};
+use crate::model::projection::PatchMoments;
 use crate::model::{Block, Chunk};
 use fearless_simd::Simd;
 use nodes::{add_forces, deformation_gradients};
@@ -39,8 +40,8 @@ pub struct Scratch {
     pub forces: Vec<f64>,
     /// The smallest J and its lane.
     pub smallest: (f64, usize),
-    /// Moments of the pressure that J gives \[patch\] \[Pa·m^(3/2)\].
-    pub pressures_of_j: Vec<[f64; 4]>,
+    /// What the last displacements made of the patches; volumes are slopes after a derivative.
+    pub patches: Vec<PatchMoments>,
     /// F \[–\] of all points at the displacements of a derivative, once there has been one.
     linearised: Vec<SimdBlock>,
     /// F \[–\], row by row, of each eight points of a chunk.
@@ -62,8 +63,8 @@ impl Scratch {
         Scratch {
             forces: Vec::new(),
             smallest: (f64::INFINITY, 0),
-            pressures_of_j: match block.projection {
-                Some(_) => vec![[0.0; 4]; block.chunks.len()],
+            patches: match block.projection {
+                Some(_) => vec![PatchMoments::default(); block.chunks.len()],
                 None => Vec::new(),
             },
             linearised: Vec::new(),
@@ -107,7 +108,7 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
 ) {
     f.clear::<D>(block.nodes.len());
     scratch.smallest = (f64::INFINITY, 0);
-    let Scratch { smallest, pressures_of_j, linearised, deformation, stress, .. } = scratch;
+    let Scratch { smallest, patches, linearised, deformation, stress, .. } = scratch;
     let (jacobian, pressure) = (&mut scratch.jacobians, &mut scratch.pressures);
     for (patch, Chunk { lanes, groups }) in block.chunks.iter().enumerate() {
         let count = groups.len();
@@ -126,9 +127,9 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
         with_law!(&block.law, law => {
             if let Some(projection) = projection {
                 jacobians::<S, R>(simd, count, deformation, jacobian);
-                let patches = (projection, own.map(|own| own.of(patch)));
-                pressures_of_j[patch] =
-                    pressures::<S, R, _>(simd, law, patches, groups.clone(), jacobian, pressure);
+                let projection = (projection, own.map(|own| own.of(patch)));
+                patches[patch] =
+                    pressures::<S, R, _>(simd, law, projection, groups.clone(), jacobian, pressure);
             }
             let pressure = projection.map(|_| &*pressure);
             let results = (&mut *stress, &mut *jacobian);

@@ -6,7 +6,7 @@
 use crate::algebra::lanes::{Lanes, Parts, SimdBlock};
 use crate::algebra::tensor::{Tensor, map};
 use crate::material::{ConstitutiveLaw, Deformation};
-use crate::model::projection::{OwnPressure, Projection};
+use crate::model::projection::{OwnPressure, PatchMoments, Projection};
 use fearless_simd::Simd;
 use std::ops::Range;
 
@@ -31,7 +31,7 @@ pub fn jacobians<S: Simd, R: Lanes<S>>(
     );
 }
 
-/// s (p_q − U'(J_q)) \[Pa\] of a patch, and the moments of the pressure that J gives.
+/// s (p_q − U'(J_q)) \[Pa\] of a patch, and what the displacements make of it.
 pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
     simd: S,
     law: &L,
@@ -39,7 +39,7 @@ pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
     groups: Range<usize>,
     jacobians: &Parts<SimdBlock>,
     pressures: &mut Parts<SimdBlock>,
-) -> [f64; 4] {
+) -> PatchMoments {
     simd.vectorize(
         #[inline(always)]
         || projection.pressures::<S, R, _>(simd, law, groups, own, jacobians, pressures),

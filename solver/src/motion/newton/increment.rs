@@ -1,7 +1,7 @@
 //! Newton's method at a fraction of the load.
 
-use super::conjugate_gradients::{Correction, System};
 use super::drift::drifts;
+use super::linear::{Correction, System};
 use super::solver::{Equilibrium, SHIFTS, Solver};
 use super::taken::{Outcome, is_left};
 use crate::algebra::packed::largest;
@@ -86,6 +86,7 @@ impl Solver<'_> {
         let mut jump = self.jump(start, fraction);
         let asked = largest(&jump);
         let imbalance = self.imbalance(start, fraction, buffers);
+        self.see_pressures(buffers);
         self.shift = if self.floating { self.first_shift(&imbalance) } else { 0.0 };
         let mut now = Equilibrium { u: start.to_vec(), imbalance, exact: None };
         // The jump of what is prescribed may take several corrections.
@@ -121,10 +122,9 @@ impl Solver<'_> {
             let falling = self.floating && self.free.contacts.is_empty();
             let searched = !jumping && settled && !falling;
             let norm = now.imbalance.norm(model);
-            let cut = match self.take(&now, &correction.change, fraction, searched, buffers) {
+            let cut = match self.take(&now, &correction, fraction, searched, buffers) {
                 Outcome::Taken(next, length) => {
-                    let jumped = jumping || !settled || length < 1.0;
-                    now = self.with_pressures_of(next, fraction, jumped, buffers);
+                    now = self.with_exact(next, fraction, buffers);
                     jumping && !(whole && length == 1.0)
                 }
                 Outcome::TooFar if self.floating && self.shift < SHIFTS.1 => {
@@ -246,9 +246,11 @@ impl Solver<'_> {
         let forces = self.contact_forces(&now.imbalance);
         let sliding = self.contacts.sliding_stiffness(model, &now.u, &forces, only_resisting);
         let tangent = Tangent::new(model, &now.u, self.free.t, &mut buffers.workspace)
-            .with_pressures(self.pressures.as_ref().map(|pressures| &pressures.own));
+            .with_pressures(self.pressures.as_ref().map(|pressures| pressures.own.clone()));
+        let saddle = self.pressures.as_ref().map(|pressures| pressures.saddle(model));
         let residual = now.imbalance.free(model);
-        let system = System { tangent, residual, change, forcing, sliding, shift: self.shift };
+        let system =
+            System { tangent, residual, change, forcing, sliding, shift: self.shift, saddle };
         let correction = self.linear.solve(model, &mut self.free, system, go_on);
         self.counts.iterations += 1;
         self.counts.products += correction.products;

@@ -1,97 +1,127 @@
 //! Pressures of patches as unknowns beside the displacements, where a body is nearly
 //! incompressible.
+#![allow(non_snake_case)]
 
-use crate::algebra::packed::{axpy, dot};
-use crate::model::{Model, ModuliAtRest};
-use crate::motion::internal_force::OwnPressures;
-use nalgebra::{DMatrix, DVector};
+use super::linear::{Saddle, SaddlePatch};
+use crate::algebra::packed::axpy;
+use crate::material::Law;
+use crate::model::{Block, Model, ModuliAtRest};
+use crate::motion::internal_force::{OwnPressures, Workspace};
 
-/// Largest projected bulk modulus over the shear modulus in the tangent \[–\].
-const MOST: f64 = 30.0;
-/// The same of a body from which on pressures are unknowns from the start \[–\].
+/// Largest projected bulk modulus over the shear modulus beside pressures that are unknowns \[–\].
+const MOST: f64 = 3.0;
+/// The same of a body from which on pressures are unknowns from the start, and from which on they
+/// become unknowns where an increment fails without \[–\].
 const NEARLY_INCOMPRESSIBLE: f64 = 100.0;
-/// Changes before the last one that the pressures are extrapolated from.
-const REMEMBERED: usize = 3;
-/// Fall of a change in two corrections above which they are extrapolated \[–\]: otherwise
-/// corrections do well without, and what is left of their residuals disturbs.
-const SLOW: f64 = 0.5;
-/// What is added to the diagonal of their Gram matrix over its trace \[–\]: round-off.
-const DEPENDENT: f64 = 1e-10;
+const HARDLY_COMPRESSIBLE: f64 = 30.0;
+/// Shear moduli that resist a change of volume in the Schur complement of a patch \[–\].
+const RESISTS: f64 = 16.0;
+/// Bounds of U''(θ) over U''(1) \[–\].
+const STIFFENED: (f64, f64) = (0.1, 10.0);
 
-/// The pressures, and how they came to be.
+/// The pressures, and what the displacements make of them.
 #[derive(Clone)]
 pub(super) struct Pressures {
     pub own: OwnPressures,
-    /// Those before the last corrections, and the changes f that these asked for.
-    past: Vec<[Vec<f64>; 2]>,
+    /// Moments that J gives \[Pa·m^(3/2)\].
+    of_j: Vec<f64>,
+    /// U''(θ) for the mean of θ \[patch\] \[Pa\].
+    bulk: Vec<f64>,
+}
+
+/// A patch at rest.
+struct AtRest<'a> {
+    law: &'a Law,
+    moduli: ModuliAtRest,
+    /// s \[–\]
+    fraction: f64,
+    /// c \[–\]
+    part: f64,
+    /// The constant function of its basis \[m^(−3/2)\].
+    constant: f64,
 }
 
 impl Pressures {
-    /// As they are.
-    pub fn new(own: OwnPressures) -> Pressures {
-        Pressures { own, past: Vec::new() }
+    /// Those that J gave in the last evaluation.
+    pub fn of_j(model: &Model, workspace: &Workspace) -> Pressures {
+        let own = OwnPressures::zero(model, MOST);
+        let mut pressures = Pressures { own, of_j: Vec::new(), bulk: Vec::new() };
+        pressures.see(model, workspace);
+        pressures.own.set_values(&pressures.of_j);
+        pressures
     }
 
-    /// Forgets what changed under other conditions.
-    pub fn forget(&mut self) {
-        self.past.clear();
+    /// Takes notice of what the displacements of the last evaluation make of the patches.
+    pub fn see(&mut self, model: &Model, workspace: &Workspace) {
+        self.of_j = workspace.pressures_of_j();
+        let seen = patches(model).zip(workspace.patches());
+        self.bulk = seen.map(|(patch, seen)| patch.bulk(patch.constant * seen.volume[0])).collect();
     }
 
-    /// Goes towards the pressures that J gives, extrapolated from the last corrections where
-    /// that is slow (method book, eq. 21.15: Anderson 1965).
-    pub fn follow<'a>(&mut self, of_j: impl Iterator<Item = &'a [[f64; 4]]>) {
-        let before = self.own.values();
-        self.own.approach(of_j, 1.0);
-        let mut after = self.own.values();
-        let change = difference(&after, &before);
-        self.past.push([before, change]);
-        if self.past.len() > REMEMBERED + 1 {
-            self.past.remove(0);
+    /// The rows of the pressures in the system of a correction.
+    pub fn saddle(&self, model: &Model) -> Saddle {
+        let (own, mut residual) = (self.own.values(), Vec::new());
+        let rows = patches(model).zip(&self.bulk).map(|(patch, bulk)| patch.row(*bulk));
+        let rows: Vec<SaddlePatch> = rows.collect();
+        let gaps = self.of_j.as_chunks::<4>().0.iter().zip(own.as_chunks::<4>().0);
+        for ((row, (of_j, own)), bulk) in rows.iter().zip(gaps).zip(&self.bulk) {
+            let factor = if row.fraction > 0.0 { row.fraction / bulk } else { 0.0 };
+            residual.extend((0..4).map(|b| factor * (own[b] - of_j[b])));
         }
-        let differences = match self.is_slow() {
-            true => self.differences(),
-            false => Vec::new(),
-        };
-        for ([pressures, changes], factor) in differences.iter().zip(self.factors(&differences)) {
-            axpy(&mut after, -factor, pressures);
-            axpy(&mut after, -factor, changes);
-        }
-        self.own.set_values(&after);
+        Saddle { residual, patches: rows }
     }
 
-    fn is_slow(&self) -> bool {
-        let length = |change: &[f64]| dot(change, change).sqrt();
-        match &self.past[..] {
-            [.., [_, before], _, [_, now]] => length(now) > SLOW * length(before),
-            _ => false,
+    /// Moves by a part of a correction q = (1 − c) Δp.
+    pub fn moved(&self, model: &Model, part: f64, q: &[f64]) -> OwnPressures {
+        let mut values = self.own.values();
+        let rows = values.as_chunks_mut::<4>().0.iter_mut().zip(q.as_chunks::<4>().0);
+        for (patch, (values, q)) in patches(model).zip(rows) {
+            if patch.part < 1.0 {
+                axpy(values, part / (1.0 - patch.part), q);
+            }
         }
-    }
-
-    /// Δp and Δf between successive corrections.
-    fn differences(&self) -> Vec<[Vec<f64>; 2]> {
-        let pairs = self.past.windows(2);
-        pairs.map(|pair| [0, 1].map(|part| difference(&pair[1][part], &pair[0][part]))).collect()
-    }
-
-    /// γ of least |f − Σ_j γ_j Δf_j| for the last change f; none where they depend on each other.
-    fn factors(&self, differences: &[[Vec<f64>; 2]]) -> Vec<f64> {
-        let Some([_, change]) = self.past.last() else { return Vec::new() };
-        let count = differences.len();
-        if count == 0 {
-            return Vec::new();
-        }
-        let product = |i: usize, j: usize| dot(&differences[i][1], &differences[j][1]);
-        let mut gram = DMatrix::from_fn(count, count, product);
-        let least = DEPENDENT * gram.trace();
-        (0..count).for_each(|i| gram[(i, i)] += least);
-        let right = DVector::from_fn(count, |i, _| dot(&differences[i][1], change));
-        let solved = gram.cholesky().map(|cholesky| cholesky.solve(&right));
-        solved.map_or(Vec::new(), |factors| factors.iter().copied().collect())
+        let mut own = self.own.clone();
+        own.set_values(&values);
+        own
     }
 }
 
-fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
+impl AtRest<'_> {
+    /// U''(θ) \[Pa\], kept near that at rest.
+    fn bulk(&self, theta: f64) -> f64 {
+        let slope = |theta: f64| self.law.bulk_slope(theta);
+        let at_rest = self.moduli.projected / self.fraction;
+        let bulk = (slope(theta + 1e-6) - slope(theta - 1e-6)) / 2e-6;
+        bulk.max(STIFFENED.0 * at_rest).min(STIFFENED.1 * at_rest)
+    }
+
+    fn row(&self, bulk: f64) -> SaddlePatch {
+        if self.part >= 1.0 {
+            return SaddlePatch { fraction: 0.0, compliance: 1.0, schur: 1.0 };
+        }
+        let (s, shear) = (self.fraction, self.moduli.shear);
+        let compliance = s / (bulk * (1.0 - self.part));
+        let schur = compliance + s * s / ((RESISTS + MOST) * shear);
+        SaddlePatch { fraction: s, compliance, schur }
+    }
+}
+
+/// All patches, block by block.
+fn patches(model: &Model) -> impl Iterator<Item = AtRest<'_>> {
+    model.blocks.iter().flat_map(of_block)
+}
+
+fn of_block(block: &Block) -> impl Iterator<Item = AtRest<'_>> {
+    let moduli = ModuliAtRest::of(block);
+    block.projection.iter().flat_map(move |projection| {
+        block.chunks.iter().map(move |chunk| AtRest {
+            law: &block.law,
+            moduli,
+            fraction: projection.fraction,
+            part: (MOST * moduli.shear / moduli.projected).min(1.0),
+            constant: projection.basis_at(chunk.lanes.start)[0],
+        })
+    })
 }
 
 /// Largest projected bulk modulus over the shear modulus \[–\].
@@ -108,13 +138,13 @@ pub(super) fn are_unknowns(model: &Model) -> bool {
     largest_ratio(model) > NEARLY_INCOMPRESSIBLE
 }
 
+/// Whether they may become unknowns.
+pub(super) fn can_be_unknowns(model: &Model) -> bool {
+    largest_ratio(model) > HARDLY_COMPRESSIBLE
+}
+
 /// Largest projected bulk modulus over the shear modulus in the tangent \[–\], where pressures are
 /// unknowns or are not.
 pub(super) fn most(unknown: bool) -> f64 {
     if unknown { MOST } else { f64::INFINITY }
-}
-
-/// Whether they may become unknowns.
-pub(super) fn can_be_unknowns(model: &Model) -> bool {
-    largest_ratio(model) > MOST
 }

@@ -1,8 +1,8 @@
 //! What Newton's method has at hand at every fraction of the load.
 
 use super::active_contacts::ActiveContacts;
-use super::conjugate_gradients::Solver as LinearSolver;
 use super::free_space::FreeSpace;
+use super::linear::Solver as LinearSolver;
 use super::load_path::Path;
 use super::pressures::{Pressures, are_unknowns, most};
 use crate::model::Model;
@@ -125,9 +125,7 @@ impl Solver<'_> {
     /// The pressures become those of displacements `u` \[m\].
     pub(super) fn take_pressures_of(&mut self, u: &[f64], fraction: f64, buffers: &mut Buffers) {
         self.imbalance_with(u, None, fraction, buffers);
-        let mut own = OwnPressures::zero(self.model, most(true));
-        own.approach(buffers.workspace.pressures_of_j(), f64::INFINITY);
-        self.pressures = Some(Pressures::new(own));
+        self.pressures = Some(Pressures::of_j(self.model, &buffers.workspace));
     }
 
     /// Leaves the pressures to the displacements again, for good.
@@ -137,23 +135,25 @@ impl Solver<'_> {
         self.linear = LinearSolver::new(self.model, most(false));
     }
 
-    /// Has the pressures follow new displacements, which have been evaluated last; `jumped`
-    /// says that other conditions held before.
-    pub(super) fn with_pressures_of(
+    /// Adds the imbalance that displacements alone decide on, where pressures are unknowns.
+    pub(super) fn with_exact(
         &mut self,
         next: Equilibrium,
         fraction: f64,
-        jumped: bool,
         buffers: &mut Buffers,
     ) -> Equilibrium {
-        let Some(pressures) = &mut self.pressures else { return next };
-        if jumped {
-            pressures.forget();
+        if self.pressures.is_none() {
+            return next;
         }
-        pressures.follow(buffers.workspace.pressures_of_j());
-        let Equilibrium { u, .. } = next;
-        let imbalance = self.imbalance(&u, fraction, buffers);
-        let exact = Some(self.imbalance_with(&u, None, fraction, buffers));
-        Equilibrium { u, imbalance, exact }
+        let exact = Some(self.imbalance_with(&next.u, None, fraction, buffers));
+        self.see_pressures(buffers);
+        Equilibrium { exact, ..next }
+    }
+
+    /// Takes notice of what the displacements of the last evaluation make of the patches.
+    pub(super) fn see_pressures(&mut self, buffers: &Buffers) {
+        if let Some(pressures) = &mut self.pressures {
+            pressures.see(self.model, &buffers.workspace);
+        }
     }
 }

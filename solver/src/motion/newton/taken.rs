@@ -1,5 +1,7 @@
 //! How much of a correction is taken, and what it leaves of the jump of prescribed values.
 
+use super::linear::Correction;
+use super::pressures::Pressures;
 use super::solver::{Equilibrium, SHIFTS, Solver};
 use crate::algebra::packed::{dot, largest};
 use crate::motion::step::Buffers;
@@ -8,6 +10,8 @@ use crate::motion::step::Buffers;
 const MOST_HALVINGS: usize = 6;
 /// A correction may not compress a point to less than this fraction of its volume.
 const SMALLEST_VOLUME: f64 = 0.1;
+/// The same of a part of a jump, of which the rest follows in the next correction.
+const SMALLEST_VOLUME_IN_JUMP: f64 = 0.3;
 /// Largest move of a node in a correction with contact, over the mean nodal spacing \[–\].
 const LARGEST_MOVE: f64 = 2.0;
 /// Largest jump of a prescribed value in it, over the mean nodal spacing \[–\]: less, as what
@@ -64,15 +68,32 @@ impl Solver<'_> {
     pub(super) fn take(
         &mut self,
         now: &Equilibrium,
-        change: &[f64],
+        correction: &Correction,
         fraction: f64,
         searched: bool,
         buffers: &mut Buffers,
     ) -> Outcome {
-        let safe = self.contacts.safe_part(self.model, &now.u, change);
+        let safe = self.contacts.safe_part(self.model, &now.u, &correction.change);
+        let from = self.pressures.clone();
+        let outcome = self.tried(now, (correction, safe), fraction, searched, buffers);
+        if !matches!(outcome, Outcome::Taken(..)) {
+            self.pressures = from;
+        }
+        outcome
+    }
+
+    fn tried(
+        &mut self,
+        now: &Equilibrium,
+        (correction, safe): (&Correction, f64),
+        fraction: f64,
+        searched: bool,
+        buffers: &mut Buffers,
+    ) -> Outcome {
+        let change = &correction.change;
+        let from = self.pressures.clone();
         if searched {
-            let change: Vec<f64> = change.iter().map(|change| safe * change).collect();
-            return match self.search(now, &change, fraction, buffers) {
+            return match self.search(now, (correction, safe), fraction, buffers) {
                 Some(next) => Outcome::Taken(next, 1.0),
                 None => Outcome::TooFar,
             };
@@ -83,14 +104,22 @@ impl Solver<'_> {
         if self.floating && farthest < 1.0 && self.shift < SHIFTS.1 {
             return Outcome::TooFar;
         }
-        let volume = SMALLEST_VOLUME * now.imbalance.smallest_jacobian.jacobian.min(1.0);
-        let u = moved(&now.u, change, length);
-        let imbalance = self.imbalance(&u, fraction, buffers);
-        match imbalance.smallest_jacobian.jacobian > volume {
-            true => Outcome::Taken(Equilibrium { u, imbalance, exact: None }, length),
-            false if self.floating => Outcome::TooFar,
-            false => Outcome::Failed,
-        }
+        let smallest = now.imbalance.smallest_jacobian.jacobian.min(1.0);
+        // Of a jump without contact the rest can follow.
+        let (halvings, volume) = match from.is_some() && model.contact.obstacles.is_empty() {
+            true => (MOST_HALVINGS, SMALLEST_VOLUME_IN_JUMP),
+            false => (0, SMALLEST_VOLUME),
+        };
+        let taken = (0..=halvings).find_map(|halvings| {
+            let length = length * 0.5f64.powi(halvings as i32);
+            let u = moved(&now.u, change, length);
+            self.move_pressures(&from, length, correction);
+            let imbalance = self.imbalance(&u, fraction, buffers);
+            let valid = imbalance.smallest_jacobian.jacobian > volume * smallest;
+            valid.then_some(Outcome::Taken(Equilibrium { u, imbalance, exact: None }, length))
+        });
+        let refused = if self.floating { Outcome::TooFar } else { Outcome::Failed };
+        taken.unwrap_or(refused)
     }
 
     /// The longest of the halved corrections that keeps points from collapsing
@@ -98,21 +127,34 @@ impl Solver<'_> {
     fn search(
         &mut self,
         now: &Equilibrium,
-        change: &[f64],
+        (correction, safe): (&Correction, f64),
         fraction: f64,
         buffers: &mut Buffers,
     ) -> Option<Equilibrium> {
+        let change: Vec<f64> = correction.change.iter().map(|change| safe * change).collect();
+        let from = self.pressures.clone();
         let (model, before) = (self.model, &now.imbalance);
-        let slope = dot(change, &before.free(model)).abs();
+        let slope = dot(&change, &before.free(model)).abs();
         let volume = SMALLEST_VOLUME * before.smallest_jacobian.jacobian.min(1.0);
         (0..=MOST_HALVINGS).find_map(|halvings| {
-            let u = moved(&now.u, change, 0.5f64.powi(halvings as i32));
+            let length = 0.5f64.powi(halvings as i32);
+            let u = moved(&now.u, &change, length);
+            self.move_pressures(&from, safe * length, correction);
             let imbalance = self.imbalance(&u, fraction, buffers);
             let valid = imbalance.smallest_jacobian.jacobian > volume;
             let closer = imbalance.norm(model) <= 0.99 * before.norm(model)
-                || dot(change, &imbalance.free(model)).abs() <= 0.8 * slope;
+                || dot(&change, &imbalance.free(model)).abs() <= 0.8 * slope;
             (valid && closer).then_some(Equilibrium { u, imbalance, exact: None })
         })
+    }
+}
+
+impl Solver<'_> {
+    /// The pressures become those before a correction and a part of it.
+    fn move_pressures(&mut self, from: &Option<Pressures>, part: f64, correction: &Correction) {
+        if let (Some(now), Some(from)) = (&mut self.pressures, from) {
+            now.own = from.moved(self.model, part, &correction.pressures);
+        }
     }
 }
 

@@ -73,6 +73,7 @@ fn within_bound(band: Band, bound: Bound) -> Band {
         Bound::AtMost(limit) => (band.low, band.high.min(limit)),
         Bound::AtLeast(limit) => (band.low.max(limit), band.high),
         Bound::Between(low, high) => (band.low.max(low), band.high.min(high)),
+        Bound::Baseline(_) => (band.low, band.high),
     };
     Band { low, high, ..band }
 }
@@ -84,7 +85,8 @@ pub fn mean_and_scatter(samples: &[f64], unit: &str) -> Option<(f64, Scatter)> {
         return None;
     }
     let least = |value: f64| round_off(value, unit);
-    let (low, high) = samples.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+    let (low, high) =
+        samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
     if high - low <= least(high).max(least(low)) {
         return None;
     }

@@ -1,5 +1,6 @@
 //! The committed figures, one check per line so that a diff can be read.
 
+use crate::input::read_text;
 use crate::study::{Band, Bound, Kind};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -91,7 +92,7 @@ pub enum GateError {
 /// Reads a baseline.
 pub fn read_baseline(path: &Path) -> Result<Baseline, GateError> {
     let at = || path.to_path_buf();
-    let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
+    let text = read_text(path).map_err(|source| match source.kind() {
         std::io::ErrorKind::NotFound => GateError::Absent { path: at() },
         _ => GateError::Unreadable { path: at(), source },
     })?;

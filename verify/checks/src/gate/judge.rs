@@ -2,7 +2,7 @@
 
 use super::band::{HALF_THE_DIGITS, without_scatter};
 use super::baseline::{Baseline, GateError, Stored};
-use crate::study::{Band, Bound, Change, Check, Comparison, Report, Verdict};
+use crate::study::{Band, Better, Bound, Change, Check, Comparison, Kind, Report, Verdict};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,6 +15,15 @@ pub fn compare(report: &Report, baseline: &Baseline, whole: bool) -> Result<Comp
         None => "a baseline without a history".to_string(),
     };
     Ok(Comparison { with, changes: changes(report, &baseline.checks, whole) })
+}
+
+/// Gives the checks that have no bound of their own the bands of their stored figures.
+pub fn settle(report: &mut Report, baseline: &Baseline) {
+    for check in report.studies.iter_mut().flat_map(|study| &mut study.checks) {
+        if matches!(check.bound, Bound::Baseline(_)) {
+            check.band = baseline.check(&check.id).map(|stored| stored.band);
+        }
+    }
 }
 
 /// Judges the run `now` by the figures of `before`, without a baseline: the scatter
@@ -98,6 +107,12 @@ fn judged(check: &Check, stored: &Stored) -> Change {
     if check.unit != stored.unit {
         verdict = Verdict::Worse;
         remark = Some(format!("its unit was {}", stored.unit));
+    } else if stored.kind != Kind::Regression && check.kind == Kind::Regression {
+        verdict = Verdict::Worse;
+        remark = Some(format!(
+            "it was judged by its {} bound, now by our own figure",
+            stored.kind.name()
+        ));
     } else if loosened(stored.bound, check.bound) {
         verdict = Verdict::Worse;
         remark = Some("its bound was loosened".to_string());
@@ -114,7 +129,7 @@ pub fn verdict(check: &Check, band: &Band) -> Verdict {
         return Verdict::Same;
     }
     match check.bound {
-        Bound::AtMost(_) if now < band.low => Verdict::Improved,
+        Bound::AtMost(_) | Bound::Baseline(Better::Lower) if now < band.low => Verdict::Improved,
         Bound::AtLeast(_) if now > band.high => Verdict::Improved,
         _ => Verdict::Worse,
     }
@@ -131,6 +146,9 @@ pub fn loosened(before: Bound, now: Bound) -> bool {
         (Bound::Between(low, high), Bound::Between(now_low, now_high)) => {
             above(now_high, high) || above(-now_low, -low)
         }
+        (Bound::Baseline(before), Bound::Baseline(now)) => before != now,
+        // Where there was none, any bound is tighter.
+        (Bound::Baseline(_), _) => false,
         _ => true,
     }
 }

@@ -12,5 +12,5 @@ pub mod update;
 
 pub use baseline::{Baseline, GateError, read_baseline};
 pub use clouds::Clouds;
-pub use judge::{compare, compare_runs};
+pub use judge::{compare, compare_runs, settle};
 pub use update::{Reason, difference, update};

@@ -19,7 +19,7 @@ pub fn annotations(report: &Report, folder: &Path) -> Vec<String> {
     }
     for study in &report.studies {
         let title = format!("{} is inconclusive", study.id);
-        lines.extend(study.undecided.iter().map(|question| command("warning", &title, question)));
+        lines.extend(study.questions().iter().map(|question| command("warning", &title, question)));
     }
     for check in report.checks().filter(|check| !check.pass) {
         let title = format!("{} fails", check.id);

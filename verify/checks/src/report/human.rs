@@ -50,7 +50,7 @@ fn attention(report: &Report, colour: bool, width: u16) -> String {
         }
     }
     for (study, question) in
-        report.studies.iter().flat_map(|s| s.undecided.iter().map(move |q| (s, q)))
+        report.studies.iter().flat_map(|s| s.questions().into_iter().map(move |q| (s, q)))
     {
         let line = format!("INCONCLUSIVE {}: {question}", study.id);
         let amber = colour_of(Outcome::Inconclusive).1;

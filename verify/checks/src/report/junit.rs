@@ -65,26 +65,27 @@ fn cases(study: &Study) -> Vec<Case> {
             description: String::new(),
         }),
     });
-    let checks = study.checks.iter().map(|check| Case {
-        name: check.id.clone(),
-        failure: (!check.pass).then(|| failure(check)),
-    });
+    let checks =
+        study.checks.iter().map(|check| Case { name: check.id.clone(), failure: failure(check) });
     broken.chain(open).chain(checks).collect()
 }
 
-fn failure(check: &Check) -> Failure {
+/// What is wrong with a check: that it breaks its bound, or that nothing judges it.
+fn failure(check: &Check) -> Option<Failure> {
+    if check.passed() {
+        return None;
+    }
     let (value, bound) = (four_digits(check.value), bound_text(&check.bound));
     let (unit, quantity) = (unit_suffix(&check.unit), &check.quantity);
     let mut description = format!("{quantity}\nbound from: {}", check.source);
     if let Some(file) = check.failure_file() {
         description += &format!("\nthe smallest case that shows it: {file}");
     }
-    Failure {
-        element: "failure",
-        kind: check.kind.name(),
-        message: format!("{quantity}: {value}{unit} breaks {bound}{unit}"),
-        description,
-    }
+    let (element, message) = match check.pass {
+        true => ("skipped", format!("{quantity}: {value}{unit} is new, and nothing judges it")),
+        false => ("failure", format!("{quantity}: {value}{unit} breaks {bound}{unit}")),
+    };
+    Some(Failure { element, kind: check.kind.name(), message, description })
 }
 
 /// A test case per check that has a baseline: nothing got worse.

@@ -6,7 +6,7 @@ use crate::study::{Check, Report, Study, Verdict};
 /// «48 of 50 checks passed», with the studies that could not run and the checks that
 /// got worse.
 pub(super) fn result_line(report: &Report) -> String {
-    let (passed, all) = counts(report.checks().map(|check| check.pass));
+    let (passed, all) = counts(report.checks().map(Check::passed));
     let broken = report.studies.iter().filter(|study| study.failure.is_some()).count();
     let mut line = match all {
         0 => "Figures only".to_string(),
@@ -14,6 +14,10 @@ pub(super) fn result_line(report: &Report) -> String {
     };
     if broken > 0 {
         line += &format!(", {broken} {} could not run", plural(broken, "study", "studies"));
+    }
+    let new = report.checks().filter(|check| !check.is_judged()).count();
+    if new > 0 {
+        line += &format!(", {new} new and not judged");
     }
     let open = report.studies.iter().map(|study| study.undecided.len()).sum::<usize>();
     if open > 0 {
@@ -35,7 +39,7 @@ pub(super) fn counts(passes: impl Iterator<Item = bool>) -> (usize, usize) {
 
 /// Checks passed and all checks of one study.
 pub(super) fn study_counts(study: &Study) -> (usize, usize) {
-    counts(study.checks.iter().map(|check| check.pass))
+    counts(study.checks.iter().map(Check::passed))
 }
 
 /// A pure number has no unit to show.

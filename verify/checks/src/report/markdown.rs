@@ -67,7 +67,7 @@ fn failures(text: &mut String, report: &Report) {
         }
     }
     for study in &report.studies {
-        for question in &study.undecided {
+        for question in &study.questions() {
             let _ = writeln!(
                 text,
                 "- ❔ **{}** is inconclusive: {}",
@@ -141,7 +141,7 @@ fn mark(outcome: Outcome) -> &'static str {
 /// The tables and notes of a study.
 pub fn markdown_tables(study: &Study, provenance: &Provenance) -> String {
     let mut text = format!("# {}\n\n{}\n", inline(&study.title), inline(&study.claim));
-    for question in &study.undecided {
+    for question in &study.questions() {
         let _ = write!(text, "\n**Inconclusive:** {}\n", inline(question));
     }
     for table in &study.tables {

@@ -12,12 +12,12 @@ pub fn four_digits(value: f64) -> String {
 /// A bound with its relation, such as `≤ 0.02`.
 pub fn bound_text(bound: &Bound) -> String {
     match *bound {
-        Bound::AtMost(f64::MAX) | Bound::Between(f64::MIN, f64::MAX) => "any finite value".into(),
         Bound::AtMost(limit) => format!("≤ {}", significant(limit, true)),
         Bound::AtLeast(limit) => format!("≥ {}", significant(limit, true)),
         Bound::Between(low, high) => {
             format!("{} … {}", significant(low, true), significant(high, true))
         }
+        Bound::Baseline(_) => "that of the baseline".into(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Reads results.json back.
 
 use super::json::SCHEMA_VERSION;
+use crate::input::read_text;
 use crate::study::{Check, Comparison, Provenance, Report, Study};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -43,7 +44,7 @@ struct File {
 /// The report in a folder, or in the results.json that is named.
 pub fn read_report(path: &Path) -> Result<Report, ReportError> {
     let file = if path.is_dir() { path.join("results.json") } else { path.to_path_buf() };
-    match std::fs::read_to_string(&file) {
+    match read_text(&file) {
         Ok(text) => from_json(&text, &file),
         Err(source) if source.kind() == std::io::ErrorKind::NotFound => {
             Err(ReportError::Absent { path: file })

@@ -3,11 +3,12 @@
 use super::{html, json, junit, markdown, svg};
 use crate::escape::file_name;
 use crate::study::{Report, Table};
+use crate::temporary::{remove_abandoned, temporary};
 use anyhow::{Context, Result};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::time::Duration;
-use tempfile::{Builder, NamedTempFile};
+use tempfile::NamedTempFile;
 
 /// Writes results.json, junit.xml, index.html, summary.md and every figure into
 /// `dir`, which is created where it is missing.
@@ -71,12 +72,23 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
 fn write_then_rename(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder)?;
-    let mut file = temporary(folder)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    rename(file, path)
+    let write = || {
+        std::fs::create_dir_all(folder)?;
+        let mut file = temporary(folder)?;
+        file.write_all(bytes)?;
+        file.as_file().sync_all()?;
+        rename(file, path)
+    };
+    // Somebody may clear the folder between two of these steps.
+    let cleared = |error: &std::io::Error| error.kind() == ErrorKind::NotFound;
+    (1..TRIES).fold(write(), |result, _| match result {
+        Err(error) if cleared(&error) => write(),
+        other => other,
+    })
 }
+
+/// Tries to write into a folder that is cleared by others meanwhile.
+const TRIES: usize = 4;
 
 /// Pauses before a rename is tried again \[ms\]. Windows refuses one for as long as another
 /// program reads the file or replaces it too; elsewhere none is.
@@ -96,22 +108,14 @@ fn rename(mut file: NamedTempFile, path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// A file of a name that no other has, `.….tmp`, which is removed unless it is renamed.
-fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
-    let mut builder = Builder::new();
-    builder.prefix(".").suffix(".tmp");
-    // As any other new file; temporary ones are for their owner alone by default.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
-}
-
 /// Makes a folder where it is missing and tries to write into it, so that a long run does
-/// not end with files that cannot be written.
+/// not end with files that cannot be written. What killed programs have left there is removed.
 pub fn ensure_writable(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder)
         .and_then(|()| temporary(folder).map(drop))
-        .with_context(|| format!("cannot write into the folder {}", folder.display()))
+        .with_context(|| format!("cannot write into the folder {}", folder.display()))?;
+    remove_abandoned(folder);
+    Ok(())
 }
 
 #[cfg(test)]

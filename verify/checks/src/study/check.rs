@@ -1,5 +1,6 @@
 //! Figures and the bounds that they must keep.
 
+use super::comparison::Band;
 use super::nan_as_null;
 use crate::escape::file_name;
 use serde::{Deserialize, Serialize};
@@ -27,9 +28,19 @@ impl Kind {
     }
 }
 
+/// Where a figure may leave the band of the baseline without being worse.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Better {
+    /// Below it, as errors and work.
+    Lower,
+    /// Nowhere, as answers.
+    Neither,
+}
+
 /// What a value must satisfy to pass.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", from = "Written")]
 pub enum Bound {
     /// Value ≤ limit.
     AtMost(#[serde(deserialize_with = "nan_as_null::number")] f64),
@@ -40,15 +51,45 @@ pub enum Bound {
         #[serde(deserialize_with = "nan_as_null::number")] f64,
         #[serde(deserialize_with = "nan_as_null::number")] f64,
     ),
+    /// None of its own: a stored figure judges by its band, and nothing where none is stored.
+    Baseline(Better),
+}
+
+/// A bound in a file. Before [`Bound::Baseline`] the largest number stood for it.
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Written {
+    AtMost(#[serde(deserialize_with = "nan_as_null::number")] f64),
+    AtLeast(#[serde(deserialize_with = "nan_as_null::number")] f64),
+    Between(
+        #[serde(deserialize_with = "nan_as_null::number")] f64,
+        #[serde(deserialize_with = "nan_as_null::number")] f64,
+    ),
+    Baseline(Better),
+}
+
+impl From<Written> for Bound {
+    fn from(written: Written) -> Bound {
+        match written {
+            Written::AtMost(f64::MAX) => Bound::Baseline(Better::Lower),
+            Written::Between(f64::MIN, f64::MAX) => Bound::Baseline(Better::Neither),
+            Written::AtMost(limit) => Bound::AtMost(limit),
+            Written::AtLeast(limit) => Bound::AtLeast(limit),
+            Written::Between(low, high) => Bound::Between(low, high),
+            Written::Baseline(better) => Bound::Baseline(better),
+        }
+    }
 }
 
 impl Bound {
-    /// Whether `value` keeps the bound; NaN never does.
+    /// Whether `value` does not break the bound; NaN does, and so does what is not finite where
+    /// there is no limit.
     pub fn holds(&self, value: f64) -> bool {
         match *self {
             Bound::AtMost(limit) => value <= limit,
             Bound::AtLeast(limit) => value >= limit,
             Bound::Between(low, high) => value >= low && value <= high,
+            Bound::Baseline(_) => value.is_finite(),
         }
     }
 }
@@ -71,8 +112,11 @@ pub struct Check {
     pub bound: Bound,
     /// SI, or `1` for a pure number.
     pub unit: String,
-    /// Whether the value keeps the bound.
+    /// Whether the value does not break the bound.
     pub pass: bool,
+    /// The band of the stored figure that judges a check without a bound of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub band: Option<Band>,
     /// Source of the bound, such as a citation.
     pub source: String,
     /// Text of the smallest input file that reproduces the failure, for a check
@@ -105,10 +149,21 @@ impl Check {
             bound,
             unit: unit.to_string(),
             pass: bound.holds(value),
+            band: None,
             source: source.to_string(),
             reproduce: None,
             reference_error: None,
         }
+    }
+
+    /// Whether something judges the value: a bound, or the band of a stored figure.
+    pub fn is_judged(&self) -> bool {
+        self.band.is_some() || !matches!(self.bound, Bound::Baseline(_))
+    }
+
+    /// Whether it was judged and keeps its bound.
+    pub fn passed(&self) -> bool {
+        self.pass && self.is_judged()
     }
 
     /// File of a report with the input that reproduces a failure, relative to the

@@ -8,7 +8,7 @@ mod outcome;
 mod report;
 mod table;
 
-pub use check::{Bound, Check, Kind};
+pub use check::{Better, Bound, Check, Kind};
 pub use comparison::{Band, BandSource, Change, Comparison, Scale, Scatter, Verdict};
 pub use figure::{
     Axis, ColourScale, Drawing, Figure, Layer, LayerStyle, Panels, Plot, Series, SeriesStyle, axis,

@@ -39,9 +39,13 @@ impl Outcome {
 }
 
 impl Check {
-    /// Whether it passed or failed.
+    /// Whether it passed or failed; a figure that nothing judges has done neither.
     pub fn outcome(&self) -> Outcome {
-        if self.pass { Outcome::Passed } else { Outcome::Failed }
+        match (self.pass, self.is_judged()) {
+            (false, _) => Outcome::Failed,
+            (true, true) => Outcome::Passed,
+            (true, false) => Outcome::Inconclusive,
+        }
     }
 }
 
@@ -49,16 +53,30 @@ impl Study {
     /// How it ended.
     pub fn outcome(&self) -> Outcome {
         if self.failure.is_some() {
-            Outcome::CouldNotRun
-        } else if self.checks.iter().any(|check| !check.pass) {
-            Outcome::Failed
-        } else if !self.undecided.is_empty() {
-            Outcome::Inconclusive
-        } else {
-            Outcome::Passed
+            return Outcome::CouldNotRun;
         }
+        let checks = self.checks.iter().map(Check::outcome).max().unwrap_or(Outcome::Passed);
+        if self.undecided.is_empty() { checks } else { checks.max(Outcome::Inconclusive) }
+    }
+
+    /// Its open questions, and the number of figures that nothing judges.
+    pub fn questions(&self) -> Vec<String> {
+        let mut questions = self.undecided.clone();
+        let new: Vec<&Check> = self.checks.iter().filter(|check| !check.is_judged()).collect();
+        if let Some(first) = new.first() {
+            let (count, first) = (new.len(), &first.id);
+            questions.push(match count {
+                1 => format!("{first} is new: {NEW}"),
+                _ => format!("{count} figures are new, such as {first}: {NEW}"),
+            });
+        }
+        questions
     }
 }
+
+/// Why a new figure is not judged, and what to do.
+const NEW: &str = "nothing judges what has no bound and no stored figure; compare with a baseline \
+                   (--baseline) that --update-baseline has taken it up into";
 
 impl Report {
     /// How it ended, beside the baseline too.
@@ -85,7 +103,7 @@ impl Report {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::{Bound, Kind};
+    use crate::study::{Better, Bound, Kind};
 
     fn study(value: f64, undecided: &[&str], failure: Option<&str>) -> Study {
         let bound = Bound::AtMost(1.0);
@@ -106,6 +124,31 @@ mod tests {
             study(0.5, &["which is better"], Some("no file")).outcome(),
             Outcome::CouldNotRun
         );
+    }
+
+    #[test]
+    fn a_figure_without_a_stored_band_is_no_pass_and_with_one_it_is_judged() {
+        let check = |value| {
+            Check::new(
+                "a/b",
+                "",
+                Kind::Regression,
+                value,
+                Bound::Baseline(Better::Neither),
+                "1",
+                "",
+            )
+        };
+        let of = |check: Check| Study { checks: vec![check], ..Study::default() };
+        let new = of(check(0.5));
+        assert_eq!(new.outcome(), Outcome::Inconclusive);
+        assert!(!new.checks[0].passed() && new.questions()[0].contains("a/b is new"));
+        assert_eq!(of(check(f64::NAN)).outcome(), Outcome::Failed);
+        let source = crate::study::BandSource::Theory;
+        let band = crate::study::Band { low: 0.4, high: 0.6, source, scatter: None };
+        let known = of(Check { band: Some(band), ..check(0.5) });
+        assert_eq!(known.outcome(), Outcome::Passed);
+        assert!(known.questions().is_empty());
     }
 
     #[test]

@@ -63,7 +63,7 @@ fn nifti() -> Vec<u8> {
     bytes
 }
 
-/// The companion surface, and the same in binary.
+/// The companion surface in every format.
 pub fn surfaces(companions: &[(String, Vec<u8>)]) -> Vec<Input> {
     let ascii = companions.iter().find(|(name, _)| name == "ball.stl");
     let Some((_, ascii)) = ascii else { return Vec::new() };
@@ -78,7 +78,66 @@ pub fn surfaces(companions: &[(String, Vec<u8>)]) -> Vec<Input> {
         bytes.extend(with_normal.flat_map(|value| value.to_le_bytes()));
         bytes.extend([0, 0]);
     }
-    vec![Input::new(text, "stl"), Input::new(bytes, "stl")]
+    let mut all = vec![Input::new(text, "stl"), Input::new(bytes, "stl")];
+    all.extend(other_surfaces(&values));
+    all
+}
+
+/// Triangles of nine coordinates each as OBJ, PLY, VTK and VTP, without shared points.
+fn other_surfaces(values: &[f32]) -> Vec<Input> {
+    let count = values.len() / 3;
+    let rows = |before: &str| {
+        values.chunks(3).fold(String::new(), |mut text, p| {
+            let _ = writeln!(text, "{before}{} {} {}", p[0], p[1], p[2]);
+            text
+        })
+    };
+    let faces = |before: &str, first: usize| {
+        (0..count / 3).fold(String::new(), |mut text, n| {
+            let n = 3 * n + first;
+            let _ = writeln!(text, "{before}{} {} {}", n, n + 1, n + 2);
+            text
+        })
+    };
+    let triangles = count / 3;
+    let ply = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\nelement vertex {count}\nproperty float x\nproperty float y\n\
+             property float z\nelement face {triangles}\nproperty list uchar int vertex_indices\n\
+             end_header\n"
+        )
+    };
+    let mut binary = ply("binary_little_endian").into_bytes();
+    binary.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    for n in 0..triangles as u32 {
+        binary.push(3);
+        binary.extend([3 * n, 3 * n + 1, 3 * n + 2].into_iter().flat_map(u32::to_le_bytes));
+    }
+    let array = |name: &str, kind: &str, text: String| {
+        format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\">{text}</DataArray>\n")
+    };
+    let ends: Vec<String> = (1..=triangles).map(|n| (3 * n).to_string()).collect();
+    let vtp = format!(
+        "<VTKFile type=\"PolyData\">\n<PolyData>\n<Piece NumberOfPoints=\"{count}\">\n<Points>\n{}</Points>\n\
+         <Polys>\n{}{}</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n",
+        array("Points", "Float32", rows("")),
+        array("connectivity", "Int64", faces("", 0)),
+        array("offsets", "Int64", ends.join(" ")),
+    );
+    let vtk = format!(
+        "# vtk DataFile Version 3.0\nball\nASCII\nDATASET POLYDATA\nPOINTS {count} float\n{}POLYGONS \
+         {triangles} {}\n{}",
+        rows(""),
+        4 * triangles,
+        faces("3 ", 0)
+    );
+    vec![
+        Input::new(rows("v ") + &faces("f ", 1), "obj"),
+        Input::new(ply("ascii") + &rows("") + &faces("3 ", 0), "ply"),
+        Input::new(binary, "ply"),
+        Input::new(vtp, "vtp"),
+        Input::new(vtk, "vtk"),
+    ]
 }
 
 /// A lattice of 5 × 5 × 5 nodes in every format.

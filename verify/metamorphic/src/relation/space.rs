@@ -5,6 +5,7 @@ use super::subject::{Compared, Relation, Subject, with_nodes};
 use crate::answer::{View, relative};
 use crate::build::{self, Frame};
 use crate::scene::{Form, Gradients, Push, Scene};
+use mtled::problem::Problem;
 use mtled::{Discretisation, Vector3};
 
 const ROUND_OFF: &str = "Coordinates are rounded to 1e-16 of their size, times a condition of up to \
@@ -77,11 +78,20 @@ pub const RELATIONS: &[Relation] = &[
         compare: |subject| {
             let scene = &subject.scene;
             let larger = Scene { size: (1.0 + 1e-13) * scene.size, ..scene.clone() };
-            let made = Discretisation::new(&build::problem(&larger).ok()?);
-            Some(match made {
-                Err(error) => Compared::Refused(error.to_string()),
-                Ok(made) => nodes_moved(subject.base.positions(), &made.cloud.positions),
-            })
+            Some(cloud_against(subject, &build::problem(&larger).ok()?, |X| *X))
+        },
+    },
+    Relation {
+        name: "cloud_of_a_moved_body",
+        claim: "A body elsewhere in space has the same nodes there",
+        bound: 1e-9,
+        reason: "Coordinates are rounded to 1e-16 of their size; whether there is a node, or how many \
+                 stand on an edge, may not hang on the last digit",
+        compare: |subject| {
+            let home = Frame::home(&subject.scene);
+            let frame = Frame { shift: Vector3::new(3.1, -2.3, 1.7), ..home };
+            let moved = build::problem_in(&subject.scene, &frame).ok()?;
+            Some(cloud_against(subject, &moved, |X| home.point(&frame.home_of(X))))
         },
     },
     Relation {
@@ -116,6 +126,21 @@ fn in_frame(subject: &Subject, frame: &Frame) -> Option<Compared> {
 fn turned(subject: &Subject) -> Option<Compared> {
     let which = 1 + subject.scene.seed as usize;
     in_frame(subject, &Frame::turned(&subject.scene, which))
+}
+
+/// The nodes of a subject against those that another problem has, brought back.
+fn cloud_against(
+    subject: &Subject,
+    other: &Problem,
+    back: impl Fn(&Vector3) -> Vector3,
+) -> Compared {
+    match Discretisation::new(other) {
+        Err(error) => Compared::Refused(error.to_string()),
+        Ok(other) => {
+            let nodes: Vec<Vector3> = other.cloud.positions.iter().map(back).collect();
+            nodes_moved(subject.base.positions(), &nodes)
+        }
+    }
 }
 
 /// Largest distance between nodes of the same number over the size of the cloud \[–\].

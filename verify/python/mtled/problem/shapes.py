@@ -70,7 +70,7 @@ class HalfSpace:
 
 @dataclass
 class Stl:
-    """A closed surface from an STL file."""
+    """A closed surface from an STL, OBJ, PLY, VTP or legacy VTK file."""
 
     file: Path
     unit: Unit
@@ -85,6 +85,7 @@ class LabelMap:
     labels: Sequence[int]
     unit: Unit | None = None
     smoothing: float | None = None
+    layer: int | None = None
     kind: str = kind_of("label_map")
 
 

@@ -15,6 +15,7 @@ use clap::{Args, Subcommand};
 use comfy_table::{Table, presets};
 use mtled_checks::escape::printable;
 use serde_json::json;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Subcommand)]
@@ -39,7 +40,7 @@ pub enum RunsCommand {
         store: StoreArgs,
     },
     /// Remove records of other versions of the solver and temporary files of killed
-    /// programs.
+    /// programs. Programs that use the store may run meanwhile.
     Prune {
         /// Remove every record, corrupt ones too.
         #[arg(long)]
@@ -157,13 +158,20 @@ fn prune(store: &Store, all: bool, corrupt_too: bool, common: &Common) -> Result
         store.remove(&record.key)?;
         removed += 1;
     }
-    let (bad, left): (Vec<Corrupt>, Vec<Corrupt>) =
-        corrupt.into_iter().partition(|bad| (all || corrupt_too) && bad.key().is_some());
+    let (bad, left): (Vec<Corrupt>, Vec<Corrupt>) = corrupt
+        .into_iter()
+        .partition(|bad| bad.key().is_some() && (all || corrupt_too || bad.is_old()));
     let leftovers = store.leftovers()?;
     for file in bad.iter().map(|bad| &bad.file).chain(&leftovers) {
-        std::fs::remove_file(file).with_context(|| format!("cannot remove {}", file.display()))?;
+        match std::fs::remove_file(file) {
+            // Another program was faster.
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            other => other.with_context(|| format!("cannot remove {}", file.display()))?,
+        }
     }
-    let (corrupt, temporary) = (bad.len(), leftovers.len());
+    removed += bad.iter().filter(|bad| bad.is_old()).count();
+    let corrupt = bad.iter().filter(|bad| !bad.is_old()).count();
+    let temporary = leftovers.len();
     let counts = json!({ "records": removed, "corrupt": corrupt, "temporary": temporary });
     common.print_result(&|| Ok(format!("{}\n", json!({ "removed": counts }))), &|| {
         let corrupt = if corrupt > 0 {

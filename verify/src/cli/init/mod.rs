@@ -8,6 +8,7 @@ use crate::explore::store::TaskRunner;
 use crate::suite::{Draft, Limits, Suite, draft, find_cases};
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use mtled_checks::escape::printable;
 use mtled_checks::gate::{Clouds, Reason, update};
 use mtled_checks::report::{ensure_writable, write_atomically};
 use serde_json::json;
@@ -45,7 +46,8 @@ pub struct InitArgs {
 
 const EXAMPLES: &str = "Writes suite.toml, references/, baseline.json and .github/workflows/accuracy.yml. Bounds of errors
 are 1.25 times the largest over five clouds of nodes, and the error of the reference; bands of the
-baseline follow from the scatter over these clouds. A file that is there is not written over.
+baseline follow from the scatter over these clouds. A file that is there is not written over; what
+a run that was stopped has left out is written by the next.
 
 Examples:
   mtled init my_cases                              # then commit what it wrote
@@ -62,11 +64,23 @@ pub fn init(arguments: &InitArgs, common: &Common) -> Result<u8> {
     let start = Instant::now();
     let folder = arguments.folder.strip_prefix(".").unwrap_or(&arguments.folder);
     let suite_file = folder.join(SUITE);
-    let files = cases(arguments, folder, &suite_file)?;
+    let started = suite_file.exists() && !arguments.references;
+    if started {
+        refuse_what_is_whole(folder, &suite_file)?;
+    }
+    let files = if started { Vec::new() } else { cases(arguments, folder, &suite_file)? };
     ensure_writable(&arguments.folder)?;
     let store = arguments.store.open()?;
     let runs = ManyRuns::new(common);
     let runner = TaskRunner { store: &store, notify: &|progress| runs.show(progress), plan: None };
+    if started {
+        common
+            .note(&format!("{} is there already: what is missing is added", suite_file.display()));
+        return match rest(folder, &suite_file, start, &runner, &runs)? {
+            Ok(written) => report_written(&[], &written, &suite_file, common),
+            Err(code) => Ok(code),
+        };
+    }
     let limits = Limits {
         cpu_s: arguments.truth_budget,
         refinement: arguments.refine,
@@ -81,30 +95,73 @@ pub fn init(arguments: &InitArgs, common: &Common) -> Result<u8> {
     if !arguments.references {
         write_atomically(&suite_file, draft.text(Path::new(BASELINE))?.as_bytes())?;
         written.push(suite_file.clone());
-        let code = baseline(&suite_file, start, &runner, &runs)?;
-        let (path, text) = match code {
-            Ok(text) => (folder.join(BASELINE), text),
+        match rest(folder, &suite_file, start, &runner, &runs)? {
+            Ok(more) => written.extend(more),
             Err(code) => return Ok(code),
-        };
-        write_atomically(&path, text.as_bytes())?;
-        written.push(path);
-        let workflow = folder.join(WORKFLOW);
-        if !workflow.exists() {
-            write_atomically(&workflow, WORKFLOW_TEXT.as_bytes())?;
-            written.push(workflow);
         }
     }
+    let cases: Vec<String> = draft.cases.iter().map(|case| case.summary()).collect();
+    report_written(&cases, &written, &suite_file, common)
+}
+
+fn report_written(
+    cases: &[String],
+    written: &[PathBuf],
+    suite_file: &Path,
+    common: &Common,
+) -> Result<u8> {
     let shown: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
     common.print_summary(&|| Ok(format!("{}\n", json!({ "written": shown }))), &|| {
-        let cases: Vec<String> = draft.cases.iter().map(|case| case.summary()).collect();
+        let lines = cases.iter().map(|case| printable(case) + "\n").collect::<String>();
+        let files: Vec<String> = shown.iter().map(|file| printable(file)).collect();
         format!(
-            "{}\nwritten: {}\nnext: commit them, and run in CI: mtled verify --suite {}\n",
-            cases.join("\n"),
-            shown.join(", "),
-            suite_file.display()
+            "{lines}written: {}\nnext: commit them, and run in CI: mtled verify --suite {}\n",
+            files.join(", "),
+            printable(&suite_file.display().to_string())
         )
     })?;
     Ok(0)
+}
+
+/// What stands behind the suite, where it is missing: the baseline and the workflow. The exit
+/// code where the user has stopped it.
+fn rest(
+    folder: &Path,
+    suite_file: &Path,
+    start: Instant,
+    runner: &TaskRunner,
+    runs: &ManyRuns,
+) -> Result<Result<Vec<PathBuf>, u8>> {
+    let mut written = Vec::new();
+    let [path, workflow] = [BASELINE, WORKFLOW].map(|name| folder.join(name));
+    if !path.exists() {
+        match baseline(suite_file, start, runner, runs)? {
+            Ok(text) => write_atomically(&path, text.as_bytes())?,
+            Err(code) => return Ok(Err(code)),
+        }
+        written.push(path);
+    }
+    if !workflow.exists() {
+        write_atomically(&workflow, WORKFLOW_TEXT.as_bytes())?;
+        written.push(workflow);
+    }
+    Ok(Ok(written))
+}
+
+/// Refuses a suite that has all that belongs to it.
+fn refuse_what_is_whole(folder: &Path, suite_file: &Path) -> Result<()> {
+    let missing = [BASELINE, WORKFLOW].iter().any(|name| !folder.join(name).exists());
+    if missing { Ok(()) } else { is_there(suite_file, suite_file) }
+}
+
+fn is_there(file: &Path, suite_file: &Path) -> Result<()> {
+    bail!(
+        "{} is there already: edit it, or remove it and run this again (`mtled init \
+         --references` makes its references again, `mtled verify --suite {} \
+         --update-baseline` its baseline)",
+        file.display(),
+        suite_file.display()
+    )
 }
 
 /// The case files, relative to the folder.
@@ -113,16 +170,9 @@ fn cases(arguments: &InitArgs, folder: &Path, suite_file: &Path) -> Result<Vec<P
         let suite = Suite::files(suite_file)?;
         return Ok(suite);
     }
-    for file in [SUITE, BASELINE].map(|name| folder.join(name)) {
-        if file.exists() {
-            bail!(
-                "{} is there already: edit it, or remove it and run this again (`mtled init \
-                 --references` makes its references again, `mtled verify --suite {} \
-                 --update-baseline` its baseline)",
-                file.display(),
-                suite_file.display()
-            );
-        }
+    let of_another = folder.join(BASELINE);
+    if of_another.exists() {
+        is_there(&of_another, suite_file)?;
     }
     if !arguments.cases.is_empty() {
         return Ok(arguments.cases.clone());
@@ -165,7 +215,8 @@ fn baseline(
     runner: &TaskRunner,
     runs: &ManyRuns,
 ) -> Result<Result<String, u8>> {
-    let suite = Suite::read(suite_file).context("the suite that was just written")?;
+    let suite =
+        Suite::read(suite_file).with_context(|| format!("the suite {}", suite_file.display()))?;
     let clouds = match runs.finish(suite.studies("", 0..OTHER_CLOUDS + 1, runner))? {
         Ok(clouds) => clouds,
         Err(code) => return Ok(Err(code)),

@@ -12,6 +12,7 @@ use crate::scene::{one_error, read_case};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use indicatif::ProgressBar;
+use mtled_checks::input::read_text;
 use mtled_checks::report::ensure_writable;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -173,7 +174,7 @@ impl Job<'_> {
     fn compared(&self, solution: &Path, done: &mut Vec<Value>) -> Result<u8> {
         let case = read_case(&self.case_file()).map_err(one_error)?;
         let path = self.out.join(format!("{}.json", self.case));
-        let text = std::fs::read_to_string(&path)
+        let text = read_text(&path)
             .with_context(|| format!("{}: cannot read {}", self.case, path.display()))?;
         let stored = match read_reference(&case, &text) {
             Ok(stored) => stored,

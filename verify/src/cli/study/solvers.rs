@@ -7,6 +7,7 @@ use crate::explore::store::Source;
 use crate::speed::solvers::{Contest, ContestCase, Entrant, Spacing, hold};
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use mtled_checks::input::read_text;
 use mtled_checks::report::{ensure_writable, write_atomically};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -74,7 +75,7 @@ fn contest(arguments: &SolversArgs, folder: &Path) -> Result<Contest> {
     let entrants = entrants(arguments)?;
     let read = |file: &PathBuf| {
         let name = file.display().to_string();
-        let text = std::fs::read_to_string(file);
+        let text = read_text(file);
         Ok((name.clone(), text.with_context(|| format!("cannot read the reference {name}"))?))
     };
     let references: Vec<(String, String)> =

@@ -1,11 +1,11 @@
 //! The baseline of `mtled verify`, and annotations for GitHub Actions.
 
-use crate::cli::streams::to_standard_error;
+use crate::cli::streams::command_to_standard_error;
 use anyhow::Context;
 use clap::Args;
-use mtled_checks::escape::printable_lines;
+use mtled_checks::escape::printable;
 use mtled_checks::gate::{
-    Baseline, Clouds, GateError, Reason, compare, difference, read_baseline, update,
+    Baseline, Clouds, GateError, Reason, compare, difference, read_baseline, settle, update,
 };
 use mtled_checks::report::{ensure_writable, github, read_report, write_atomically};
 use mtled_checks::study::Report;
@@ -94,8 +94,19 @@ impl Gate {
 
     /// Adds the comparison to the report; `whole` means that all studies were run.
     pub fn judge(&self, report: &mut Report, whole: bool) -> Result<(), GateError> {
-        if let Gate::Compare(baseline) = self {
-            report.comparison = Some(compare(report, baseline, whole)?);
+        match self {
+            Gate::None => {}
+            Gate::Compare(baseline) => {
+                settle(report, baseline);
+                report.comparison = Some(compare(report, baseline, whole)?);
+            }
+            // What is taken up is judged from now on; why it cannot be is said when it is written.
+            Gate::Update { old, reason, clouds, .. } => {
+                if let Ok(new) = update(report, old.as_ref(), &Clouds::new(clouds)?, reason, whole)
+                {
+                    settle(report, &new);
+                }
+            }
         }
         Ok(())
     }
@@ -131,7 +142,7 @@ impl Gate {
 pub fn report_to_github(report: &Report, folder: &Path) -> anyhow::Result<()> {
     if std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true") {
         for line in github::annotations(report, folder) {
-            to_standard_error(&printable_lines(&line));
+            command_to_standard_error(&printable(&line));
         }
     }
     let path = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty());

@@ -7,7 +7,7 @@ use crate::cli::common::Common;
 use crate::files::LengthUnit;
 use crate::files::image::{Image, Interpolation, field_bytes, image_bytes, read_image};
 use crate::files::points::read_landmarks;
-use crate::files::stl::to_stl;
+use crate::files::surface::to_stl;
 use crate::run::{StoredField, load};
 use crate::scene::Case;
 use crate::warp::{

@@ -1,9 +1,11 @@
 //! Records in files.
 
 use super::record::{RunRecord, SCHEMA_VERSION};
+use super::seal::{Seal, seal_of, sealed};
 use super::task::KEY_DIGITS;
 use mtled_checks::escape::printable_json;
 use mtled_checks::report::write_atomically;
+use mtled_checks::temporary::{abandoned, remove_abandoned};
 use std::path::{Path, PathBuf};
 
 /// A folder of records, `<first two digits of the key>/<key>.json`.
@@ -32,6 +34,15 @@ pub enum StoreError {
         file: PathBuf,
         /// What is wrong with it.
         reason: String,
+    },
+    /// A record of a version that wrote no checksums.
+    #[error(
+        "{} has no checksum: an earlier version wrote it, and a changed digit in it would not be \
+         noticed; `mtled runs prune` removes it, and a study makes it again", file.display()
+    )]
+    NoChecksum {
+        /// Path of the file.
+        file: PathBuf,
     },
     /// A text is not the key of a record.
     #[error(
@@ -90,8 +101,10 @@ impl Store {
     pub fn write(&self, record: &RunRecord) -> Result<(), StoreError> {
         let file = self.file(&record.key)?;
         let text = serde_json::to_string(record).map_err(|e| StoreError::Unwritable(e.into()))?;
-        let text = printable_json(&text) + "\n";
-        write_atomically(&file, text.as_bytes()).map_err(StoreError::Unwritable)
+        let text = sealed(&printable_json(&text));
+        write_atomically(&file, text.as_bytes()).map_err(StoreError::Unwritable)?;
+        file.parent().into_iter().for_each(remove_abandoned);
+        Ok(())
     }
 
     /// Deletes a record.
@@ -112,9 +125,13 @@ impl Store {
         Ok(contents)
     }
 
-    /// Temporary files of programs that were killed.
+    /// Temporary files of programs that were killed, and none that is still written.
     pub fn leftovers(&self) -> Result<Vec<PathBuf>, StoreError> {
-        self.files(|name| name.starts_with('.') && name.ends_with(".tmp"))
+        let mut files = Vec::new();
+        for folder in entries(&self.folder)?.iter().filter(|path| has_records(path)) {
+            files.extend(abandoned(folder).map_err(|error| unreadable(folder, error))?);
+        }
+        Ok(files)
     }
 
     fn files(&self, matches: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>, StoreError> {
@@ -129,6 +146,11 @@ impl Store {
 }
 
 impl Corrupt {
+    /// Whether an earlier version wrote it, whose records have no checksum.
+    pub fn is_old(&self) -> bool {
+        matches!(self.error, StoreError::NoChecksum { .. })
+    }
+
     /// The key in the name of the file; none where it was not meant to be a record.
     pub fn key(&self) -> Option<&str> {
         key_of(&self.file)
@@ -173,8 +195,9 @@ fn read(file: &Path) -> Result<RunRecord, StoreError> {
     let refused = |reason: String| StoreError::NotARecord { file: file.to_path_buf(), reason };
     let key = key_of(file).ok_or_else(|| refused("its name is not a key".into()))?;
     let bytes = std::fs::read(file).map_err(|error| unreadable(file, error))?;
+    let text = String::from_utf8(bytes).map_err(|error| refused(error.to_string()))?;
     let record: RunRecord =
-        serde_json::from_slice(&bytes).map_err(|error| refused(error.to_string()))?;
+        serde_json::from_str(&text).map_err(|error| refused(error.to_string()))?;
     if record.schema_version != SCHEMA_VERSION {
         return Err(refused(format!(
             "its layout is {}, this program reads {SCHEMA_VERSION}",
@@ -184,7 +207,11 @@ fn read(file: &Path) -> Result<RunRecord, StoreError> {
     if record.key != key {
         return Err(refused(format!("it has the key `{}`", record.key)));
     }
-    Ok(record)
+    match seal_of(&text) {
+        Seal::Whole => Ok(record),
+        Seal::Missing => Err(StoreError::NoChecksum { file: file.to_path_buf() }),
+        Seal::Broken => Err(refused("its checksum is that of another content".into())),
+    }
 }
 
 #[cfg(test)]
@@ -212,7 +239,8 @@ mod tests {
 
     fn put(folder: &Path, name: &str, key: &str) -> PathBuf {
         let file = folder.join(name);
-        write_atomically(&file, serde_json::to_string(&record(key)).unwrap().as_bytes()).unwrap();
+        let text = sealed(&serde_json::to_string(&record(key)).unwrap());
+        write_atomically(&file, text.as_bytes()).unwrap();
         file
     }
 
@@ -251,6 +279,24 @@ mod tests {
         let meant: Vec<bool> = corrupt.iter().map(|corrupt| corrupt.key().is_some()).collect();
         assert_eq!(meant, [false, false, true, false]);
         assert!(corrupt[2].error.to_string().contains("it has the key `../../outside`"));
+    }
+
+    #[test]
+    fn a_changed_digit_is_noticed_and_a_record_without_a_checksum_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::new(folder.path());
+        store.write(&record(KEY)).unwrap();
+        let file = store.file(KEY).unwrap();
+        let text = std::fs::read_to_string(&file).unwrap();
+        let changed = text.replace("\"set_up_cpu_s\":0.0", "\"set_up_cpu_s\":1.0");
+        assert_ne!(text, changed);
+        std::fs::write(&file, changed).unwrap();
+        let error = store.find(KEY).unwrap_err().to_string();
+        assert!(error.contains("its checksum is that of another content"), "{error}");
+        std::fs::write(&file, serde_json::to_string(&record(KEY)).unwrap()).unwrap();
+        assert!(matches!(store.find(KEY), Err(StoreError::NoChecksum { .. })));
+        let Contents { records, corrupt } = store.contents().unwrap();
+        assert!(records.is_empty() && corrupt[0].is_old());
     }
 
     #[cfg(unix)]

@@ -13,6 +13,7 @@ mod patch_test;
 mod perform;
 mod record;
 mod runs;
+mod seal;
 mod task;
 
 pub use disk::{Contents, Corrupt, Store, StoreError};
@@ -20,4 +21,5 @@ pub use jobs::{JobPlan, Planned, read_part};
 pub use perform::COMPRESSIONS;
 pub use record::{Figures, RunOutcome, RunRecord, Stage, Timings};
 pub use runs::{Progress, Stopped, TaskRunner};
+pub use seal::sealed;
 pub use task::{Job, Source, Task, solver_identity};

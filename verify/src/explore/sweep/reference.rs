@@ -6,6 +6,7 @@ use crate::explore::store::{Job, Source, Task, TaskRunner};
 use crate::scene::{Knob, Level, Setting};
 use anyhow::{Context, Result, bail};
 use mtled::problem::Motion;
+use mtled_checks::input::read_text;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -34,8 +35,8 @@ impl ReferenceSource {
             ReferenceSource::Own(_) => Ok(None),
             ReferenceSource::File(file) => {
                 let name = file.display().to_string();
-                let text = std::fs::read_to_string(file)
-                    .with_context(|| format!("cannot read the reference {name}"))?;
+                let text =
+                    read_text(file).with_context(|| format!("cannot read the reference {name}"))?;
                 Ok(Some(stored_reference(&source.case, &text, &name)?))
             }
         }

@@ -10,7 +10,7 @@ pub fn read_as(name: &str, bytes: &[u8]) -> Result<LabelMap, Mistake> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
-    read_label_map(&path, None).map(|read| read.map).map_err(|error| error.mistake)
+    read_label_map(&path, None, None).map(|read| read.map).map_err(|error| error.mistake)
 }
 
 /// As [`read_as`], with what is said about the labels.
@@ -18,7 +18,7 @@ pub fn read_noted(name: &str, bytes: &[u8]) -> LabelMapFile {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
-    read_label_map(&path, None).unwrap()
+    read_label_map(&path, None, None).unwrap()
 }
 
 pub fn nrrd_text(header: &str, data: &[u8]) -> Vec<u8> {

@@ -1,4 +1,5 @@
 mod files;
+mod layers;
 mod nifti_files;
 mod places;
 
@@ -16,7 +17,7 @@ fn brain(name: &str) -> PathBuf {
 
 #[test]
 fn the_brain_slice_is_the_same_in_nrrd_and_nifti() {
-    let first = nrrd::read(&brain("slice.nrrd"), None).unwrap().map;
+    let first = nrrd::read(&brain("slice.nrrd"), None, None).unwrap().map;
     let second = nifti::read(&brain("slice.nii.gz"), None).unwrap().map;
     assert_eq!(first.size, [157, 190, 5]);
     assert_eq!(first.size, second.size);
@@ -29,7 +30,7 @@ fn the_brain_slice_is_the_same_in_nrrd_and_nifti() {
 
 #[test]
 fn the_areas_of_the_brain_slice_are_those_of_its_description() {
-    let map = nrrd::read(&brain("slice.nrrd"), None).unwrap().map;
+    let map = nrrd::read(&brain("slice.nrrd"), None, None).unwrap().map;
     let area = |label: u32| map.labels.iter().filter(|&&l| l == label).count();
     assert_eq!([area(1), area(2), area(3)], [5 * 17990, 5 * 1001, 5 * 376]);
 }
@@ -79,7 +80,8 @@ fn a_detached_data_file_is_found_beside_its_header() {
     let header = format!("NRRD0004\n{SMALL}encoding: raw\nbyte skip: -1\ndata file: voxels.raw\n");
     std::fs::write(folder.path().join("a.nhdr"), header).unwrap();
     std::fs::write(folder.path().join("voxels.raw"), [&[9, 9][..], &LABELS].concat()).unwrap();
-    let read = read_label_map(&folder.path().join("a.nhdr"), Some(LengthUnit::Metre)).unwrap();
+    let read =
+        read_label_map(&folder.path().join("a.nhdr"), Some(LengthUnit::Metre), None).unwrap();
     assert_eq!(read.map.labels, LABELS.map(u32::from));
     assert_eq!(read.map.directions[(2, 2)], 3.0);
     assert_eq!(read.files.len(), 2);
@@ -177,7 +179,7 @@ fn a_data_file_without_an_end_is_refused() {
     for data in ["/dev/zero", "."] {
         let text = format!("NRRD0004\n{SMALL}encoding: raw\ndata file: {data}\n");
         std::fs::write(&header, text).unwrap();
-        let error = read_label_map(&header, None).unwrap_err().to_string();
+        let error = read_label_map(&header, None, None).unwrap_err().to_string();
         assert!(error.contains("a folder, a device or a pipe"), "{error}");
     }
 }
@@ -227,7 +229,7 @@ fn large_labels_are_read_and_multiples_of_256_are_pointed_out() {
 #[test]
 fn a_file_of_another_kind_is_refused_by_its_name() {
     let error = read_as("a.mha", b"").unwrap_err();
-    assert!(matches!(error, Mistake::UnknownExtension { .. }));
+    assert!(matches!(error, Mistake::UnknownImage { .. }));
 }
 
 #[test]

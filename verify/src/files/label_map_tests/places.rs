@@ -35,12 +35,12 @@ fn a_pair_of_header_and_image_is_read_by_either_name() {
     std::fs::write(folder.path().join("a.hdr"), &bytes[..348]).unwrap();
     std::fs::write(folder.path().join("a.img"), &bytes[352..]).unwrap();
     for name in ["a.hdr", "a.img"] {
-        let read = read_label_map(&folder.path().join(name), None).unwrap();
+        let read = read_label_map(&folder.path().join(name), None, None).unwrap();
         assert_eq!(read.map.labels, LABELS.map(u32::from));
         assert!(read.files[0].ends_with(name) && read.files.len() == 2, "{:?}", read.files);
     }
     std::fs::remove_file(folder.path().join("a.img")).unwrap();
-    let error = read_label_map(&folder.path().join("a.hdr"), None).unwrap_err().to_string();
+    let error = read_label_map(&folder.path().join("a.hdr"), None, None).unwrap_err().to_string();
     assert!(error.contains("a.img"), "{error}");
 }
 

@@ -4,10 +4,10 @@
 mod frame;
 mod second;
 
-use super::bytes::{ByteOrder, Scalar, at_most, open, skip, start_of, voxel_bytes};
+use super::bytes::{self, ByteOrder, Scalar, at_most, open, skip, start_of, voxel_bytes};
 use super::error::{FileError, Mistake};
 use super::unit::LengthUnit;
-use super::voxels::{self, LabelMapFile};
+use super::voxels::{self, LabelMapFile, Labels};
 use flate2::bufread::MultiGzDecoder;
 use frame::{doubts, finite, frame};
 use mtled::algebra::tensor::{Matrix3, Vector3};
@@ -138,7 +138,9 @@ impl Voxels {
 
     fn labels(mut self, unit: Option<LengthUnit>) -> Result<(LabelMap, Vec<String>), Mistake> {
         let (origin, directions) = self.frame(unit)?;
-        let labels = voxels::labels(&self.stored, self.scalar, self.order, self.scaling)?;
+        let (slope, intercept) = self.scaling;
+        let numbers = bytes::numbers(&self.stored, self.scalar, self.order);
+        let labels = Labels::of(numbers.map(|n| slope * n + intercept), self.scalar, self.order)?;
         let map = voxels::label_map(self.size, origin, directions, labels, &mut self.notes)?;
         Ok((map, self.notes))
     }
@@ -151,7 +153,7 @@ fn read_header(stream: &mut impl Read) -> Result<Start, Mistake> {
         let (header, in_pair) = second::header(&bytes)?;
         return Ok(Start { header, bytes, in_pair });
     }
-    let format = "a NIfTI file (.nii or .nii.gz, or .hdr beside .img)";
+    let format = "a NIfTI file (.nii or .nii.gz, or .hdr beside .img; Analyze 7.5 does not say where right is)";
     if bytes.len() < HEADER {
         return match bytes.starts_with(&348i32.to_le_bytes()) {
             true => Err(Mistake::TruncatedHeader { found: bytes.len() }),
@@ -173,7 +175,8 @@ fn size(header: &NiftiHeader) -> Result<[usize; 3], Mistake> {
     let axes = usize::from(header.dim[0]);
     let sizes: Vec<usize> = header.dim[1..].iter().take(axes).map(|&n| usize::from(n)).collect();
     if axes < 3 || sizes[3..].iter().any(|&n| n > 1) {
-        let expected = "three axes, one label per voxel";
+        let expected = "three axes, one label per voxel: of a series, or of a probability for each \
+                        structure, make one volume of labels first";
         return Err(Mistake::bad_field("dim", &format!("{sizes:?}"), expected));
     }
     Ok([sizes[0], sizes[1], sizes[2]])

@@ -57,7 +57,7 @@ pub fn undecodable(error: csv::Error) -> Mistake {
 pub fn bad_line(row: &csv::StringRecord, expected: &'static str) -> Mistake {
     let line = row.position().map_or(1, |position| position.line() as usize);
     let text = row.iter().collect::<Vec<_>>().join(",");
-    Mistake::BadLine { line, text: text.chars().take(60).collect(), expected }
+    Mistake::bad_line(line, &text, expected)
 }
 
 fn finite(cell: &str) -> Option<f64> {

@@ -1,7 +1,7 @@
 //! The POINTS of a legacy VTK file, ASCII or binary (big-endian).
 
 use super::rows::from_stated;
-use crate::files::bytes::{ByteOrder, Scalar, start_of};
+use crate::files::bytes::{ByteOrder, Scalar, start_of, take_line, take_numbers};
 use crate::files::error::Mistake;
 use mtled::algebra::tensor::Vector3;
 
@@ -13,7 +13,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     let mut rest = bytes;
     let mut binary = None;
     for number in 1.. {
-        let line = next_line(&mut rest).ok_or(Mistake::MissingField { field: "POINTS" })?;
+        let line = take_line(&mut rest).ok_or(Mistake::MissingField { field: "POINTS" })?;
         let words: Vec<&str> = line.split_whitespace().collect();
         match words[..] {
             ["BINARY"] if binary.is_none() => binary = Some(true),
@@ -24,7 +24,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
                     (Ok(points), "double") => (points, Scalar::F64),
                     _ => {
                         let expected = "POINTS, a count, and float or double";
-                        return Err(Mistake::BadLine { line: number, text: line, expected });
+                        return Err(Mistake::bad_line(number, &line, expected));
                     }
                 };
                 let values = match binary {
@@ -39,27 +39,15 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     Err(Mistake::NoPoints)
 }
 
-/// Removes the first line.
-fn next_line(rest: &mut &[u8]) -> Option<String> {
-    if rest.is_empty() {
-        return None;
-    }
-    let end = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len() - 1);
-    let line = String::from_utf8_lossy(&rest[..=end]).trim().to_string();
-    *rest = &rest[end + 1..];
-    Some(line)
-}
-
 /// As many numbers as stated; only a keyword may follow.
-fn big_endian(bytes: &[u8], points: usize, scalar: Scalar) -> Result<Vec<f64>, Mistake> {
-    let expected = points.saturating_mul(3).saturating_mul(scalar.size());
-    let found = bytes.len();
-    let (data, rest) =
-        bytes.split_at_checked(expected).ok_or(Mistake::Truncated { expected, found })?;
-    if rest.trim_ascii_start().first().is_some_and(|next| !next.is_ascii_alphabetic()) {
-        return Err(Mistake::Excess { expected });
+fn big_endian(mut bytes: &[u8], points: usize, scalar: Scalar) -> Result<Vec<f64>, Mistake> {
+    let values = take_numbers(&mut bytes, points.saturating_mul(3), scalar, ByteOrder::Big)?;
+    match bytes.trim_ascii_start().first() {
+        Some(next) if !next.is_ascii_alphabetic() => {
+            Err(Mistake::Excess { expected: values.len() * scalar.size() })
+        }
+        _ => Ok(values),
     }
-    Ok(data.chunks_exact(scalar.size()).map(|word| scalar.read(word, ByteOrder::Big)).collect())
 }
 
 /// All numbers up to the next keyword.

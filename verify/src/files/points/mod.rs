@@ -11,7 +11,7 @@ mod vtu;
 mod vtu_mesh;
 
 use super::bytes::bytes_of;
-use super::error::{FileError, Mistake};
+use super::error::{FileError, Mistake, check_finite};
 use mtled::algebra::tensor::Vector3;
 use std::path::Path;
 
@@ -38,10 +38,8 @@ fn checked(points: Vec<Vector3>) -> Result<Vec<Vector3>, Mistake> {
     if points.is_empty() {
         return Err(Mistake::NoPoints);
     }
-    match points.iter().position(|point| !point.iter().all(|c| c.is_finite())) {
-        Some(point) => Err(Mistake::NotFinite { point: point + 1 }),
-        None => Ok(points),
-    }
+    check_finite(&points)?;
+    Ok(points)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! (format: numpy.org/doc/stable/reference/generated/numpy.lib.format.html).
 
 use super::rows::from_rows;
-use crate::files::bytes::{ByteOrder, Scalar};
+use crate::files::bytes::{self, ByteOrder, Scalar};
 use crate::files::error::Mistake;
 use mtled::algebra::tensor::Vector3;
 
@@ -52,8 +52,7 @@ pub fn numbers(
             false => Mistake::Excess { expected },
         });
     }
-    let words = data.chunks_exact(scalar.size());
-    let values: Vec<f64> = words.map(|word| scalar.read(word, order)).collect();
+    let values: Vec<f64> = bytes::numbers(data, scalar, order).collect();
     if !header.by_columns {
         return Ok((values, columns));
     }

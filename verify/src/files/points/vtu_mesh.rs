@@ -1,11 +1,9 @@
 //! Meshes of tetrahedra or triangles with their fields from VTU files.
 
-use super::vtu::{Attributes, attributes, damaged, find, storage};
-use crate::files::bytes::{bytes_of, start_of};
-use crate::files::error::{FileError, Mistake};
+use crate::files::bytes::bytes_of;
+use crate::files::error::{FileError, Mistake, check_finite};
+use crate::files::vtk_xml::XmlFile;
 use mtled::algebra::tensor::Vector3;
-use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
 use std::path::Path;
 
 /// A mesh with the fields at its points and in its cells.
@@ -44,19 +42,16 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, FileError> {
 }
 
 pub fn parse(bytes: &[u8]) -> Result<MeshFile, Mistake> {
-    let appended = find(bytes, b"<AppendedData");
-    let (file, arrays) = arrays(&bytes[..appended.unwrap_or(bytes.len())])?;
-    let storage = storage(&file)?;
-    let tail = appended.map(|at| &bytes[at..]);
+    let file = XmlFile::parse(bytes, &SECTIONS, "a VTU file (XML with <VTKFile>)")?;
     let section = |name: &str| -> Result<Vec<NamedArray>, Mistake> {
-        let own = arrays.iter().filter(|(section, ..)| SECTIONS[*section] == name);
-        own.map(|(_, array, text)| {
-            let components = array.get("NumberOfComponents").map_or(Some(1), |n| n.parse().ok());
-            let name = array.get("Name").cloned().unwrap_or_default();
+        let own = file.arrays.iter().filter(|array| array.section == name && !array.is_text());
+        own.map(|array| {
+            let components = array.attributes.get("NumberOfComponents");
+            let components = components.map_or(Some(1), |n| n.parse().ok());
             Ok(NamedArray {
-                name,
+                name: array.name().unwrap_or_default().to_string(),
                 components: components.filter(|n| *n > 0).unwrap_or(1),
-                values: storage.values(array, text, tail, usize::MAX)?,
+                values: file.values(array)?,
             })
         })
         .collect()
@@ -64,9 +59,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeshFile, Mistake> {
     let points = section("Points")?.pop().ok_or(Mistake::NoPoints)?;
     let points: Vec<Vector3> =
         points.values.chunks_exact(3).map(Vector3::from_column_slice).collect();
-    if let Some(point) = points.iter().position(|point| !point.iter().all(|c| c.is_finite())) {
-        return Err(Mistake::NotFinite { point: point + 1 });
-    }
+    check_finite(&points)?;
     let (corners, cells) = cells(&section("Cells")?, points.len())?;
     let count = cells.len() / corners;
     let point_data = checked(section("PointData")?, points.len())?;
@@ -118,45 +111,4 @@ fn cells(arrays: &[NamedArray], points: usize) -> Result<(usize, Vec<u32>), Mist
         }
         None => Ok((corners, connectivity.iter().map(|n| *n as u32).collect())),
     }
-}
-
-type Arrays = Vec<(usize, Attributes, String)>;
-
-/// Attributes of VTKFile; of every array its section, attributes and text.
-fn arrays(xml: &[u8]) -> Result<(Attributes, Arrays), Mistake> {
-    let mut reader = Reader::from_reader(xml);
-    let (mut file, mut section, mut arrays, mut buffer) = (None, None, Arrays::new(), Vec::new());
-    let section_of =
-        |tag: &BytesStart| SECTIONS.iter().position(|name| tag.name().as_ref() == name.as_bytes());
-    let mut open = false;
-    loop {
-        let event = reader.read_event_into(&mut buffer);
-        match event.map_err(|error| damaged("XML", error.to_string()))? {
-            Event::Start(tag) if tag.name().as_ref() == b"VTKFile" => file = Some(attributes(&tag)),
-            Event::Start(tag) if section_of(&tag).is_some() => section = section_of(&tag),
-            Event::Start(tag) if tag.name().as_ref() == b"DataArray" => {
-                open = section.is_some();
-                arrays.extend(section.map(|section| (section, attributes(&tag), String::new())));
-            }
-            Event::Empty(tag) if tag.name().as_ref() == b"DataArray" => {
-                arrays.extend(section.map(|section| (section, attributes(&tag), String::new())));
-            }
-            Event::Text(part) if open => {
-                if let Some((_, _, text)) = arrays.last_mut() {
-                    *text += &String::from_utf8_lossy(&part);
-                }
-            }
-            Event::End(tag) if tag.name().as_ref() == b"DataArray" => open = false,
-            Event::End(tag)
-                if SECTIONS.iter().any(|name| tag.name().as_ref() == name.as_bytes()) =>
-            {
-                section = None;
-            }
-            Event::Eof => break,
-            _ => {}
-        }
-        buffer.clear();
-    }
-    let format = "a VTU file (XML with <VTKFile>)";
-    Ok((file.ok_or_else(|| Mistake::WrongFormat { format, start: start_of(xml) })?, arrays))
 }

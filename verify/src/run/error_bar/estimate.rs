@@ -54,7 +54,7 @@ impl Calibration {
         let alike =
             matches!(problem.motion, Motion::Dynamic { .. }) || !problem.obstacles.is_empty();
         let longer = if alike { AS_THE_RUN } else { 1.0 };
-        Calibration { order, displacement: 1.7 * longer, force: 2.6 * longer }
+        Calibration { order, displacement: 1.65 * longer, force: 2.4 * longer }
     }
 
     /// The factor c of a family.

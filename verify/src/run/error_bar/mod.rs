@@ -13,4 +13,4 @@ pub use bars::{ErrorBar, ErrorBars, Estimated, Indicator};
 pub use coarser::CoarserCloud;
 pub use estimate::error_bars;
 pub use no_error_bar::NoErrorBar;
-pub use report::{error_bars_json, error_bars_text, plus_minus};
+pub use report::{error_bars_json, error_bars_text, no_bars_text, plus_minus};

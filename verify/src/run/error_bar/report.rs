@@ -64,12 +64,25 @@ pub fn plus_minus(bars: Option<&Estimated>, name: &str) -> String {
     }
 }
 
+/// For the first lines of a summary: that no answer at all has an error bar, and why.
+pub fn no_bars_text(bars: &Estimated) -> Option<String> {
+    let reason = match bars {
+        Err(reason) => reason.to_string(),
+        Ok(bars) if bars.bars.iter().all(|bar| bar.size.is_err()) => {
+            bars.bars.iter().find_map(|bar| bar.size.as_ref().err())?.to_string()
+        }
+        Ok(_) => return None,
+    };
+    Some(format!("  NO ANSWER HAS AN ERROR BAR, its error is not known: {}", printable(&reason)))
+}
+
 /// What the summary says beside the answers that it lists: lattices, moments, energies, and
 /// what has no error bar.
 pub fn error_bars_text(case: &Case, bars: &Estimated) -> Vec<String> {
     let bars = match bars {
         Ok(bars) => bars,
-        Err(reason) => return vec![format!("  no error bar: {}", printable(&reason.to_string()))],
+        // Said at the start.
+        Err(_) => return Vec::new(),
     };
     let ratios: Vec<String> = bars.clouds.iter().map(|cloud| four_digits(cloud.ratio)).collect();
     let mut lines = vec![format!(

@@ -34,8 +34,7 @@ impl BodyFrames {
     pub fn new(problem: &Problem, prepared: &Prepared) -> Result<Option<BodyFrames>> {
         let discretisation = &prepared.discretisation;
         let nodes = discretisation.cloud.positions.len();
-        let volume = discretisation.quadrature.weights.iter().sum();
-        let display = display_mesh(problem, nodes, volume)?;
+        let display = display_mesh(problem, nodes, discretisation.volume())?;
         if display.mesh.is_empty() {
             return Ok(None);
         }

@@ -90,6 +90,11 @@ fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec
         }
     }
     for node in 0..nodes {
+        // Within what is held as a volume nothing deforms.
+        if total[node] == 0.0 {
+            jacobian[node] = 1.0;
+            continue;
+        }
         jacobian[node] /= total[node];
         stress[9 * node..9 * node + 9].iter_mut().for_each(|value| *value /= total[node]);
         strain[6 * node..6 * node + 6].iter_mut().for_each(|value| *value /= total[node]);

@@ -110,7 +110,12 @@ fn verdict(result: &Json) -> Value {
     if let Some(error) = number(&motion["relaxation"]["estimated_error_m"]) {
         details.push(format!("estimated error of the relaxation {error} m"));
     }
-    details.extend(number(&motion["smallest_jacobian"]).map(|J| format!("smallest J {J}")));
+    details.extend(number(&motion["smallest_jacobian"]).map(|J| {
+        match number(&motion["smallest_patch_jacobian"]) {
+            Some(patches) => format!("smallest J {J} at points, {patches} of patches"),
+            None => format!("smallest J {J}"),
+        }
+    }));
     if warned && class != "fail" {
         details.push("see the warnings".to_string());
     }

@@ -30,7 +30,7 @@ pub struct Builder<'a> {
     /// The label map of the body, if it has one.
     pub body_map: Option<Arc<LabelMap>>,
     /// Label maps read so far.
-    pub maps: HashMap<(PathBuf, Option<UnitFormat>), Arc<LabelMap>>,
+    pub maps: HashMap<(PathBuf, Option<UnitFormat>, Option<usize>), Arc<LabelMap>>,
     /// Solids made of labels so far, costly to make.
     pub fields: Vec<Arc<LabelField>>,
     /// What should be known about the files of the case.

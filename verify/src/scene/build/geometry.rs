@@ -1,13 +1,17 @@
 //! Shapes and selectors of a case file → those of the solver.
 
+use crate::files::surface::SurfaceFile;
 use crate::files::{self, LengthUnit};
 use crate::scene::build::builder::Builder;
 use crate::scene::format::{SelectorFormat, ShapeFormat, UnitFormat};
 use mtled::algebra::tensor::Vector3;
-use mtled::geometry::{LabelField, LabelMap, Selector, Shape, Surface};
+use mtled::geometry::{LabelField, LabelMap, Mended, Selector, Shape, Surface};
 use mtled::problem::Dimension;
 use std::path::Path;
 use std::sync::Arc;
+
+/// File of a label map, its unit if it is overridden, and the layer of overlapping segments.
+type MapOf<'a> = (&'a Path, Option<UnitFormat>, Option<usize>);
 
 impl Builder<'_> {
     /// The solid that deforms; its label map becomes that of label selectors.
@@ -75,9 +79,10 @@ impl Builder<'_> {
                 Some(Shape::Difference(Box::new(first?), Box::new(second?)))
             }
             ShapeFormat::Stl { file, unit } => self.surface(&format!("{key}.stl"), file, *unit),
-            ShapeFormat::LabelMap { file, labels, unit, smoothing } => {
+            ShapeFormat::LabelMap { file, labels, unit, layer, smoothing } => {
                 let smoothing = smoothing.unwrap_or(LabelField::SMOOTHING);
-                self.labels(&format!("{key}.label_map"), file, labels, (*unit, smoothing))
+                let of = (file.as_path(), *unit, *layer);
+                self.labels(&format!("{key}.label_map"), of, labels, smoothing)
             }
         }
     }
@@ -114,12 +119,12 @@ impl Builder<'_> {
     }
 
     /// A label map file, read once.
-    fn map(&mut self, key: &str, file: &Path, unit: Option<UnitFormat>) -> Option<Arc<LabelMap>> {
+    fn map(&mut self, key: &str, (file, unit, layer): MapOf) -> Option<Arc<LabelMap>> {
         let path = self.resolve(file);
-        if let Some(map) = self.maps.get(&(path.clone(), unit)) {
+        if let Some(map) = self.maps.get(&(path.clone(), unit, layer)) {
             return Some(map.clone());
         }
-        match files::read_label_map(&path, unit.map(LengthUnit::from)) {
+        match files::read_label_map(&path, unit.map(LengthUnit::from), layer) {
             Ok(read) => {
                 for path in &read.files {
                     self.hash_file(key, path);
@@ -127,7 +132,7 @@ impl Builder<'_> {
                 let named = |note: &String| format!("{}: {note}", file.display());
                 self.notes.extend(read.notes.iter().map(named));
                 let map = Arc::new(read.map);
-                self.maps.insert((path, unit), map.clone());
+                self.maps.insert((path, unit, layer), map.clone());
                 Some(map)
             }
             Err(error) => {
@@ -137,14 +142,8 @@ impl Builder<'_> {
         }
     }
 
-    fn labels(
-        &mut self,
-        key: &str,
-        file: &Path,
-        labels: &[u32],
-        (unit, smoothing): (Option<UnitFormat>, f64),
-    ) -> Option<Shape> {
-        let map = self.map(&format!("{key}.file"), file, unit)?;
+    fn labels(&mut self, key: &str, of: MapOf, labels: &[u32], smoothing: f64) -> Option<Shape> {
+        let map = self.map(&format!("{key}.file"), of)?;
         let before = self.count();
         if labels.is_empty() {
             self.mistake(&format!("{key}.labels"), "is empty; it needs at least one label");
@@ -237,8 +236,13 @@ impl Builder<'_> {
                 let shape = self.sound_shape(&key, shape)?;
                 Some(self.inside(&key, shape, None))
             }
-            SelectorFormat::Label { value, file, unit } => {
-                self.label(&format!("{key}.label"), *value, file.as_deref(), *unit)
+            SelectorFormat::Label { value, file, unit, layer } => {
+                let of = file.as_deref().map(|file| (file, *unit, *layer));
+                let message = "goes with `file`; without it the layer is that of the body";
+                let key = format!("{key}.label");
+                let is_sound = layer.is_none() || of.is_some();
+                self.refuse_if(!is_sound, &format!("{key}.layer"), message);
+                self.label(&key, *value, of)
             }
             SelectorFormat::Facing { direction, angle } => {
                 let key = format!("{key}.facing");
@@ -279,15 +283,9 @@ impl Builder<'_> {
         read.into_iter().collect()
     }
 
-    fn label(
-        &mut self,
-        key: &str,
-        label: u32,
-        file: Option<&Path>,
-        unit: Option<UnitFormat>,
-    ) -> Option<Selector> {
-        let map = match file {
-            Some(file) => self.map(&format!("{key}.file"), file, unit)?,
+    fn label(&mut self, key: &str, label: u32, of: Option<MapOf>) -> Option<Selector> {
+        let map = match of {
+            Some(of) => self.map(&format!("{key}.file"), of)?,
             None => match &self.body_map {
                 Some(map) => map.clone(),
                 None => {
@@ -300,16 +298,24 @@ impl Builder<'_> {
         Some(Selector::Label { map, label })
     }
 
-    /// A closed surface from an STL file.
+    /// A closed surface from a file.
     fn surface(&mut self, key: &str, file: &Path, unit: UnitFormat) -> Option<Shape> {
         let path = self.resolve(file);
         let key = format!("{key}.file");
-        let read = files::stl::read(&path, unit.into());
-        let read = read.map_err(|error| self.mistake(&key, error)).ok()?;
+        let read = files::surface::read(&path, unit.into());
+        let SurfaceFile { surface, notes } =
+            read.map_err(|error| self.mistake(&key, error)).ok()?;
+        self.notes.extend(notes.iter().map(|note| format!("{}: {note}", file.display())));
         self.hash_file(&key, &path);
-        let surface = Surface::new(read.vertices, read.triangles);
-        let surface = surface.map_err(|error| self.mistake(&key, error)).ok()?;
-        Some(Shape::Surface(Arc::new(surface)))
+        let mended = Surface::mended(surface.vertices, surface.triangles);
+        let Mended { surfaces, notes } = mended.map_err(|error| self.mistake(&key, error)).ok()?;
+        self.notes.extend(notes.iter().map(|note| format!("{}: {note}", file.display())));
+        let mut shapes: Vec<Shape> =
+            surfaces.into_iter().map(|surface| Shape::Surface(Arc::new(surface))).collect();
+        match shapes.len() {
+            1 => shapes.pop(),
+            _ => Some(Shape::Union(shapes)),
+        }
     }
 }
 

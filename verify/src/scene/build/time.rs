@@ -18,6 +18,9 @@ const MOST_SAMPLES: f64 = 1e6;
 const MOST_FRAMES: f64 = 1e5;
 /// Of the size of a body, in distances from it \[–\].
 const ROUND_OFF: f64 = 1e-9;
+/// Distance of a probe from the body over the spacing from which it is said \[–\]: a field changes
+/// by less than its error bar over a smaller one.
+const EXTRAPOLATED: f64 = 0.05;
 
 impl Builder<'_> {
     pub fn motion(&mut self, format: &TimeFormat) -> Motion {
@@ -102,6 +105,9 @@ impl Builder<'_> {
             }
             probes.extend(read);
         }
+        if let Some(spacing) = spacing {
+            self.note_extrapolated(&probes, spacing);
+        }
         probes
     }
 
@@ -183,14 +189,42 @@ impl Builder<'_> {
             probe.kind.positions().into_iter().find_map(far)
         });
         let Some((name, position, distance)) = outside.next() else { return };
-        let [x, y, z]: [f64; 3] = position.into();
-        let found = format!("({x}, {y}, {z}) m lies {distance:.3} m outside the body");
+        let place_of = position.iter().map(|x| in_few_digits(*x)).collect::<Vec<_>>().join(", ");
+        let distance = match distance < FAR {
+            true => format!("{distance:.3}"),
+            false => in_few_digits(distance),
+        };
+        let found = format!("({place_of}) m lies {distance} m outside the body");
         let message = match (probes.len(), outside.count()) {
             (1, _) => found,
             (_, 0) => format!("`{name}` at {found}"),
             (all, more) => format!("`{name}` at {found}, and so do {more} more of {all}"),
         };
         self.mistake(key, message + &place(&body));
+    }
+
+    /// Says which points lie outside the body by so much that their displacement is extrapolated.
+    fn note_extrapolated(&mut self, probes: &[Probe], spacing: f64) {
+        let Some(body) = self.section.clone() else { return };
+        let points = probes.iter().filter(|probe| matches!(probe.kind, ProbeKind::Point(_)));
+        let distance = |probe: &Probe| {
+            let positions = probe.kind.positions();
+            positions.iter().map(|position| body.signed_distance(position)).fold(0.0, f64::max)
+        };
+        let outside: Vec<(&str, f64)> = points
+            .map(|probe| (probe.name.as_str(), distance(probe)))
+            .filter(|(_, far)| *far > EXTRAPOLATED * spacing && *far <= 0.5 * spacing)
+            .collect();
+        let Some((name, far)) = outside.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+        let which = match outside.len() {
+            1 => format!("probe `{name}` lies"),
+            count => format!("{count} probes lie outside the body, `{name}` farthest:"),
+        };
+        self.notes.push(format!(
+            "{which} {far:.3e} m ({:.2} spacings) outside the body: its displacement is extrapolated \
+             and belongs to no material; move it onto the body",
+            far / spacing
+        ));
     }
 
     fn lattice(&mut self, key: &str, format: &LatticeFormat) -> Option<ProbeKind> {
@@ -281,5 +315,53 @@ fn step(format: &TimeFormat) -> StepControl {
         reevaluate_every: format.reevaluate_every.unwrap_or(preset.reevaluate_every),
         fixed: format.fixed_step,
         mass_scaling: format.mass_scaling.unwrap_or(preset.mass_scaling),
+    }
+}
+
+/// Numbers from here on are written with an exponent.
+const FAR: f64 = 1e9;
+
+/// A number as it is written, and a large one without hundreds of zeros.
+fn in_few_digits(x: f64) -> String {
+    if x.abs() < FAR { x.to_string() } else { format!("{x:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::parse_case;
+    use std::path::Path;
+
+    /// Notes on a block of 0.1 m and 0.02 m spacing with probes at these heights \[m\].
+    fn notes(heights: &[f64]) -> Vec<String> {
+        let mut text = r#"title = "block"
+geometry.shape = { box = { min = [0.0, 0.0, 0.0], max = [0.1, 0.1, 0.1] } }
+time.method = "static"
+discretisation = { cloud = "regular", spacing = 0.02 }
+[material.tissue]
+law = "neo_hookean_log_j"
+density = 1000.0
+young_modulus = 3000.0
+poisson_ratio = 0.3
+[[prescribe]]
+name = "ground"
+of = "surface"
+where = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0], tolerance = 1e-6 } }
+displacement = { x = 0.0, y = 0.0, z = 0.0 }
+"#
+        .to_string();
+        for (n, z) in heights.iter().enumerate() {
+            text += &format!("[[probe]]\nname = \"p{n}\"\npoint = [0.05, 0.05, {z:?}]\n");
+        }
+        parse_case(&text, "block.toml", Path::new(".")).unwrap().notes
+    }
+
+    #[test]
+    fn a_probe_outside_of_the_body_is_said_to_be_extrapolated_with_its_distance() {
+        assert!(notes(&[0.1, 0.05, 0.1 + 1e-4]).is_empty());
+        let found = notes(&[0.1, 0.104, 0.106]);
+        assert_eq!(found.len(), 1);
+        for part in ["2 probes", "`p2`", "6.000e-3 m (0.30 spacings)", "extrapolated"] {
+            assert!(found[0].contains(part), "{part}: {}", found[0]);
+        }
     }
 }

@@ -37,7 +37,9 @@ choice! {
     ExtentFormat for Extent {
         /// Nodes on the boundary of the body only.
         "surface" Surface,
-        /// Every node of the body.
+        /// Every node of the body. Where all components are prescribed for ever and a ball of one
+        /// spacing fits in, what is held ends at its border and does not deform: its motion costs no
+        /// strain energy, and its weight stays in the reaction.
         "volume" Volume,
     }
 }

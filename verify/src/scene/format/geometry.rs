@@ -67,12 +67,15 @@ pub enum ShapeFormat {
     Intersection(Vec<ShapeFormat>),
     /// The first without the second.
     Difference(Box<ShapeFormat>, Box<ShapeFormat>),
-    /// A closed surface from an STL file, path relative to the case file. It may consist of
-    /// several shells that neither cross nor lie in each other but as cavities.
+    /// A closed surface from a file: STL, OBJ, PLY, or PolyData of VTK (.vtp or legacy .vtk), as
+    /// the extension of its name says. Path relative to the case file. Faces of more than three
+    /// corners are cut into triangles; lines and points are left out. It may consist of several
+    /// shells; those that cross are united, cavities are those whose triangles face inwards.
     Stl {
-        /// The STL file, ASCII or binary, all its solids. Vertices no further apart than 1e-9 of
-        /// the size of the surface are one. Coordinates are along R, A and S; where the header or
-        /// the name of a solid says `SPACE=LPS`, x and y change their signs.
+        /// The file (.stl, .obj, .ply, .vtp, .vtk), as text or binary, all its solids, objects or
+        /// pieces. Vertices no further apart than 1e-9 of the size of the surface are one.
+        /// Coordinates are along R, A and S; where the header, a comment or the name of a solid
+        /// says `SPACE=LPS`, x and y change their signs.
         file: PathBuf,
         /// Unit of the coordinates in the file.
         unit: UnitFormat,
@@ -87,6 +90,9 @@ pub enum ShapeFormat {
         /// Overrides the unit that the file states (mm if it states none); that of the file if
         /// left out.
         unit: Option<UnitFormat>,
+        /// Which layer of a file of 3D Slicer (.seg.nrrd) whose segments overlap, counted from 0;
+        /// left out, the file must have one.
+        layer: Option<usize>,
         /// Standard deviation of the smoothing of the surface [voxel], at most 4: 0.7 if
         /// left out; 1.4 flattens the steps between voxels that contact would feel.
         smoothing: Option<f64>,
@@ -156,6 +162,9 @@ pub enum SelectorFormat {
         file: Option<PathBuf>,
         /// Overrides the unit that the file states; that of the file if left out.
         unit: Option<UnitFormat>,
+        /// Which layer of a `file` whose segments overlap, counted from 0; left out, that file
+        /// must have one.
+        layer: Option<usize>,
     },
     /// Where the outward normal of the body is near a direction: a flat face of a surface, or
     /// one side of an organ. Away from the boundary, the normal at its nearest place.

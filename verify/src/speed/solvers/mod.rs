@@ -4,6 +4,7 @@
 mod contest;
 mod doubt;
 mod entrant;
+mod family;
 mod outcome;
 mod own;
 mod process;

@@ -1,5 +1,6 @@
 //! A child process with a time limit, whose processor time and memory the system measures.
 
+use super::family::Family;
 use crate::machine::peak_memory;
 use crate::run::interrupted;
 use std::collections::VecDeque;
@@ -62,8 +63,8 @@ pub struct ChildRun {
     pub last_words: String,
 }
 
-/// Runs a command with its children in a group of their own, of which nothing is left when this
-/// returns. The error is that of a program that cannot be started.
+/// Runs a command with its children in a group of their own. Nothing is left of the group, nor on
+/// Linux of what has left it, when this returns. The error is that of a program that cannot be started.
 pub fn run_child(words: &[String], limit: Duration) -> io::Result<ChildRun> {
     let (program, arguments) = words.split_first().ok_or(io::ErrorKind::InvalidInput)?;
     let mut command = Command::new(program);
@@ -72,6 +73,7 @@ pub fn run_child(words: &[String], limit: Duration) -> io::Result<ChildRun> {
     command.envs(ONE_THREAD.map(|name| (name, "1")));
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    let family = Family::new();
     let least_memory_bytes = peak_memory().unwrap_or(0);
     let start = Instant::now();
     let mut child = command.spawn()?;
@@ -80,6 +82,10 @@ pub fn run_child(words: &[String], limit: Duration) -> io::Result<ChildRun> {
     let wall_s = start.elapsed().as_secs_f64();
     // Before it is reaped, so that the number of the group cannot belong to others.
     kill_group(&mut child);
+    #[cfg(unix)]
+    family.end(rustix::process::Pid::from_child(&child));
+    #[cfg(not(unix))]
+    drop(family);
     let used = child.wait4()?;
     let usage = Usage {
         cpu_s: (used.rusage.utime + used.rusage.stime).as_secs_f64(),
@@ -154,4 +160,30 @@ fn last_words(child: &mut Child) -> Receiver<String> {
         let _ = sender.send(String::from_utf8_lossy(&bytes).trim().to_string());
     });
     receiver
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use crate::speed::solvers::process::{Ended, run_child};
+    use std::time::Duration;
+
+    #[test]
+    fn what_goes_into_a_session_of_its_own_ends_with_its_time_limit() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("pid");
+        let name = file.display();
+        for script in [
+            format!("setsid sh -c 'echo $$ >\"{name}\"; exec sleep 60' & sleep 60"),
+            // Its parent has ended, and so has the parent of that.
+            format!("(setsid env -i sh -c 'echo $$ >\"{name}\"; exec sleep 60' &) & sleep 60"),
+        ] {
+            let words = ["sh".to_string(), "-c".into(), script.clone()];
+            let run = run_child(&words, Duration::from_millis(500)).unwrap();
+            assert_eq!(run.ended, Ended::TimedOut);
+            let pid = std::fs::read_to_string(&file).unwrap();
+            let alive = std::path::Path::new("/proc").join(pid.trim()).exists();
+            assert!(!alive, "{script}");
+            std::fs::remove_file(&file).unwrap();
+        }
+    }
 }

@@ -1,12 +1,13 @@
 //! Surfaces and plane curves over parameters.
 
 use crate::algebra::tensor::Vector3;
+use std::sync::Arc;
 
 /// A position (s, t) on a chart \[–\]; curves ignore t.
 pub type Place = [f64; 2];
 
 /// A piece of a face over (s, t), or of a plane curve over s, each in \[0, 1\].
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub enum Chart {
     /// corner + s u + t v; u × v points out of the solid.
     Flat { corner: Vector3, u: Vector3, v: Vector3 },
@@ -18,6 +19,8 @@ pub enum Chart {
         angle: (f64, f64),
         side: f64,
     },
+    /// Flat triangles, the n-th of places (2 n, 0), (2 n + 1, 0) and (2 n, 1): corner, u, v.
+    Facets(Arc<[[Vector3; 3]]>),
     /// Of the side of a cylinder: base + radius (cos α u + sin α v) + s axis.
     Side {
         base: Vector3,
@@ -44,6 +47,13 @@ fn length((from, to): (f64, f64)) -> f64 {
     to - from
 }
 
+/// The facet of a place with its number.
+fn facet(facets: &[[Vector3; 3]], s: f64) -> (f64, &[Vector3; 3]) {
+    // Round-off of the first corner belongs to its facet.
+    let n = ((0.5 * (s + 0.5)) as usize).min(facets.len() - 1);
+    (n as f64, &facets[n])
+}
+
 impl Chart {
     /// Whether it is a curve in a plane.
     pub fn is_curve(&self) -> bool {
@@ -59,6 +69,10 @@ impl Chart {
     pub fn at(&self, [s, t]: Place) -> Vector3 {
         match self {
             Chart::Flat { corner, u, v } => corner + s * u + t * v,
+            Chart::Facets(facets) => {
+                let (n, [corner, u, v]) = facet(facets, s);
+                corner + (s - 2.0 * n) * u + t * v
+            }
             Chart::Sector { centre, across: [u, v], radius, angle, .. } => {
                 let (sin, cos) = between(*angle, t).sin_cos();
                 centre + between(*radius, s) * (cos * u + sin * v)
@@ -82,6 +96,10 @@ impl Chart {
     pub fn area_vector(&self, [s, t]: Place) -> Vector3 {
         match self {
             Chart::Flat { u, v, .. } => u.cross(v),
+            Chart::Facets(facets) => {
+                let (_, [_, u, v]) = facet(facets, s);
+                u.cross(v)
+            }
             Chart::Sector { across: [u, v], radius, angle, side, .. } => {
                 let size = between(*radius, s) * length(*radius) * length(*angle);
                 *side * size * u.cross(v)

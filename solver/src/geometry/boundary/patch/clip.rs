@@ -95,7 +95,9 @@ impl Clip<'_> {
     }
 
     fn least(&self) -> usize {
-        if self.level.steepness.is_finite() { 0 } else { LEAST }
+        // Facets are small.
+        let is_fine = matches!(self.chart, Chart::Facets(_));
+        if is_fine || self.level.steepness.is_finite() { 0 } else { LEAST }
     }
 
     fn triangle(&mut self, cell: Cell, values: [f64; 3], depth: usize) {

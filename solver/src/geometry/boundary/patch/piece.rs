@@ -43,6 +43,25 @@ impl Patch {
         Patch { panel, chart, cells: Cells::Triangle, side: 1.0 }
     }
 
+    /// Small triangles \[m\] that face about the same way, as one.
+    pub fn facets(triangles: &[[Vector3; 3]]) -> Patch {
+        let area = |t: &[Vector3; 3]| (t[1] - t[0]).cross(&(t[2] - t[0])).norm();
+        let largest = triangles.iter().map(area).fold(f64::MIN_POSITIVE, f64::max);
+        // Places as large as the facets are.
+        let scales = triangles.iter().map(|t| (area(t) / largest).sqrt());
+        let facets = triangles
+            .iter()
+            .zip(scales.clone())
+            .map(|([a, b, c], scale)| [*a, (b - a) / scale, (c - a) / scale]);
+        let cells = scales.enumerate().map(|(n, scale)| {
+            let s = 2.0 * n as f64;
+            [[s, 0.0], [s + scale, 0.0], [s, scale]]
+        });
+        let (chart, cells) = (Chart::Facets(facets.collect()), Cells::Cut(cells.collect()));
+        let panel = Panel::flat(triangles[0][0], 1.0, Vector3::z());
+        Patch { panel, chart, cells, side: 1.0 }.integrated()
+    }
+
     /// With the normal on the other side.
     pub fn flipped(self) -> Patch {
         let panel = Panel { normal: -self.panel.normal, ..self.panel };
@@ -84,7 +103,8 @@ impl Patch {
         if fraction > 1.0 - nothing {
             return Some((self.clone(), 1.0));
         }
-        let kept = Patch { cells: Cells::Cut(clip.kept), ..*self };
+        let cells = Cells::Cut(clip.kept);
+        let kept = Patch { panel: self.panel, chart: self.chart.clone(), cells, side };
         (fraction > nothing).then(|| (kept.integrated(), fraction))
     }
 
@@ -136,7 +156,7 @@ impl Patch {
     fn for_each_point(&self, mut visit: impl FnMut(Vector3, Vector3)) {
         let rule: &[([f64; 3], f64)] = match self.chart {
             Chart::Line { .. } | Chart::Arc { .. } => &ON_INTERVALS,
-            Chart::Flat { .. } => &[([1.0 / 3.0; 3], 1.0)],
+            Chart::Flat { .. } | Chart::Facets(_) => &[([1.0 / 3.0; 3], 1.0)],
             _ => &ON_TRIANGLES,
         };
         for cell in self.cells() {

@@ -44,7 +44,7 @@ pub fn to_html(report: &Report) -> anyhow::Result<String> {
         outcome => class(report.outcome()),
         mark => mark(report.outcome()),
         failed => !report.bounds_hold(),
-        open => report.studies.iter().any(|study| !study.undecided.is_empty()),
+        open => report.studies.iter().any(|study| !study.questions().is_empty()),
         compared => report.comparison.as_ref().map(comparison_value),
         verdict => result_line(report),
         judged => report.checks().next().is_some(),
@@ -85,7 +85,7 @@ fn study_value(study: &Study) -> Value {
     let (passed, all) = study_counts(study);
     let below = study.figures.iter().skip(study.leading);
     let (passing, failing): (Vec<&Check>, Vec<&Check>) =
-        study.checks.iter().partition(|check| check.pass);
+        study.checks.iter().partition(|check| check.passed());
     let values = |checks: Vec<&Check>| checks.into_iter().map(check_value).collect::<Vec<_>>();
     context! {
         id => study.id.as_str(),
@@ -95,7 +95,7 @@ fn study_value(study: &Study) -> Value {
         failure => study.failure.as_deref(),
         outcome => class(study.outcome()),
         word => study.outcome().word(),
-        undecided => study.undecided.iter().map(Value::from).collect::<Vec<_>>(),
+        undecided => study.questions().into_iter().map(Value::from).collect::<Vec<_>>(),
         counts => if all == 0 { "figures only".into() } else { format!("{passed} of {all}") },
         failing => values(failing),
         passing => values(passing),
@@ -112,6 +112,7 @@ fn check_value(check: &Check) -> Value {
     let limit = match check.bound {
         Bound::AtMost(limit) | Bound::AtLeast(limit) => limit,
         Bound::Between(low, high) => 0.5 * (low + high),
+        Bound::Baseline(_) => f64::NAN,
     };
     context! {
         id => check.id.as_str(),
@@ -125,6 +126,8 @@ fn check_value(check: &Check) -> Value {
         bound_key => limit.to_string(),
         unit => unit_text(&check.unit),
         pass => check.pass,
+        outcome => class(check.outcome()),
+        word => check.outcome().word(),
         source => check.source.as_str(),
         file => check.failure_file().map(|file| Value::from_safe_string(svg::escape(&file))),
     }
@@ -189,7 +192,7 @@ fn kind_values(report: &Report) -> Vec<Value> {
         .filter(|(kind, _)| report.checks().any(|check| check.kind == *kind))
         .map(|(kind, meaning)| {
             let of_kind = report.checks().filter(|check| check.kind == kind);
-            let (passed, all) = counts(of_kind.map(|check| check.pass));
+            let (passed, all) = counts(of_kind.map(Check::passed));
             context! { name => kind.name(), meaning, passed, all, pass => passed == all }
         })
         .collect()

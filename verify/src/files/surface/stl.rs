@@ -1,31 +1,17 @@
 //! Triangulated surfaces in STL files: read from ASCII or binary ones, written as binary ones.
 
-use super::bytes::{bytes_of, start_of};
-use super::error::{FileError, Mistake};
-use super::stl_space::{Corner, Space};
-use super::stl_text;
-use super::unit::LengthUnit;
+use super::space::Space;
+use super::stl_text::{self, Corner};
+use super::triangles::Triangles;
+use crate::files::bytes::start_of;
+use crate::files::error::{Mistake, check_finite};
+use crate::files::unit::LengthUnit;
 use mtled::algebra::tensor::Vector3;
 use std::collections::HashMap;
 use std::io::Cursor;
-use std::path::Path;
-
-/// Triangles that share vertices where the file repeats their coordinates.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Triangles {
-    /// \[m\]
-    pub vertices: Vec<Vector3>,
-    /// Indices of the corners \[triangle\].
-    pub triangles: Vec<[u32; 3]>,
-}
 
 /// Reads a surface; STL states no unit.
-pub fn read(path: &Path, unit: LengthUnit) -> Result<Triangles, FileError> {
-    let bytes = bytes_of(path)?;
-    parse(&bytes, unit).map_err(|mistake| mistake.of(path))
-}
-
-fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
+pub fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
     let surface = match is_text(bytes) {
         true => shared(&stl_text::corners(bytes)?, unit),
         false => binary(bytes, unit)?,
@@ -33,11 +19,8 @@ fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
     if surface.triangles.is_empty() {
         return Err(Mistake::NoTriangles);
     }
-    let finite = |v: &Vector3| v.iter().all(|c| c.is_finite());
-    match surface.vertices.iter().position(|v| !finite(v)) {
-        Some(point) => Err(Mistake::NotFinite { point: point + 1 }),
-        None => Ok(surface),
-    }
+    check_finite(&surface.vertices)?;
+    Ok(surface)
 }
 
 /// Whether a file begins as text does and is no binary one of the right length.
@@ -49,7 +32,7 @@ fn is_text(bytes: &[u8]) -> bool {
 
 fn binary(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
     let plain = plainly_binary(bytes)?;
-    let space = Space::stated(&bytes[..START - 4])?;
+    let space = Space::stated(&bytes[..START - 4])?.unwrap_or_default();
     let mesh = stl_io::read_stl(&mut Cursor::new(plain))
         .map_err(|error| Mistake::Undecodable { encoding: "STL", reason: error.to_string() })?;
     let place = |v: &stl_io::Vertex| in_metres(space.to_ras([v[0], v[1], v[2]]), unit);

@@ -1,12 +1,12 @@
 //! The stiffness at rest of smooth displacements.
 #![allow(non_snake_case)]
 
+use super::coarse_matrix::CoarseMatrix;
 use crate::algebra::sparse::{Combine, Padded, Sparse, pad, unpad};
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::spline_lattice::Lattice;
 use crate::algebra::tensor::Vector3;
 use crate::model::{Block, Chunk, Model, ModuliAtRest, stiffness_diagonal};
-use crate::motion::newton::coarse_matrix::CoarseMatrix;
 use std::collections::BTreeMap;
 
 /// The stiffness at rest that a preconditioner inverts.

@@ -1,20 +1,23 @@
 //! STL files of text: every `solid` block of a file, in capitals or not.
 
-use super::error::Mistake;
-use super::stl_space::{Corner, Space};
+use super::space::Space;
+use crate::files::error::Mistake;
 use std::iter::Enumerate;
 use std::str::{Split, SplitWhitespace};
+
+/// Coordinates of a corner as a file has them.
+pub(super) type Corner = [f32; 3];
 
 /// Corners of the triangles of all blocks, three to a triangle, in RAS. A block may lack its
 /// `endsolid`, as files do that were put together; a facet may lack nothing.
 pub fn corners(bytes: &[u8]) -> Result<Vec<Corner>, Mistake> {
     let text = String::from_utf8_lossy(bytes).replace("\r\n", "\n");
     let mut words = Words::of(&text);
-    let (mut corners, mut space, mut open) = (Vec::new(), Space::Ras, false);
+    let (mut corners, mut space, mut open) = (Vec::new(), Space::default(), false);
     while let Some(keyword) = words.keyword() {
         match (keyword.as_str(), open) {
             ("solid", _) => {
-                space = Space::stated(words.rest_of_line().as_bytes())?;
+                space = Space::stated(words.rest_of_line().as_bytes())?.unwrap_or_default();
                 open = true;
             }
             ("endsolid", true) => {
@@ -106,9 +109,8 @@ impl<'a> Words<'a> {
     }
 
     fn bad_line(&self, expected: &'static str) -> Mistake {
-        const SHOWN: usize = 60;
         let (line, text) = self.line;
-        Mistake::BadLine { line, text: text.trim().chars().take(SHOWN).collect(), expected }
+        Mistake::bad_line(line, text, expected)
     }
 
     fn ended(&self, expected: &'static str) -> Mistake {

@@ -2,12 +2,11 @@
 #![allow(non_snake_case)]
 
 use super::coarse_space::{Held, Stiffness};
-use super::free_space::FreeSpace;
 use super::preconditioner::Preconditioner;
+use super::system::{Correction, System};
 use crate::algebra::packed::{axpy, dot, largest};
-use crate::algebra::tensor::Matrix3;
 use crate::model::Model;
-use crate::motion::tangent::Tangent;
+use crate::motion::newton::free_space::FreeSpace;
 
 /// Held displacements that may change before the preconditioner is made anew, over their
 /// number \[–\].
@@ -26,35 +25,9 @@ const OF_ALL: usize = 200;
 /// transform to nodal values is nearly singular.
 const PATIENCE: usize = 400;
 
-/// Approximate solution of (K + shift D) Δu = r.
-pub(super) struct Correction {
-    pub change: Vec<f64>,
-    /// Whether a direction of negative curvature was met.
-    pub indefinite: bool,
-    /// Products with K.
-    pub products: usize,
-    /// Whether the observer ended the run.
-    pub stopped: bool,
-}
-
-/// The system of a correction.
-pub(super) struct System<'a> {
-    pub tangent: Tangent<'a>,
-    /// Free unbalanced forces r \[N\].
-    pub residual: Vec<f64>,
-    /// Displacement \[m\] to start from, which closes what is to be closed.
-    pub change: Vec<f64>,
-    /// Norm of the residual over that at the start at which the solution ends \[–\].
-    pub forcing: f64,
-    /// Stiffness of nodes that slide on obstacles \[N/m\].
-    pub sliding: Vec<(u32, Matrix3)>,
-    /// Part of the diagonal D that is added to K, against large steps \[–\].
-    pub shift: f64,
-}
-
 /// Solves corrections, and keeps the preconditioner from one to the next.
-pub(super) struct Solver {
-    at_rest: Stiffness,
+pub(crate) struct Solver {
+    pub(super) at_rest: Stiffness,
     preconditioner: Option<Preconditioner>,
     /// Products with the diagonal alone until the preconditioner is made, if it ever is.
     until: Option<usize>,
@@ -71,7 +44,7 @@ impl Solver {
     pub fn new(model: &Model, most: f64) -> Solver {
         let at_rest = Stiffness::new(model, most);
         let nodes = if model.components == 3 { model.positions.len() } else { 0 };
-        let at_once = nodes > FEW_NODES || most.is_finite() && model.components == 3;
+        let at_once = nodes > FEW_NODES || most.is_finite();
         let preconditioner = at_once.then(|| Preconditioner::new(model, &at_rest)).flatten();
         let few = !at_once && (LEAST_NODES..=FEW_NODES).contains(&nodes);
         Solver {
@@ -100,7 +73,7 @@ impl Solver {
     }
 
     /// Makes the preconditioner anew where it would no longer serve.
-    fn prepare(&mut self, free: &FreeSpace, shift: f64) {
+    pub(super) fn prepare(&mut self, free: &FreeSpace, shift: f64) {
         let Some(preconditioner) = &mut self.preconditioner else { return };
         let directions = free.held();
         // Normals of a closed contact turn a little; its node says enough.
@@ -131,26 +104,21 @@ impl Solver {
         &mut self,
         model: &Model,
         free: &mut FreeSpace,
-        system: System,
+        mut system: System,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Correction {
-        let System { mut tangent, mut residual, mut change, forcing, sliding, shift } = system;
+        if let Some(saddle) = system.saddle.take() {
+            return self.solve_saddle(model, free, system, saddle, go_on);
+        }
+        let (forcing, shift) = (system.forcing, system.shift);
+        let mut change = std::mem::take(&mut system.change);
+        let mut residual = std::mem::take(&mut system.residual);
         self.prepare(free, shift);
-        let d = model.components;
-        let shifted = self.at_rest.diagonal.iter().map(|k| shift * k);
-        let shifts: Vec<f64> = if shift > 0.0 { shifted.collect() } else { Vec::new() };
         let mut products = 0;
-        let mut product_with = |v: &[f64]| {
-            products += 1;
-            let mut product = tangent.stiffness_times(v);
-            for ((product, v), shift) in product.chunks_mut(d).zip(v.chunks(d)).zip(&shifts) {
-                product.iter_mut().zip(v).for_each(|(p, v)| *p += shift * v);
-            }
-            add_sliding(model, &sliding, v, &mut product);
-            product
-        };
         if largest(&change) > 0.0 {
-            axpy(&mut residual, -1.0, &product_with(&change));
+            products += 1;
+            let product = system.stiffness_times(model, &self.at_rest.diagonal, &change);
+            axpy(&mut residual, -1.0, &product);
         }
         let mut descent = self.preconditioned(model, free, &mut residual);
         let mut direction = descent.clone();
@@ -164,7 +132,8 @@ impl Solver {
             if stopped || square.is_nan() || left <= target {
                 break;
             }
-            let product = product_with(&direction);
+            products += 1;
+            let product = system.stiffness_times(model, &self.at_rest.diagonal, &direction);
             let curvature = dot(&direction, &product);
             if curvature <= 0.0 {
                 if count == 0 {
@@ -193,12 +162,12 @@ impl Solver {
         // Each takes more than the one before; what was not due with the first is due late.
         self.until = self.until.map(|left| if self.corrected { left } else { OF_ALL });
         self.corrected = true;
-        Correction { change, indefinite, products, stopped }
+        Correction { change, pressures: Vec::new(), indefinite, products, stopped }
     }
 
     /// z = Π B r; r becomes M Π M⁻¹ r, without the forces of what is held, whose round-off
     /// would exceed the rest.
-    fn preconditioned(
+    pub(super) fn preconditioned(
         &mut self,
         model: &Model,
         free: &mut FreeSpace,
@@ -213,20 +182,14 @@ impl Solver {
         if let Some(preconditioner) = &mut self.preconditioner {
             preconditioner.apply(d, residual, &mut descent);
             free.project(&mut descent);
+        } else if self.at_rest.most.is_finite() {
+            // Beside pressures the scale of displacements counts.
+            for (i, (r, z)) in residual.iter().zip(&mut descent).enumerate() {
+                *z = r / self.at_rest.diagonal[i / d];
+            }
+            free.project(&mut descent);
         }
         descent
-    }
-}
-
-/// The forces against sliding of displacements v.
-fn add_sliding(model: &Model, sliding: &[(u32, Matrix3)], v: &[f64], product: &mut [f64]) {
-    let (Some(rows), d) = (&model.nodal_rows, model.components) else { return };
-    for (node, stiffness) in sliding {
-        let force = stiffness * rows.interpolate(*node as usize, v, d);
-        for entry in rows.row(*node as usize) {
-            let first = d * rows.nodes[entry] as usize;
-            (0..d).for_each(|k| product[first + k] += rows.phi[entry] * force[k]);
-        }
     }
 }
 

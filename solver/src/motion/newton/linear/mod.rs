@@ -1,0 +1,12 @@
+//! The linear systems of corrections.
+
+mod coarse_matrix;
+mod coarse_space;
+mod conjugate_gradients;
+mod minimal_residuals;
+mod nodal_values;
+mod preconditioner;
+mod system;
+
+pub(super) use conjugate_gradients::Solver;
+pub(super) use system::{Correction, Saddle, SaddlePatch, System};
