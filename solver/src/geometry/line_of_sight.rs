@@ -32,6 +32,10 @@ const ALONG: [f64; 3] = [0.5, 0.25, 0.75];
 const BESIDE: [f64; 3] = [0.1, 0.01, 0.001];
 /// Halvings towards the places where a way leaves and comes back.
 const HALVINGS: usize = 8;
+/// Parts of what of a way lies outside, between which it is looked how far outside.
+const PARTS: usize = 8;
+/// Places as deep or as low but for less are equal \[length\].
+const TIE: f64 = 1e-6;
 /// Between two places on the two sides of a gap the distance rises above a line by more than
 /// this part of the sum of their depths.
 const BENT: f64 = 0.1;
@@ -42,6 +46,18 @@ pub(crate) struct Place {
     pub X: Vector3,
     /// Negative inside.
     pub distance: f64,
+}
+
+impl Place {
+    /// Whether ways start here and not at another place: from the deeper one, or from the lower
+    /// one in x, y or z where both are as deep, so that there and back are one way.
+    fn comes_before(&self, other: &Place, tie: f64) -> bool {
+        let (one, two) = (self, other);
+        let [x, y, z] = [0, 1, 2].map(|axis| (one.X[axis], two.X[axis]));
+        let decides = |(a, b): &(f64, f64)| (a - b).abs() > tie;
+        let first = [(one.distance, two.distance), x, y, z].into_iter().find(decides);
+        first.is_some_and(|(a, b)| a < b)
+    }
 }
 
 impl Shape {
@@ -73,6 +89,7 @@ impl Shape {
     /// boundary, or a tenth of the length; across such a step the distance is looked at where
     /// it would be 0 if it rose and fell evenly.
     pub(crate) fn parts(&self, a: &Place, b: &Place, length: f64) -> bool {
+        let (a, b) = if b.comes_before(a, TIE * length) { (b, a) } else { (a, b) };
         let way = Way::new(self, a, b, length);
         // Balls of material around both ends.
         let depths = [a, b].map(|end| (-end.distance).max(0.0));
@@ -150,8 +167,8 @@ impl<'a> Way<'a> {
             true => self.total,
             false => self.total + self.ends[1].distance.min(0.0),
         };
-        // The last place inside, one outside since, and how far the way is from the body since.
-        let (mut inside, mut outside, mut depth) = (0.0, None, 0.0_f64);
+        // The last place inside, and one outside since.
+        let (mut inside, mut outside) = (0.0, None);
         let (mut t, mut distance) = (0.0, self.ends[0].distance);
         while t < end {
             let next = (t + distance.abs().max(self.step)).min(end);
@@ -159,21 +176,20 @@ impl<'a> Way<'a> {
                 true => self.ends[1].distance,
                 false => self.distance(next),
             };
-            depth = depth.max(there);
             let narrow = distance <= self.thin && there <= self.thin;
             if narrow {
                 outside = self.outside_between((t, distance), (next, there), LOOKS);
             }
             match there > self.thin {
                 true => outside = outside.or(Some(next)),
-                false if outside.is_some_and(|out| self.is_crossed([inside, out, next], depth)) => {
+                false if outside.is_some_and(|out| self.is_crossed([inside, out, next])) => {
                     return true;
                 }
-                false => (inside, outside, depth) = (next, None, 0.0),
+                false => (inside, outside) = (next, None),
             }
             (t, distance) = (next, there);
         }
-        outside.is_some_and(|out| self.is_crossed([inside, out, self.total], depth))
+        outside.is_some_and(|out| self.is_crossed([inside, out, self.total]))
     }
 
     /// A place outside between two inside, (t, distance), if one shows. Where one of these is on
@@ -208,10 +224,10 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// Whether a way that leaves the body after one place, is outside at another, by at most
-    /// a depth \[m\], and inside again at a third has crossed a gap: it is deep for its width, or the
-    /// directions away from the body just outside of where it leaves and comes back differ.
-    fn is_crossed(&self, [inside, outside, returns]: [f64; 3], depth: f64) -> bool {
+    /// Whether a way that leaves the body after one place, is outside at another and inside again
+    /// at a third has crossed a gap: it is deep for its width, or the directions away from the
+    /// body just outside of where it leaves and comes back differ.
+    fn is_crossed(&self, [inside, outside, returns]: [f64; 3]) -> bool {
         let just_outside = |mut inside: f64| {
             let mut out = outside;
             for _ in 0..HALVINGS {
@@ -225,6 +241,9 @@ impl<'a> Way<'a> {
         };
         let (leaves, returns) = (just_outside(inside), just_outside(returns));
         let away = |t: f64| self.body.gradient(&self.at(t));
+        let part = (returns - leaves) / PARTS as f64;
+        let depths = (1..PARTS).map(|n| self.distance(leaves + n as f64 * part));
+        let depth = depths.fold(self.distance(outside), f64::max);
         depth > self.allowed.max(DEEP * (returns - leaves))
             || away(leaves).dot(&away(returns)) < TURNED
     }

@@ -6,6 +6,9 @@ use crate::discretisation::neighbours::Neighbours;
 use crate::geometry::nearest_count;
 use std::collections::VecDeque;
 
+/// Distances between points that differ by less are equal, over the reach of a curve \[–\].
+const TIE: f64 = 1e-6;
+
 /// Points ordered along curves: from an end to the nearest that is left and not farther
 /// than `reach` \[m\]. A closed curve ends with its first point.
 pub(super) fn chains(points: Vec<Vector3>, reach: f64) -> Vec<Vec<Vector3>> {
@@ -38,14 +41,20 @@ pub(super) fn chains(points: Vec<Vector3>, reach: f64) -> Vec<Vec<Vector3>> {
 }
 
 fn next_left(cells: &Neighbours, end: &Vector3, reach: f64, left: &[bool]) -> Option<usize> {
-    let mut best: Option<(f64, usize)> = None;
+    let mut nearest = f64::INFINITY;
     cells.for_each_within(end, reach, |point, offset| {
-        let distance = offset.norm_squared();
-        if left[point] && best.is_none_or(|(nearest, _)| distance < nearest) {
-            best = Some((distance, point));
+        if left[point] {
+            nearest = nearest.min(offset.norm());
         }
     });
-    best.map(|(_, point)| point)
+    // Of those that are equally near the first, whatever round-off says.
+    let mut first = None;
+    cells.for_each_within(end, nearest.min(reach) + TIE * reach, |point, _| {
+        if left[point] && first.is_none_or(|other| point < other) {
+            first = Some(point);
+        }
+    });
+    first.filter(|_| nearest.is_finite())
 }
 
 /// Points that divide a curve evenly in units of the local spacing, its ends included.

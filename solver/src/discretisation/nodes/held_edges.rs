@@ -20,6 +20,13 @@ const SERVES: f64 = 0.45;
 /// Panels whose normals have a smaller product lie on different faces of the body, whose
 /// edges have nodes anyway.
 const SAME_FACE: f64 = 0.7;
+/// Distances to nodes that differ by less are equal, over the radius that is searched \[–\].
+const TIE: f64 = 1e-6;
+/// Panels are about a place that are not farther away; not round, since round-off would choose
+/// among panels at whole and half sizes \[size of a panel\].
+const AROUND: f64 = 1.017_3;
+/// Of points of an edge that are closer one is enough; not round either \[size of a panel\].
+const KNOWN: f64 = 0.207_1;
 /// Halvings of a bracket: to round-off.
 const HALVINGS: usize = 40;
 
@@ -72,7 +79,7 @@ impl<'a> HeldParts<'a> {
     /// instead of anywhere between two nodes.
     pub fn place_nodes(&self, cloud: &mut NodeCloud) {
         let nodes = Neighbours::new(&cloud.positions, 2.0 * cloud.smallest_spacing());
-        let spacing_at = |X: &Vector3| cloud.spacing[nearest(&nodes, X, self.size)];
+        let spacing_at = |X: &Vector3| nearest_spacing(&nodes, &cloud.spacing, X, self.size);
         let mut hash = PointHash::new(self.size, 1e3 * self.size);
         let mut added: Vec<EdgeNode> = Vec::new();
         for condition in self.conditions.iter().filter(|c| c.extent == Extent::Surface) {
@@ -113,10 +120,11 @@ impl<'a> HeldParts<'a> {
     /// Whether faces of different normals meet at a place.
     fn is_sharp(&self, X: &Vector3) -> bool {
         let mut normals: Vec<Vector3> = Vec::new();
-        self.centres.for_each_within(X, self.size, |panel, _| {
+        self.centres.for_each_within(X, AROUND * self.size, |panel, _| {
             normals.push(self.panels[panel].normal);
         });
-        normals.iter().any(|normal| normal.dot(&normals[0]) < SAME_FACE)
+        let differs = |normal: &Vector3| normals.iter().any(|n| n.dot(normal) < SAME_FACE);
+        normals.iter().any(differs)
     }
 
     /// Whether no condition holds a panel as much as `condition` does.
@@ -139,13 +147,13 @@ impl<'a> HeldParts<'a> {
         let mut hash = PointHash::new(0.1 * self.size, self.size);
         let mut points = Vec::new();
         for bracket in across {
-            let known = |X: &Vector3, within: f64| hash.any_within(X, 0.2 * self.size - within);
+            let known = |X: &Vector3, within: f64| hash.any_within(X, KNOWN * self.size - within);
             if let Some(X) = self.end_within(condition, bracket, known) {
                 hash.insert(X);
                 points.push(X);
             }
         }
-        chains(points, 1.5 * self.size)
+        chains(points, 1.5 * AROUND * self.size)
     }
 
     /// From a held panel to those about it on its face that are free.
@@ -155,15 +163,22 @@ impl<'a> HeldParts<'a> {
         panel: &Panel,
         held: &[bool],
     ) -> Vec<Bracket> {
-        let mut brackets = Vec::new();
-        self.centres.for_each_within(&panel.centre, 1.5 * self.size, |other, _| {
+        let mut free = Vec::new();
+        self.centres.for_each_within(&panel.centre, 1.5 * AROUND * self.size, |other, _| {
             let far = &self.panels[other];
             let on_face = far.normal.dot(&panel.normal) >= SAME_FACE;
             if !held[other] && on_face && self.is_free(condition, far) {
-                brackets.push(Bracket { held: panel.centre, free: far.centre, halvings: 0 });
+                free.push(other);
             }
         });
-        brackets
+        // The cells in which panels are found hang on round-off.
+        free.sort_unstable();
+        let bracket = |other: usize| Bracket {
+            held: panel.centre,
+            free: self.panels[other].centre,
+            halvings: 0,
+        };
+        free.into_iter().map(bracket).collect()
     }
 
     /// A bracket so small that what is found in others may tell that it is not needed.
@@ -229,19 +244,20 @@ fn any_within(nodes: &Neighbours, X: &Vector3, radius: f64, is: impl Fn(usize) -
     found
 }
 
-/// The node nearest to a place, searched from a radius \[m\] on.
-fn nearest(nodes: &Neighbours, X: &Vector3, radius: f64) -> usize {
+/// The spacing \[m\] at the node nearest to a place, searched from a radius \[m\] on; the mean
+/// of those that are equally near.
+fn nearest_spacing(nodes: &Neighbours, spacing: &[f64], X: &Vector3, radius: f64) -> f64 {
     let mut radius = radius;
     loop {
-        let mut best = (f64::INFINITY, 0);
-        nodes.for_each_within(X, radius, |node, offset| {
-            let distance = offset.norm_squared();
-            if distance < best.0 {
-                best = (distance, node);
-            }
-        });
-        if best.0 < f64::INFINITY || !radius.is_finite() {
-            return best.1;
+        let mut nearest = f64::INFINITY;
+        nodes.for_each_within(X, radius, |_, offset| nearest = nearest.min(offset.norm()));
+        if nearest < f64::INFINITY || !radius.is_finite() {
+            let (mut sum, mut count) = (0.0, 0.0);
+            nodes.for_each_within(X, nearest + TIE * radius, |node, _| {
+                sum += spacing[node];
+                count += 1.0;
+            });
+            return sum / count;
         }
         radius *= 2.0;
     }

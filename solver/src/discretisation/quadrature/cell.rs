@@ -1,6 +1,6 @@
 //! A cell of the background grid.
 
-use crate::algebra::tensor::Vector3;
+use crate::algebra::tensor::{Matrix3, Vector3};
 
 /// A square or cube of the grid.
 #[derive(Clone, Copy)]
@@ -43,4 +43,18 @@ impl Cell {
     pub fn half_diagonal(&self, components: usize) -> f64 {
         0.5 * self.edge * (components as f64).sqrt()
     }
+
+    /// Second moments of the whole about its centre over its volume \[m²\].
+    pub fn spread(&self, components: usize) -> Matrix3 {
+        in_plane(Matrix3::from_diagonal_element(self.edge * self.edge / 12.0), components)
+    }
+}
+
+/// Nothing is spread across a plane.
+pub(super) fn in_plane(mut spread: Matrix3, components: usize) -> Matrix3 {
+    if components == 2 {
+        spread.row_mut(2).fill(0.0);
+        spread.column_mut(2).fill(0.0);
+    }
+    spread
 }

@@ -3,7 +3,7 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::quadrature::borders::Borders;
-use crate::discretisation::quadrature::cell::Cell;
+use crate::discretisation::quadrature::cell::{Cell, in_plane};
 use crate::discretisation::quadrature::cut::{cut, spread};
 use crate::discretisation::quadrature::gauss::gauss_legendre;
 use crate::discretisation::quadrature::pieces::{Leaf, Moments, pieces};
@@ -25,8 +25,9 @@ const FITS: f64 = 1e-6;
 /// The boundary is flat in a cell where the signed distance differs by less than this
 /// fraction of its edge from that of a plane \[–\].
 const FLAT: f64 = 1e-9;
-/// The same for a boundary that is cut as a plane of the same mean distance \[–\].
-const NEARLY_FLAT: f64 = 0.004;
+/// The same for a boundary that is cut as a plane of the same mean distance; not round, so that
+/// round-off seldom chooses \[–\].
+const NEARLY_FLAT: f64 = 0.004_131_7;
 /// Components of a normal that differ by less are equal: it comes from differences \[–\].
 const TIE: f64 = 1e-3;
 /// Parts of a cell smaller than this fraction of it are dropped \[–\].
@@ -53,12 +54,7 @@ pub fn quadrature(
     grid: &BackgroundGrid,
     dimension: &Dimension,
 ) -> Result<Quadrature, Error> {
-    let unknown = NodalSpacing {
-        within: &|_, _| f64::INFINITY,
-        largest: f64::INFINITY,
-        beside_gap: &|_| false,
-    };
-    quadrature_following(body, regions, grid, &unknown, dimension, None)
+    quadrature_following(body, regions, grid, &NodalSpacing::UNKNOWN, dimension, None)
 }
 
 /// Lays the grid over the body and collects its points, by the centre rule (Horton
@@ -180,7 +176,7 @@ impl PointCollector<'_> {
         let rule = gauss_legendre(self.grid.gauss_points);
         let layers: &[(f64, f64)] = if self.components == 3 { &rule } else { &[(0.0, 1.0)] };
         // Two Gauss points integrate squares themselves.
-        let spread = if rule.len() == 1 { self.spread(cell) } else { Matrix3::zeros() };
+        let spread = if rule.len() == 1 { cell.spread(self.components) } else { Matrix3::zeros() };
         for &(z, wz) in layers {
             for &(y, wy) in &rule {
                 for &(x, wx) in &rule {
@@ -242,7 +238,7 @@ impl PointCollector<'_> {
         }
         let mixed = mixed && depth > 0;
         let one_plane = match (is_cut, mixed) {
-            (false, false) => Some((1.0, Vector3::zeros(), self.spread(cell))),
+            (false, false) => Some((1.0, Vector3::zeros(), cell.spread(self.components))),
             (true, false) if depth > 0 => self.flat_cut(cell, distance),
             _ => None,
         };
@@ -286,7 +282,7 @@ impl PointCollector<'_> {
             _ => &[[1.0, 1.0, 1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0], [1.0, -1.0, -1.0]],
         };
         let mut rises = [0.0; 4];
-        let (mut slope, mut bend, mut most) = (Vector3::zeros(), 0.0, 0.0f64);
+        let (mut slope, mut bend, mut most, mut straight_ways) = (Vector3::zeros(), 0.0, 0.0f64, 0);
         for (rise, end) in rises.iter_mut().zip(ends) {
             let end = Vector3::from(*end);
             let ahead = self.body.signed_distance(&(cell.centre + half * end));
@@ -297,13 +293,19 @@ impl PointCollector<'_> {
             }
             bend += curved / ends.len() as f64;
             most = most.max(curved.abs());
+            straight_ways += usize::from(curved.abs() <= FLAT * cell.edge);
             *rise = 0.5 * (ahead - behind);
             slope += end * *rise;
         }
         // Half the change of the distance along each edge.
         slope /= ends.len() as f64;
-        let straight =
-            rises.iter().zip(ends).all(|(rise, end)| near(slope.dot(&Vector3::from(*end)) - rise));
+        // Bent along one diagonal only, the cell lies beside an edge, whose bend is no curvature.
+        let beside_edge = straight_ways + 1 == ends.len();
+        let straight = !beside_edge
+            && rises
+                .iter()
+                .zip(ends)
+                .all(|(rise, end)| near(slope.dot(&Vector3::from(*end)) - rise));
         straight.then(|| {
             // The mean distance in the cell is that of a plane.
             let level = if most > FLAT * cell.edge { distance + bend / 6.0 } else { distance };
@@ -315,7 +317,7 @@ impl PointCollector<'_> {
                 Some(_) => spread(level, &(2.0 * slope)) * cell.edge.powi(2),
                 None => Matrix3::zeros(),
             };
-            (fraction, shift * cell.edge, self.in_plane(spread))
+            (fraction, shift * cell.edge, in_plane(spread, self.components))
         })
     }
 
@@ -325,7 +327,7 @@ impl PointCollector<'_> {
     /// book, eq. 7.4).
     fn axis_cut(&self, cell: &Cell, distance: f64) -> (f64, Vector3, Matrix3) {
         let fraction = (0.5 - distance / cell.edge).clamp(0.0, 1.0);
-        let mut spread = self.spread(cell);
+        let mut spread = cell.spread(self.components);
         if fraction == 0.0 || fraction == 1.0 {
             return (fraction, Vector3::zeros(), spread);
         }
@@ -343,20 +345,6 @@ impl PointCollector<'_> {
             spread[(axis, axis)] *= 1.0 - share * (1.0 - fraction * fraction);
         }
         (fraction, shift, spread)
-    }
-
-    /// Second moments of a whole cell about its centre over its volume \[m²\].
-    fn spread(&self, cell: &Cell) -> Matrix3 {
-        self.in_plane(Matrix3::from_diagonal_element(cell.edge * cell.edge / 12.0))
-    }
-
-    /// Nothing is spread across a plane.
-    fn in_plane(&self, mut spread: Matrix3) -> Matrix3 {
-        if self.components == 2 {
-            spread.row_mut(2).fill(0.0);
-            spread.column_mut(2).fill(0.0);
-        }
-        spread
     }
 
     fn add_piece(&mut self, edge: f64, spread: Matrix3) {

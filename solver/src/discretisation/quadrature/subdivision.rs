@@ -18,6 +18,15 @@ pub struct NodalSpacing<'a> {
     pub beside_gap: &'a (dyn Fn(&Vector3) -> bool + Sync),
 }
 
+impl NodalSpacing<'static> {
+    /// Of nodes that cells do not follow.
+    pub const UNKNOWN: Self = NodalSpacing {
+        within: &|_, _| f64::INFINITY,
+        largest: f64::INFINITY,
+        beside_gap: &|_| false,
+    };
+}
+
 /// Edge of a cell that is not divided to follow the spacing, over the one wanted \[–\].
 const SLIGHTLY_TOO_LARGE: f64 = 1.1;
 

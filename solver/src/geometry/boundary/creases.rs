@@ -11,8 +11,9 @@ use crate::geometry::shape::Shape;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Curves are looked for this far from the places given \[spacing\].
-const REACH: f64 = 0.8;
+/// Curves are looked for this far from the places given; not round, since the first place decides
+/// where a curve starts, and round-off must not decide which is the first \[spacing\].
+const REACH: f64 = 0.807_3;
 /// Longest step along a curve \[spacing\].
 const STEP: f64 = 0.2;
 /// Where no step as short as this succeeds, a curve ends \[spacing\].
@@ -22,8 +23,10 @@ const ON_MEMBERS: f64 = 1e-10;
 const ON_BOUNDARY: f64 = 1e-8;
 /// Faces that enclose less than some 20° do not make an edge: the cosine.
 const SMOOTH: f64 = 0.94;
-/// A step that turns a curve by more than 30° is too long, or passes a corner: the cosine.
+/// A step that turns a curve by more than 30° is too long, or passes a corner: the cosine; below
+/// this length \[spacing\] one that turns it more than in proportion is.
 const STRAIGHT: f64 = 0.866;
+const SHORT: f64 = 0.01;
 /// Radius of the circle on which the angle of an edge is sampled \[spacing\], and its samples.
 const AROUND: f64 = 0.05;
 const SAMPLES: usize = 48;
@@ -201,6 +204,8 @@ impl Pair<'_> {
         let turned = tangent.dot(along);
         let tangent = if turned < 0.0 { -tangent } else { tangent };
         let is_onward = (next - at).dot(along) > 0.5 * step;
-        (turned.abs() > STRAIGHT && is_onward).then_some((next, tangent))
+        let part = (step / (SHORT * size)).min(1.0);
+        let is_smooth = 1.0 - turned.abs() < (1.0 - STRAIGHT) * part * part;
+        (is_smooth && is_onward).then_some((next, tangent))
     }
 }

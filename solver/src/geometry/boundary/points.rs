@@ -21,8 +21,9 @@ pub(crate) struct BoundaryPoints {
 
 /// Candidates that are looked at side by side.
 const BATCH: usize = 512;
-/// Points at just the distance asked for are not too close, whatever the round-off \[–\].
-const ROUND_OFF: f64 = 1e-9;
+/// Points at just the distance asked for are not too close, whatever the round-off and the
+/// tolerance of a projection \[–\].
+const ROUND_OFF: f64 = 1e-6;
 /// Closest that points of different origin may be \[spacing\].
 const CLOSEST: f64 = 0.6;
 /// Farther than this from every point, the boundary gets another \[spacing\].
@@ -134,8 +135,11 @@ impl Chosen<'_> {
     /// Whether a point on this side of a gap is closer than `radius` \[m\].
     fn has_within(&self, X: &Vector3, radius: f64) -> bool {
         let mut found = false;
-        self.hash.visit(X, radius * (1.0 - ROUND_OFF), |index, _| {
-            found = !self.has_gaps || !self.shape.has_gap_between(X, &self.points[index]);
+        self.hash.visit(X, radius * (1.0 - ROUND_OFF), |index, distance| {
+            // Between a point and itself round-off would make a gap.
+            let is_same = distance <= ROUND_OFF * radius;
+            let no_gap = || !self.shape.has_gap_between(X, &self.points[index]);
+            found = !self.has_gaps || is_same || no_gap();
             !found
         });
         found

@@ -3,8 +3,11 @@
 use crate::algebra::tensor::Vector3;
 use crate::geometry::voxels::grid::ScalarGrid;
 
-/// Distances are handed on in parts of a step.
-const PARTS_OF_STEP: f64 = 8.0;
+/// Distances are handed on in parts of a step; steps are no whole number of them, since round-off
+/// would choose in which part whole steps lie.
+const PARTS_OF_STEP: f64 = 8.3;
+/// A foot that is nearer by less is as near as the one before \[step\].
+const TIE: f64 = 1e-9;
 
 /// A sample whose distance is known, and the nearest point, its foot.
 pub(crate) struct KnownDistance {
@@ -33,7 +36,7 @@ impl ScalarGrid {
             (distance[*at], feet[*at], is_known[*at]) = (*own, foot as u32, true);
             front.push(*own, *at, foot as u32);
         }
-        let strides = self.strides();
+        let (strides, tie) = (self.strides(), TIE * self.step.min());
         while let Some((own, at, foot)) = front.pop() {
             let at = at as usize;
             if own > distance[at] {
@@ -52,7 +55,7 @@ impl ScalarGrid {
                     let mut place = ijk;
                     place[axis] = to;
                     let there = (self.position(place) - known[foot as usize].foot).norm();
-                    if there < distance[next] && there <= reach {
+                    if there < distance[next] - tie && there <= reach {
                         (distance[next], feet[next]) = (there, foot);
                         front.push(there, next, foot);
                     }
