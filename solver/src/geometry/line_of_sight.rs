@@ -252,6 +252,7 @@ impl<'a> Way<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algebra::random::Random;
 
     fn block(min: [f64; 3], max: [f64; 3]) -> Shape {
         Shape::Box { min: Vector3::from(min), max: Vector3::from(max) }
@@ -338,5 +339,30 @@ mod tests {
         assert!(across([2.0, 2.0, 0.0], [2.0, 2.0, 0.1]), "corners");
         assert!(!across([0.0, 0.0, 0.0], [0.4, 0.0, 0.0]));
         assert!(!across([2.0, 0.0, -0.2], [1.8, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn there_and_back_are_one_way() {
+        let cylinder =
+            |axis: Vector3| Shape::Cylinder { base: -9.0 * axis, axis, radius: 2.0, height: 18.0 };
+        let bored = Shape::Difference(
+            Box::new(block([-6.0; 3], [6.0; 3])),
+            Box::new(cylinder(Vector3::z())),
+        );
+        let ball = |x: f64| Shape::Sphere { centre: Vector3::new(x, 0.0, 0.0), radius: 3.0 };
+        let two_balls = Shape::Union(vec![ball(-2.9), ball(2.9)]);
+        let mut random = Random(7);
+        for body in [bored, two_balls] {
+            let mut place = || loop {
+                let X = 6.0 * random.vector(3);
+                if body.signed_distance(&X) <= 0.0 {
+                    return body.place(&X);
+                }
+            };
+            for _ in 0..2000 {
+                let (a, b) = (place(), place());
+                assert_eq!(body.parts(&a, &b, 1.0), body.parts(&b, &a, 1.0), "{a:?} {b:?}");
+            }
+        }
     }
 }

@@ -187,7 +187,29 @@ impl Pair<'_> {
             curve.push(next);
             (along, step) = (tangent, (2.0 * step).min(STEP));
         }
+        let last = curve.len() - 1;
+        curve[last] = self.end_beyond(&curve[last], &along);
         (curve, false)
+    }
+
+    /// Where a curve ends that could be followed to a point: just before a corner directions that
+    /// come from differences are those of two faces. As far as the straight way is on both members.
+    fn end_beyond(&self, at: &Vector3, along: &Vector3) -> Vector3 {
+        let size = (self.target.at)(at);
+        let is_on = |X: &Vector3| {
+            let off = |member: &&Shape| member.signed_distance(X).abs() <= ON_MEMBERS * size;
+            self.members.iter().all(off)
+                && self.whole.signed_distance(X).abs() <= ON_BOUNDARY * size
+        };
+        let (mut end, mut step) = (*at, SHORT);
+        while step > SHORTEST {
+            let next = end + step * size * along;
+            if is_on(&next) {
+                end = next;
+            }
+            step *= 0.5;
+        }
+        end
     }
 
     /// The next point of the curve and its direction there, unless the step is too long or

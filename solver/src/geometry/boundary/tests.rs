@@ -1,8 +1,9 @@
 #![allow(non_snake_case)]
 
 use super::creases::creases;
+use crate::algebra::random::Random;
 use crate::algebra::tensor::Vector3;
-use crate::geometry::boundary::TargetSpacing;
+use crate::geometry::boundary::{TargetSpacing, boundary_points};
 use crate::geometry::{Dimension, Shape, Surface};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -58,6 +59,30 @@ fn three_members_meet_at_corners() {
     }
     let on_axis = points.iter().filter(|X| X.xy().norm() < 1e-8).count();
     assert_eq!(on_axis, 1 + (1.7_f64 / 0.17).round() as usize);
+}
+
+#[test]
+fn every_cut_of_a_prism_has_its_corners_whatever_the_spacing() {
+    let outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.4], [0.4, 0.4], [0.4, 1.0], [0.0, 1.0]];
+    let prism = Shape::Polygon { points: outline.to_vec().into(), z: (0.0, 1.0) };
+    let mut random = Random(11);
+    for _ in 0..12 {
+        let height = 0.5 + 0.2 * random.symmetric();
+        let normal = Vector3::new(0.1 * random.symmetric(), 0.1 * random.symmetric(), -1.0);
+        let spacing = 0.17 + 0.06 * random.symmetric();
+        let point = Vector3::new(0.0, 0.0, height);
+        let body = without(prism.clone(), point, normal.normalize());
+        // The spacing grows from one corner on.
+        let at = |X: &Vector3| spacing * (0.7 + 0.3 * X.norm()).min(1.0);
+        let target = TargetSpacing { at: &at, smallest: 0.7 * spacing, largest: spacing };
+        let points = boundary_points(&body, &target, &Dimension::Three).unwrap().points;
+        for [x, y] in outline {
+            let z = height + normal.x * x + normal.y * y;
+            let corner = Vector3::new(x, y, z);
+            let nearest = points.iter().map(|X| (X - corner).norm()).fold(1.0, f64::min);
+            assert!(nearest < 1e-8, "{nearest} from {corner} at {spacing}");
+        }
+    }
 }
 
 #[test]

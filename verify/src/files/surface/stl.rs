@@ -35,20 +35,22 @@ fn binary(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
     let space = Space::stated(&bytes[..START - 4])?.unwrap_or_default();
     let mesh = stl_io::read_stl(&mut Cursor::new(plain))
         .map_err(|error| Mistake::Undecodable { encoding: "STL", reason: error.to_string() })?;
-    let place = |v: &stl_io::Vertex| in_metres(space.to_ras([v[0], v[1], v[2]]), unit);
+    let place =
+        |v: &stl_io::Vertex| in_metres(space.to_ras([v[0], v[1], v[2]].map(f64::from)), unit);
     let triangles = mesh.faces.iter().map(|face| face.vertices.map(|n| n as u32)).collect();
     Ok(Triangles { vertices: mesh.vertices.iter().map(place).collect(), triangles })
 }
 
 fn in_metres(corner: Corner, unit: LengthUnit) -> Vector3 {
-    Vector3::from_fn(|n, _| f64::from(corner[n]) * unit.in_metres())
+    Vector3::from(corner) * unit.in_metres()
 }
 
-/// Triangles with one vertex for all corners of the same coordinates, in the order of the file.
+/// Triangles with one vertex, the first one, for all corners whose coordinates are the same in
+/// single precision, in the order of the file.
 fn shared(corners: &[Corner], unit: LengthUnit) -> Triangles {
     let (mut first, mut vertices) = (HashMap::new(), Vec::new());
     let number = |corner: &Corner| {
-        *first.entry(corner.map(f32::to_bits)).or_insert_with(|| {
+        *first.entry(corner.map(|x| (x as f32).to_bits())).or_insert_with(|| {
             vertices.push(in_metres(*corner, unit));
             vertices.len() as u32 - 1
         })
@@ -177,6 +179,17 @@ mod tests {
         let text = ascii().replace("solid tetrahedron\n", "solid\n");
         let read = parse(text.as_bytes(), LengthUnit::Metre).unwrap();
         assert_eq!(read.triangles.len(), 4);
+    }
+
+    #[test]
+    fn a_text_keeps_its_digits_and_corners_that_differ_in_the_last_are_one() {
+        let text = ascii().replace("vertex 10 0 0", "vertex 10.000123456789 0 0");
+        let (first, rest) = text.split_at(text.find("endfacet").unwrap());
+        let text = first.to_string() + &rest.replace("10.000123456789", "10.0001234567");
+        let read = parse(text.as_bytes(), LengthUnit::Metre).unwrap();
+        assert_eq!(read.vertices.len(), 4);
+        let far = read.vertices.iter().map(|vertex| vertex.x).fold(0.0, f64::max);
+        assert!((far - 10.000_123_456_7).abs() < 1e-9, "{far}");
     }
 
     #[test]

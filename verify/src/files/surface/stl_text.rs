@@ -6,7 +6,7 @@ use std::iter::Enumerate;
 use std::str::{Split, SplitWhitespace};
 
 /// Coordinates of a corner as a file has them.
-pub(super) type Corner = [f32; 3];
+pub(super) type Corner = [f64; 3];
 
 /// Corners of the triangles of all blocks, three to a triangle, in RAS. A block may lack its
 /// `endsolid`, as files do that were put together; a facet may lack nothing.
@@ -92,7 +92,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Three numbers, in single precision as in a binary file.
+    /// Three numbers.
     fn numbers(&mut self, expected: &'static str) -> Result<Corner, Mistake> {
         let mut numbers = [0.0; 3];
         for number in &mut numbers {
