@@ -18,7 +18,7 @@ use crate::problem::Newton;
 const SMALLEST_INCREMENT: f64 = 1e-3;
 /// The same where pressures are unknowns, which are given up there.
 const SMALLEST_WITH_PRESSURES: f64 = 0.02;
-/// Residual of the increments before the last one \[–\].
+/// Residual of the increments before the last one, unless more is allowed at the end \[–\].
 const PASSING_TOLERANCE: f64 = 1e-4;
 
 /// Solves f_ext = f_int under the conditions of the end of loading, by
@@ -40,7 +40,10 @@ pub(crate) fn equilibrate(
         // No tiny last increment.
         let fraction = if reached + 1.5 * increment > 1.0 { 1.0 } else { reached + increment };
         let last = fraction == 1.0;
-        let tolerance = if last { settings.tolerance } else { PASSING_TOLERANCE };
+        let tolerance = match last {
+            true => settings.tolerance,
+            false => settings.tolerance.max(PASSING_TOLERANCE),
+        };
         match solver.solve(&state.displacement, fraction, tolerance, &mut buffers, observer) {
             Ok(equilibrium) => {
                 let jacobian = equilibrium.exact().smallest_jacobian.jacobian;

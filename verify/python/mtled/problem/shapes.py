@@ -152,6 +152,7 @@ class Label:
     value: int
     file: Path | None = None
     unit: Unit | None = None
+    layer: int | None = None
     kind: str = kind_of("label")
 
 
