@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
+use crate::discretisation::mls::ON_BORDER;
 use crate::discretisation::nodes::{NodeCloud, node_cloud};
 use crate::discretisation::quadrature::Quadrature;
 use crate::discretisation::rows::Rows;
@@ -20,9 +21,7 @@ const ROOM: f64 = 0.5 - 1e-6;
 const LOOKS: f64 = 0.25;
 /// No more places are looked at than this.
 const MOST_LOOKS: f64 = 1e9;
-/// Nodes closer to the border of what is held lie on it, and others inside are farther away
-/// than [`CLEARANCE`] \[spacing\].
-const ON_BORDER: f64 = 1e-6;
+/// Nodes inside of what is held that do not lie on its border are farther away from it \[spacing\].
 const CLEARANCE: f64 = 0.5 + 1e-6;
 /// Faces of two solids that are closer and parallel, by the cosine of their normals, are one
 /// \[spacing\], \[–\].

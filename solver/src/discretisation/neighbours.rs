@@ -3,6 +3,9 @@
 use crate::algebra::tensor::{Vector3, bounding_box};
 use std::ops::Range;
 
+/// Distances that differ by less are equal, over the radius that is searched \[–\].
+const TIE: f64 = 1e-6;
+
 /// Nodes sorted into cubes whose edge is the largest influence radius or a
 /// fraction of it, so that a query visits few of them.
 #[derive(Debug, Clone)]
@@ -101,6 +104,27 @@ impl Neighbours {
         reaches
     }
 
+    /// The node of some closer to `x` than `radius` \[m\] that is nearest, and those that are as
+    /// near but for round-off, ascending; none where none is so close.
+    pub fn nearest(&self, x: &Vector3, radius: f64, some: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut least = f64::INFINITY;
+        self.for_each_within(x, radius, |node, offset| {
+            if some(node) {
+                least = least.min(offset.norm());
+            }
+        });
+        let mut found = Vec::new();
+        if least.is_finite() {
+            self.for_each_within(x, least + TIE * radius, |node, _| {
+                if some(node) {
+                    found.push(node);
+                }
+            });
+        }
+        found.sort_unstable();
+        found
+    }
+
     /// Calls `visit(node, position − x)` for every node closer to `x` than
     /// `radius` \[m\], in the order of the cells.
     #[inline]
@@ -174,5 +198,14 @@ mod tests {
                 prop_assert!((position - x).norm() >= *radius || *radius <= reach);
             }
         }
+    }
+
+    #[test]
+    fn nodes_as_near_but_for_round_off_are_all_the_nearest() {
+        let at = |x: f64| Vector3::new(x, 0.0, 0.0);
+        let nodes = Neighbours::new(&[at(1.3), at(-1.0), at(1.0 + 1e-13), at(0.2)], 0.5);
+        let nearest = |radius: f64| nodes.nearest(&at(0.0), radius, |node| node != 3);
+        assert_eq!((nearest(2.0), nearest(0.9)), (vec![1, 2], vec![]));
+        assert_eq!(nodes.nearest(&at(0.0), 2.0, |_| true), [3]);
     }
 }

@@ -29,6 +29,11 @@ impl ModuliAtRest {
     pub fn capped(self, most: f64) -> ModuliAtRest {
         ModuliAtRest { projected: self.projected.min(most * self.shear), ..self }
     }
+
+    /// The part of the projected modulus that is no more than `most` μ; all of none \[–\].
+    pub fn part_within(self, most: f64) -> f64 {
+        (most * self.shear / self.projected).min(1.0)
+    }
 }
 
 /// Diagonal of K at rest, the mean over the components of a node \[node\]

@@ -6,7 +6,7 @@ use crate::geometry::Shape;
 use rayon::prelude::*;
 
 /// Nodes that are closer to the border lie on it \[spacing\].
-const ON_BORDER: f64 = 1e-6;
+pub(crate) const ON_BORDER: f64 = 1e-6;
 
 /// The two sides of the border of what is held as a volume. What deforms sees its own nodes and
 /// those on the border, and so does what is held (method book, section 6).

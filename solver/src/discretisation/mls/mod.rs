@@ -11,6 +11,7 @@ mod support;
 mod visibility;
 
 pub use approximation::{Approximation, LARGEST_ENLARGEMENT};
+pub(crate) use held_sides::ON_BORDER;
 pub(crate) use inverse::inverse;
 pub(crate) use sides::Crossing;
 pub use sides::Stiffness;

@@ -6,9 +6,6 @@ use crate::discretisation::neighbours::Neighbours;
 use crate::geometry::nearest_count;
 use std::collections::VecDeque;
 
-/// Distances between points that differ by less are equal, over the reach of a curve \[–\].
-const TIE: f64 = 1e-6;
-
 /// Points ordered along curves: from an end to the nearest that is left and not farther
 /// than `reach` \[m\]. A closed curve ends with its first point.
 pub(super) fn chains(points: Vec<Vector3>, reach: f64) -> Vec<Vec<Vector3>> {
@@ -25,7 +22,8 @@ pub(super) fn chains(points: Vec<Vector3>, reach: f64) -> Vec<Vec<Vector3>> {
         let mut chain = VecDeque::from([points[first]]);
         for forwards in [true, false] {
             let mut end = points[first];
-            while let Some(next) = next_left(&cells, &end, reach, &left) {
+            // Of those that are equally near the first, whatever round-off says.
+            while let Some(&next) = cells.nearest(&end, reach, |point| left[point]).first() {
                 left[next] = false;
                 end = points[next];
                 if forwards { chain.push_back(end) } else { chain.push_front(end) }
@@ -38,23 +36,6 @@ pub(super) fn chains(points: Vec<Vector3>, reach: f64) -> Vec<Vec<Vector3>> {
         chains.push(chain);
     }
     chains
-}
-
-fn next_left(cells: &Neighbours, end: &Vector3, reach: f64, left: &[bool]) -> Option<usize> {
-    let mut nearest = f64::INFINITY;
-    cells.for_each_within(end, reach, |point, offset| {
-        if left[point] {
-            nearest = nearest.min(offset.norm());
-        }
-    });
-    // Of those that are equally near the first, whatever round-off says.
-    let mut first = None;
-    cells.for_each_within(end, nearest.min(reach) + TIE * reach, |point, _| {
-        if left[point] && first.is_none_or(|other| point < other) {
-            first = Some(point);
-        }
-    });
-    first.filter(|_| nearest.is_finite())
 }
 
 /// Points that divide a curve evenly in units of the local spacing, its ends included.

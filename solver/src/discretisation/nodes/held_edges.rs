@@ -20,11 +20,12 @@ const SERVES: f64 = 0.45;
 /// Panels whose normals have a smaller product lie on different faces of the body, whose
 /// edges have nodes anyway.
 const SAME_FACE: f64 = 0.7;
-/// Distances to nodes that differ by less are equal, over the radius that is searched \[–\].
-const TIE: f64 = 1e-6;
 /// Panels are about a place that are not farther away; not round, since round-off would choose
 /// among panels at whole and half sizes \[size of a panel\].
 const AROUND: f64 = 1.017_3;
+/// Those next to a panel, and points next to each other on an edge, are not farther apart; as
+/// little round \[size of a panel\].
+const NEXT: f64 = 1.5 * AROUND;
 /// Of points of an edge that are closer one is enough; not round either \[size of a panel\].
 const KNOWN: f64 = 0.207_1;
 /// Halvings of a bracket: to round-off.
@@ -153,7 +154,7 @@ impl<'a> HeldParts<'a> {
                 points.push(X);
             }
         }
-        chains(points, 1.5 * AROUND * self.size)
+        chains(points, NEXT * self.size)
     }
 
     /// From a held panel to those about it on its face that are free.
@@ -164,7 +165,7 @@ impl<'a> HeldParts<'a> {
         held: &[bool],
     ) -> Vec<Bracket> {
         let mut free = Vec::new();
-        self.centres.for_each_within(&panel.centre, 1.5 * AROUND * self.size, |other, _| {
+        self.centres.for_each_within(&panel.centre, NEXT * self.size, |other, _| {
             let far = &self.panels[other];
             let on_face = far.normal.dot(&panel.normal) >= SAME_FACE;
             if !held[other] && on_face && self.is_free(condition, far) {
@@ -249,15 +250,9 @@ fn any_within(nodes: &Neighbours, X: &Vector3, radius: f64, is: impl Fn(usize) -
 fn nearest_spacing(nodes: &Neighbours, spacing: &[f64], X: &Vector3, radius: f64) -> f64 {
     let mut radius = radius;
     loop {
-        let mut nearest = f64::INFINITY;
-        nodes.for_each_within(X, radius, |_, offset| nearest = nearest.min(offset.norm()));
-        if nearest < f64::INFINITY || !radius.is_finite() {
-            let (mut sum, mut count) = (0.0, 0.0);
-            nodes.for_each_within(X, nearest + TIE * radius, |node, _| {
-                sum += spacing[node];
-                count += 1.0;
-            });
-            return sum / count;
+        let found = nodes.nearest(X, radius, |_| true);
+        if !found.is_empty() || !radius.is_finite() {
+            return found.iter().map(|&node| spacing[node]).sum::<f64>() / found.len() as f64;
         }
         radius *= 2.0;
     }

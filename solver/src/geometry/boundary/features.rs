@@ -4,9 +4,8 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::boundary::marching::contours;
-use crate::geometry::boundary::target_spacing::{
-    TargetSpacing, lattice_cells, least_count, nearest_count,
-};
+use crate::geometry::boundary::panel::pieces;
+use crate::geometry::boundary::target_spacing::{TargetSpacing, lattice_cells, nearest_count};
 use crate::geometry::error::GeometryError;
 use crate::geometry::polygon::{Outline, anticlockwise};
 use crate::geometry::primitives::perpendicular;
@@ -95,7 +94,7 @@ pub(super) fn divide(curve: &[Vector3], target: &TargetSpacing, closed: bool) ->
         let parts = if target.uniform() {
             1
         } else {
-            least_count((b - a).norm() / (0.2 * target.smallest)).min(100_000)
+            pieces((b - a).norm(), 0.2 * target.smallest).min(100_000)
         };
         for part in 0..parts {
             let at = |s: f64| a + s / parts as f64 * (b - a);

@@ -29,9 +29,3 @@ pub(crate) fn lattice_cells(length: f64, spacing: f64) -> usize {
 pub(crate) fn nearest_count(spacings: f64) -> usize {
     (spacings + TIE).round().max(1.0) as usize
 }
-
-/// Fewest parts, at least one, none of which is longer than a unit but for round-off, in a length
-/// of so many.
-pub(super) fn least_count(units: f64) -> usize {
-    (units - TIE).ceil().max(1.0) as usize
-}

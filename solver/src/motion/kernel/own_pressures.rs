@@ -35,12 +35,11 @@ impl OwnPressures {
     /// of its projected bulk modulus act beside them (method book, eq. 21.14).
     pub fn zero(model: &Model, most: f64) -> OwnPressures {
         let blocks = model.blocks.iter().map(|block| {
-            let moduli = ModuliAtRest::of(block);
             let patches = if block.projection.is_some() { block.chunks.len() } else { 0 };
             BlockPressures {
                 moments: vec![[0.0; 4]; patches],
                 slopes: vec![[0.0; 4]; patches],
-                part: (most * moduli.shear / moduli.projected).min(1.0),
+                part: ModuliAtRest::of(block).part_within(most),
             }
         });
         OwnPressures { blocks: blocks.collect() }

@@ -118,7 +118,7 @@ fn of_block(block: &Block) -> impl Iterator<Item = AtRest<'_>> {
             law: &block.law,
             moduli,
             fraction: projection.fraction,
-            part: (MOST * moduli.shear / moduli.projected).min(1.0),
+            part: moduli.part_within(MOST),
             constant: projection.basis_at(chunk.lanes.start)[0],
         })
     })

@@ -75,7 +75,7 @@ impl Solver<'_> {
     ) -> Outcome {
         let safe = self.contacts.safe_part(self.model, &now.u, &correction.change);
         let from = self.pressures.clone();
-        let outcome = self.tried(now, (correction, safe), fraction, searched, buffers);
+        let outcome = self.tried(now, (correction, safe, &from), fraction, searched, buffers);
         if !matches!(outcome, Outcome::Taken(..)) {
             self.pressures = from;
         }
@@ -85,15 +85,14 @@ impl Solver<'_> {
     fn tried(
         &mut self,
         now: &Equilibrium,
-        (correction, safe): (&Correction, f64),
+        (correction, safe, from): (&Correction, f64, &Option<Pressures>),
         fraction: f64,
         searched: bool,
         buffers: &mut Buffers,
     ) -> Outcome {
         let change = &correction.change;
-        let from = self.pressures.clone();
         if searched {
-            return match self.search(now, (correction, safe), fraction, buffers) {
+            return match self.search(now, (correction, safe, from), fraction, buffers) {
                 Some(next) => Outcome::Taken(next, 1.0),
                 None => Outcome::TooFar,
             };
@@ -113,7 +112,7 @@ impl Solver<'_> {
         let taken = (0..=halvings).find_map(|halvings| {
             let length = length * 0.5f64.powi(halvings as i32);
             let u = moved(&now.u, change, length);
-            self.move_pressures(&from, length, correction);
+            self.move_pressures(from, length, correction);
             let imbalance = self.imbalance(&u, fraction, buffers);
             let valid = imbalance.smallest_jacobian.jacobian > volume * smallest;
             valid.then_some(Outcome::Taken(Equilibrium { u, imbalance, exact: None }, length))
@@ -127,19 +126,18 @@ impl Solver<'_> {
     fn search(
         &mut self,
         now: &Equilibrium,
-        (correction, safe): (&Correction, f64),
+        (correction, safe, from): (&Correction, f64, &Option<Pressures>),
         fraction: f64,
         buffers: &mut Buffers,
     ) -> Option<Equilibrium> {
         let change: Vec<f64> = correction.change.iter().map(|change| safe * change).collect();
-        let from = self.pressures.clone();
         let (model, before) = (self.model, &now.imbalance);
         let slope = dot(&change, &before.free(model)).abs();
         let volume = SMALLEST_VOLUME * before.smallest_jacobian.jacobian.min(1.0);
         (0..=MOST_HALVINGS).find_map(|halvings| {
             let length = 0.5f64.powi(halvings as i32);
             let u = moved(&now.u, &change, length);
-            self.move_pressures(&from, safe * length, correction);
+            self.move_pressures(from, safe * length, correction);
             let imbalance = self.imbalance(&u, fraction, buffers);
             let valid = imbalance.smallest_jacobian.jacobian > volume;
             let closer = imbalance.norm(model) <= 0.99 * before.norm(model)

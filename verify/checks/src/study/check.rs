@@ -3,7 +3,7 @@
 use super::comparison::Band;
 use super::nan_as_null;
 use crate::escape::file_name;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Where a bound comes from. The three kinds never mix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,7 +40,7 @@ pub enum Better {
 
 /// What a value must satisfy to pass.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", from = "Written")]
+#[serde(rename_all = "snake_case", remote = "Self")]
 pub enum Bound {
     /// Value ≤ limit.
     AtMost(#[serde(deserialize_with = "nan_as_null::number")] f64),
@@ -55,29 +55,20 @@ pub enum Bound {
     Baseline(Better),
 }
 
-/// A bound in a file. Before [`Bound::Baseline`] the largest number stood for it.
-#[derive(Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Written {
-    AtMost(#[serde(deserialize_with = "nan_as_null::number")] f64),
-    AtLeast(#[serde(deserialize_with = "nan_as_null::number")] f64),
-    Between(
-        #[serde(deserialize_with = "nan_as_null::number")] f64,
-        #[serde(deserialize_with = "nan_as_null::number")] f64,
-    ),
-    Baseline(Better),
+impl Serialize for Bound {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Bound::serialize(self, serializer)
+    }
 }
 
-impl From<Written> for Bound {
-    fn from(written: Written) -> Bound {
-        match written {
-            Written::AtMost(f64::MAX) => Bound::Baseline(Better::Lower),
-            Written::Between(f64::MIN, f64::MAX) => Bound::Baseline(Better::Neither),
-            Written::AtMost(limit) => Bound::AtMost(limit),
-            Written::AtLeast(limit) => Bound::AtLeast(limit),
-            Written::Between(low, high) => Bound::Between(low, high),
-            Written::Baseline(better) => Bound::Baseline(better),
-        }
+/// In files from before [`Bound::Baseline`] the largest number stands for it.
+impl<'de> Deserialize<'de> for Bound {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Bound, D::Error> {
+        Ok(match Bound::deserialize(deserializer)? {
+            Bound::AtMost(f64::MAX) => Bound::Baseline(Better::Lower),
+            Bound::Between(f64::MIN, f64::MAX) => Bound::Baseline(Better::Neither),
+            bound => bound,
+        })
     }
 }
 

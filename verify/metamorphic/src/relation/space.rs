@@ -17,10 +17,7 @@ pub const RELATIONS: &[Relation] = &[
         claim: "The same nodes elsewhere in space move in the same way",
         bound: 1e-6,
         reason: ROUND_OFF,
-        compare: |subject| {
-            let shift = Vector3::new(3.1, -2.3, 1.7);
-            in_frame(subject, &Frame { shift, ..Frame::home(&subject.scene) })
-        },
+        compare: |subject| in_frame(subject, &elsewhere(&subject.scene)),
     },
     Relation {
         name: "turned_or_mirrored",
@@ -89,7 +86,7 @@ pub const RELATIONS: &[Relation] = &[
                  stand on an edge, may not hang on the last digit",
         compare: |subject| {
             let home = Frame::home(&subject.scene);
-            let frame = Frame { shift: Vector3::new(3.1, -2.3, 1.7), ..home };
+            let frame = elsewhere(&subject.scene);
             let moved = build::problem_in(&subject.scene, &frame).ok()?;
             Some(cloud_against(subject, &moved, |X| home.point(&frame.home_of(X))))
         },
@@ -126,6 +123,11 @@ fn in_frame(subject: &Subject, frame: &Frame) -> Option<Compared> {
 fn turned(subject: &Subject) -> Option<Compared> {
     let which = 1 + subject.scene.seed as usize;
     in_frame(subject, &Frame::turned(&subject.scene, which))
+}
+
+/// Moved by a few times the size.
+fn elsewhere(scene: &Scene) -> Frame {
+    Frame { shift: Vector3::new(3.1, -2.3, 1.7), ..Frame::home(scene) }
 }
 
 /// The nodes of a subject against those that another problem has, brought back.
