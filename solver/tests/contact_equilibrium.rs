@@ -5,9 +5,9 @@
 mod common;
 
 use common::*;
-use mtled::algebra::tensor::{Vector3, rotation};
+use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::discretisation::Discretisation;
-use mtled::geometry::Shape;
+use mtled::geometry::{LabelField, LabelMap, Selector, Shape};
 use mtled::model::Model;
 use mtled::model::contact::{ContactSurface, gap};
 use mtled::motion::observe::Unobserved;
@@ -15,6 +15,7 @@ use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
 use mtled::motion::summary::Summary;
 use mtled::problem::*;
+use std::sync::Arc;
 
 struct Solved {
     discretisation: Discretisation,
@@ -193,6 +194,33 @@ fn a_block_sticks_on_a_slope_without_slip() {
 fn corrections_in_contact_are_few() {
     let counts = solve(&ball_in_a_ball(Friction::Frictionless)).summary.newton.unwrap();
     assert!(counts.iterations <= 40 && counts.increments == 1, "{counts:?}");
+}
+
+/// A ball of voxels that its own outline holds without friction, dented at the top.
+fn ball_in_its_own_outline(tolerance: f64) -> Problem {
+    let (count, voxel) = (32, 0.08 * EDGE * 0.5);
+    let middle = Vector3::new(15.4, 15.1, 15.7);
+    let place = |n: usize| [n % count, n / count % count, n / (count * count)].map(|i| i as f64);
+    let label = |n: usize| ((Vector3::from(place(n)) - middle).norm() < 12.5) as u32;
+    let labels = (0..count * count * count).map(label).collect();
+    let directions = Matrix3::identity() * voxel;
+    let map = LabelMap::new([count; 3], -voxel * middle, directions, labels).unwrap();
+    let ball = LabelField::new(Arc::new(map), &[1], LabelField::SMOOTHING).unwrap();
+    let ball = Shape::Labels(Arc::new(ball));
+    let mut problem = jittered(with_law(cube(10), neo_hookean(3000.0, 0.45)), 0.2, 1);
+    problem.body = ball.clone();
+    let top = Shape::Sphere { centre: 0.5 * EDGE * Vector3::z(), radius: 0.3 * EDGE };
+    let top = Selector::Inside { shape: top, tolerance: 0.0 };
+    problem.conditions.push(condition("top", top, [None, None, Some(-0.05 * EDGE)]));
+    problem.obstacles.push(obstacle(ball, ObstacleSide::Inside, Friction::Frictionless));
+    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance });
+    problem
+}
+
+#[test]
+fn corrections_are_few_in_contact_all_over_the_outline_of_an_image() {
+    let counts = solve(&ball_in_its_own_outline(1e-6)).summary.newton.unwrap();
+    assert!(counts.iterations <= 20 && counts.increments == 1, "{counts:?}");
 }
 
 #[test]

@@ -46,7 +46,7 @@ impl Run<'_> {
         for reaction in state.reactions(model, &self.centre) {
             force += reaction.force;
             moment += reaction.moment;
-            sizes += reaction.force.norm().max(reaction.moment.norm() / self.extent());
+            sizes += reaction.sizes;
         }
         let stiffness: f64 = model.stiffness.iter().sum();
         let limit = FORCES * sizes + ROUND_OFF * stiffness * largest(u);

@@ -2,12 +2,12 @@
 #![allow(non_snake_case)]
 
 use super::*;
-use crate::geometry::Selector;
+use crate::geometry::{Field, Selector};
 use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use crate::motion::observe::Observer;
 use crate::problem::{
-    Amplitude, BodyForce, EssentialCondition, Friction, Obstacle, ObstacleSide, Pressure, Recipe,
-    Region, Traction,
+    Amplitude, BodyForce, EssentialCondition, Friction, Motion, Newton, Obstacle, ObstacleSide,
+    Prescribed, Pressure, Recipe, Region, Traction,
 };
 use crate::simulation::Simulation;
 
@@ -147,6 +147,20 @@ fn forces_that_do_not_add_up_are_doubted() {
     simulation.state.force_factor *= 0.5;
     let doubts = doubts(&simulation);
     assert!(doubts.contains(&Kind::Forces) && doubts.contains(&Kind::Moments), "{doubts:?}");
+}
+
+#[test]
+fn reactions_of_one_condition_that_balance_each_other_are_not_doubted() {
+    let mut problem = block();
+    problem.loads = Default::default();
+    let dent = |X: &Vector3| {
+        let away = (X - Vector3::new(0.04, 0.04, 0.08)).norm_squared() / 0.0016;
+        Vector3::new(0.0, 0.0, -0.005 * (1.0 - away).max(0.0).powi(2))
+    };
+    problem.conditions[0].part = face(0.08);
+    problem.conditions[0].prescribed = Prescribed::Field(Field::of(dent));
+    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-3 });
+    assert_eq!(doubts(&run(&problem)).iter().filter(|kind| **kind == Kind::Forces).count(), 0);
 }
 
 #[test]

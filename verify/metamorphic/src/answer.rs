@@ -157,10 +157,11 @@ pub fn reaction_difference(first: &Answer, other: &Answer, view: &View) -> f64 {
 
 /// Sum of reactions.
 pub fn sum(reactions: &[Reaction]) -> Reaction {
-    let mut sum = Reaction { force: Vector3::zeros(), moment: Vector3::zeros() };
+    let mut sum = Reaction::default();
     for reaction in reactions {
         sum.force += reaction.force;
         sum.moment += reaction.moment;
+        sum.sizes += reaction.sizes;
     }
     sum
 }

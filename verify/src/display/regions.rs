@@ -8,6 +8,10 @@ use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{LabelField, Selector, Shape};
 use mtled::problem::{Dimension, Region};
 use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Voxels about a label: cells are cut and moved near its outline alone.
+const AROUND: usize = 16;
 
 /// What a selection takes of a body; `None` where that is no solid.
 pub fn solid(part: &Selector, body: &Shape) -> Option<Shape> {
@@ -31,7 +35,8 @@ fn selected(part: &Selector, body: &Shape) -> Option<Shape> {
                 Shape::Labels(field) => field.smoothing(),
                 _ => LabelField::SMOOTHING,
             };
-            Some(Shape::Labels(LabelField::new(map.clone(), &[*label], smoothing).ok()?.into()))
+            let near = Arc::new(map.about(&[*label], AROUND));
+            Some(Shape::Labels(LabelField::new(near, &[*label], smoothing).ok()?.into()))
         }
         Selector::Union(parts) => {
             let parts = parts.iter().map(|part| solid(part, body));

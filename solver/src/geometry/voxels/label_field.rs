@@ -200,10 +200,12 @@ fn bounds(grid: &ScalarGrid, corner: &Vector3, frame: &Matrix3) -> (Vector3, Vec
 fn smooth(image: &mut ScalarGrid, smoothing: f64) {
     let solid: Vec<bool> = image.values.iter().map(|&v| v > 0.5).collect();
     let passes = ((smoothing / LabelField::SMOOTHING).powi(2) - 1e-9).ceil().max(1.0);
+    let mut before = vec![0.0; image.values.len()];
     for _ in 0..passes as usize {
         let size = image.size;
         for axis in (0..3).filter(|&axis| size[axis] > 1) {
-            smooth_along(image, axis, smoothing / passes.sqrt());
+            before.copy_from_slice(&image.values);
+            smooth_along(image, &before, axis, smoothing / passes.sqrt());
         }
         for (value, &solid) in image.values.iter_mut().zip(&solid) {
             *value = if solid { value.max(0.5 + CLEARANCE) } else { value.min(0.5 - CLEARANCE) };
@@ -211,13 +213,12 @@ fn smooth(image: &mut ScalarGrid, smoothing: f64) {
     }
 }
 
-/// Gaussian along one axis, zero outside the grid.
-fn smooth_along(image: &mut ScalarGrid, axis: usize, deviation: f64) {
+/// Gaussian of the values `old` along one axis, zero outside the grid.
+fn smooth_along(image: &mut ScalarGrid, old: &[f64], axis: usize, deviation: f64) {
     let kernel: Vec<f64> = (0..4).map(|n| (-0.5 * (n as f64 / deviation).powi(2)).exp()).collect();
     let sum = kernel[0] + 2.0 * kernel[1..].iter().sum::<f64>();
     let stride: usize = image.size[..axis].iter().product();
     let n = image.size[axis];
-    let old = image.values.clone();
     // Along the first axis a whole row at once, along others a layer across them.
     let (length, count) = if axis == 0 { (n, 1) } else { (stride, n) };
     image.values.par_chunks_mut(length).enumerate().for_each(|(chunk, values)| {

@@ -3,6 +3,7 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::error::GeometryError;
+use crate::geometry::voxels::grid::indices;
 use crate::geometry::voxels::label_blocks::LabelBlocks;
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
@@ -80,6 +81,33 @@ impl LabelMap {
     /// Centre of a voxel \[m\].
     pub fn centre(&self, i: usize, j: usize, k: usize) -> Vector3 {
         self.origin + self.directions * Vector3::new(i as f64, j as f64, k as f64)
+    }
+
+    /// The part of the image within `margin` voxels of those that have one of `labels`; all of it
+    /// where none has.
+    pub fn about(&self, labels: &[u32], margin: usize) -> LabelMap {
+        let (mut first, mut last) = (self.size, [0; 3]);
+        for (row, values) in self.labels.chunks(self.size[0]).enumerate() {
+            let chosen = |label: &u32| labels.contains(label);
+            let Some(low) = values.iter().position(chosen) else { continue };
+            let high = values.iter().rposition(chosen).unwrap_or(low);
+            let (j, k) = (row % self.size[1], row / self.size[1]);
+            for (axis, (low, high)) in [(low, high), (j, j), (k, k)].into_iter().enumerate() {
+                first[axis] = first[axis].min(low.saturating_sub(margin));
+                last[axis] = last[axis].max((high + margin).min(self.size[axis] - 1));
+            }
+        }
+        if first == self.size {
+            return self.clone();
+        }
+        let size = [0, 1, 2].map(|axis| last[axis] - first[axis] + 1);
+        let [i, j, k] = first;
+        let labels = indices([1, size[1], size[2]]).flat_map(|[_, row, layer]| {
+            let start = i + self.size[0] * (j + row + self.size[1] * (k + layer));
+            self.labels[start..start + size[0]].iter().copied()
+        });
+        let (labels, blocks) = (labels.collect(), OnceLock::new());
+        LabelMap { size, origin: self.centre(i, j, k), labels, blocks, ..*self }
     }
 
     /// Position in units of voxels; (0, 0, 0) is the centre of the first one.

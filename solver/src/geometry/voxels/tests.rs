@@ -217,3 +217,22 @@ fn a_value_and_its_slope_are_those_of_seven_samples() {
         }
     }
 }
+
+#[test]
+fn the_part_of_an_image_about_a_label_holds_it_at_the_same_place() {
+    let size = [13, 9, 11];
+    let labels: Vec<u32> = (0..size.iter().product::<usize>())
+        .map(|n| if (5..7).contains(&(n % 13)) && n / 117 == 4 { 3 } else { 1 })
+        .collect();
+    let directions = turn() * Matrix3::from_diagonal(&Vector3::new(1e-3, 2e-3, 1.5e-3));
+    let map = LabelMap::new(size, Vector3::new(0.1, 0.2, -0.3), directions, labels).unwrap();
+    let near = map.about(&[3], 2);
+    assert_eq!(near.size, [6, 9, 5]);
+    for [i, j, k] in indices(near.size) {
+        let X = near.centre(i, j, k);
+        assert_eq!(near.label_at(&X), map.label_at(&X));
+    }
+    let all = |map: &LabelMap| map.labels.iter().filter(|label| **label == 3).count();
+    assert_eq!((all(&near), all(&map)), (18, 18));
+    assert_eq!(map.about(&[7], 2).size, size);
+}

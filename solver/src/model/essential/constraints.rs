@@ -97,12 +97,15 @@ pub struct ConstraintForces {
 /// The weight and the tractions of these nodes are therefore part of it, and reactions and
 /// loads add up to zero at rest. A node that two conditions prescribe alike counts with the
 /// first stated.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub struct Reaction {
     /// \[N\]
     pub force: Vector3,
     /// \[N·m\]
     pub moment: Vector3,
+    /// Sum of the sizes of the forces at the nodes \[N\]: more than that of their sum where they
+    /// balance each other.
+    pub sizes: f64,
 }
 
 impl Constraints {
@@ -292,8 +295,7 @@ impl Constraints {
         u: &[f64],
     ) -> Vec<Reaction> {
         let components = u.len() / positions.len();
-        let zero = Reaction { force: Vector3::zeros(), moment: Vector3::zeros() };
-        let mut reactions = vec![zero; self.conditions.len()];
+        let mut reactions = vec![Reaction::default(); self.conditions.len()];
         let sets = &self.stages[forces.stage].sets;
         for (set, multipliers) in sets.iter().zip(&forces.multipliers) {
             for (i, (row, multiplier)) in set.rows.iter().zip(multipliers).enumerate() {
@@ -307,6 +309,7 @@ impl Constraints {
                 force[set.component] = multiplier * force_factor;
                 let reaction = &mut reactions[row.condition as usize];
                 reaction.force += force;
+                reaction.sizes += force.norm();
                 reaction.moment += (positions[node] + displacement - about).cross(&force);
             }
         }

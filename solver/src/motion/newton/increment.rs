@@ -170,12 +170,12 @@ impl Solver<'_> {
         if model.contact.obstacles.is_empty() {
             return 0;
         }
-        self.close(now);
+        self.close(&now.u, &now.imbalance.force);
         let forces = self.contact_forces(&now.imbalance);
         let normal = self.contacts.normal_forces(model, &now.u, &forces);
         let changes = self.contacts.update(model, before, &now.u, &normal);
         if changes > 0 {
-            self.close(now);
+            self.close(&now.u, &now.imbalance.force);
         }
         for imbalance in std::iter::once(&mut now.imbalance).chain(&mut now.exact) {
             imbalance.acceleration = model.accelerations(&imbalance.force);
@@ -184,11 +184,12 @@ impl Solver<'_> {
         changes
     }
 
-    /// Closes the contacts, and stops rigid motions along them that nothing drives.
-    fn close(&mut self, now: &Equilibrium) {
-        let rows = self.contacts.rows(self.model, &now.u);
+    /// Closes the contacts at displacements `u` \[m\], and stops rigid motions along them that the
+    /// unbalanced forces \[N\] do not drive.
+    pub(super) fn close(&mut self, u: &[f64], force: &[f64]) {
+        let rows = self.contacts.rows(self.model, u);
         let stopped = match self.floating {
-            true => drifts(self.model, self.free.t, &now.u, &rows, &now.imbalance.force),
+            true => drifts(self.model, self.free.t, u, &rows, force),
             false => Vec::new(),
         };
         self.free.close(rows, &stopped);

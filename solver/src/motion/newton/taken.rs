@@ -138,6 +138,10 @@ impl Solver<'_> {
             let length = 0.5f64.powi(halvings as i32);
             let u = moved(&now.u, &change, length);
             self.move_pressures(from, safe * length, correction);
+            // The normals turn on the way, and what the obstacles take with them.
+            if !self.free.contacts.is_empty() {
+                self.close(&u, &before.force);
+            }
             let imbalance = self.imbalance(&u, fraction, buffers);
             let valid = imbalance.smallest_jacobian.jacobian > volume;
             let closer = imbalance.norm(model) <= 0.99 * before.norm(model)
