@@ -7,9 +7,9 @@ use std::sync::Arc;
 /// Bytes of a label, and of the distance at a voxel.
 const PER_LABEL: f64 = 4.0;
 const PER_DISTANCE: f64 = 8.0;
-/// Of a voxel while its distance is computed: image, copy, distance, samples far away, and where the
+/// Of a voxel while its distance is computed: image, distance, samples far away, and where the
 /// nearest point came from.
-const PER_VOXEL_READING: f64 = 42.0;
+const PER_VOXEL_READING: f64 = 28.0;
 /// Of a triangle with its vertices, normals and search tree, and while it is read.
 const PER_TRIANGLE: f64 = 300.0;
 const PER_TRIANGLE_READING: f64 = 700.0;
