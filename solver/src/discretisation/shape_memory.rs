@@ -9,7 +9,7 @@ const PER_LABEL: f64 = 4.0;
 const PER_DISTANCE: f64 = 8.0;
 /// Of a voxel while its distance is computed: image, distance, samples far away, and where the
 /// nearest point came from.
-const PER_VOXEL_READING: f64 = 28.0;
+const PER_VOXEL_READING: f64 = 36.0;
 /// Of a triangle with its vertices, normals and search tree, and while it is read.
 const PER_TRIANGLE: f64 = 300.0;
 const PER_TRIANGLE_READING: f64 = 700.0;
