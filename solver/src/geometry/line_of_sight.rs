@@ -128,6 +128,14 @@ impl Shape {
     }
 }
 
+/// What of a way is outside of the body.
+struct Outside {
+    /// Where it was first seen to be \[m\].
+    first: f64,
+    /// The greatest distance that was seen \[m\].
+    depth: f64,
+}
+
 /// The straight way between two places.
 struct Way<'a> {
     body: &'a Shape,
@@ -167,7 +175,7 @@ impl<'a> Way<'a> {
             true => self.total,
             false => self.total + self.ends[1].distance.min(0.0),
         };
-        // The last place inside, and one outside since.
+        // The last place inside, and the outside since.
         let (mut inside, mut outside) = (0.0, None);
         let (mut t, mut distance) = (0.0, self.ends[0].distance);
         while t < end {
@@ -180,22 +188,21 @@ impl<'a> Way<'a> {
             if narrow {
                 outside = self.outside_between((t, distance), (next, there), LOOKS);
             }
-            match there > self.thin {
-                true => outside = outside.or(Some(next)),
-                false if outside.is_some_and(|out| self.is_crossed([inside, out, next])) => {
-                    return true;
-                }
-                false => (inside, outside) = (next, None),
+            match (there > self.thin, &mut outside) {
+                (true, Some(out)) => out.depth = out.depth.max(there),
+                (true, None) => outside = Some(Outside { first: next, depth: there }),
+                (false, Some(out)) if self.is_crossed(inside, out, next) => return true,
+                (false, _) => (inside, outside) = (next, None),
             }
             (t, distance) = (next, there);
         }
-        outside.is_some_and(|out| self.is_crossed([inside, out, self.total]))
+        outside.is_some_and(|out| self.is_crossed(inside, &out, self.total))
     }
 
-    /// A place outside between two inside, (t, distance), if one shows. Where one of these is on
+    /// The outside between two places inside, (t, distance), if it shows. Where one of these is on
     /// the boundary, a narrow gap would be beside it; elsewhere it would be where the distance
     /// vanished if it rose and fell evenly.
-    fn outside_between(&self, from: (f64, f64), to: (f64, f64), looks: usize) -> Option<f64> {
+    fn outside_between(&self, from: (f64, f64), to: (f64, f64), looks: usize) -> Option<Outside> {
         let (before, after) = ((-from.1).max(0.0), (-to.1).max(0.0));
         let span = to.0 - from.0;
         // Balls of material that overlap.
@@ -203,16 +210,19 @@ impl<'a> Way<'a> {
             return None;
         }
         let at = |part: f64| from.0 + part * span;
-        let is_out = |t: &f64| self.distance(*t) > self.thin;
+        let out = |t: f64| {
+            let depth = self.distance(t);
+            (depth > self.thin).then_some(Outside { first: t, depth })
+        };
         match (before <= self.thin, after <= self.thin) {
-            (true, true) => ALONG.into_iter().map(at).find(is_out),
-            (true, false) => BESIDE.into_iter().map(at).find(is_out),
-            (false, true) => BESIDE.into_iter().map(|part| at(1.0 - part)).find(is_out),
+            (true, true) => ALONG.into_iter().map(at).find_map(out),
+            (true, false) => BESIDE.into_iter().map(at).find_map(out),
+            (false, true) => BESIDE.into_iter().map(|part| at(1.0 - part)).find_map(out),
             (false, false) => {
                 let t = at(before / (before + after));
                 let distance = self.distance(t);
                 if distance > self.thin {
-                    return Some(t);
+                    return Some(Outside { first: t, depth: distance });
                 }
                 let on_line = from.1 + (to.1 - from.1) * (t - from.0) / span;
                 if distance - on_line <= BENT * (before + after) {
@@ -224,12 +234,16 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// Whether a way that leaves the body after one place, is outside at another and inside again
-    /// at a third has crossed a gap: it is deep for its width, or the directions away from the
-    /// body just outside of where it leaves and comes back differ.
-    fn is_crossed(&self, [inside, outside, returns]: [f64; 3]) -> bool {
+    /// Whether a way that leaves the body after one place and is inside again at another has
+    /// crossed a gap: what is outside is deep for its width, or the directions away from the body
+    /// just outside of where the way leaves and comes back differ.
+    fn is_crossed(&self, inside: f64, outside: &Outside, returns: f64) -> bool {
+        let is_deep = |depth: f64, width: f64| depth > self.allowed.max(DEEP * width);
+        if is_deep(outside.depth, returns - inside) {
+            return true;
+        }
         let just_outside = |mut inside: f64| {
-            let mut out = outside;
+            let mut out = outside.first;
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (inside + out);
                 match self.distance(middle) > self.thin {
@@ -243,9 +257,8 @@ impl<'a> Way<'a> {
         let away = |t: f64| self.body.gradient(&self.at(t));
         let part = (returns - leaves) / PARTS as f64;
         let depths = (1..PARTS).map(|n| self.distance(leaves + n as f64 * part));
-        let depth = depths.fold(self.distance(outside), f64::max);
-        depth > self.allowed.max(DEEP * (returns - leaves))
-            || away(leaves).dot(&away(returns)) < TURNED
+        let depth = depths.fold(outside.depth, f64::max);
+        is_deep(depth, returns - leaves) || away(leaves).dot(&away(returns)) < TURNED
     }
 }
 

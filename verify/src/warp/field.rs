@@ -32,6 +32,8 @@ pub struct DisplacementField {
     bounds: (Vector3, Vector3),
     /// Displacement of each node \[m\].
     at_nodes: Vec<Vector3>,
+    /// Of a node \[m\].
+    pub largest_displacement: f64,
     /// Distance over which the field decays outside of the body \[m\].
     pub decay: f64,
 }
@@ -74,22 +76,19 @@ impl DisplacementField {
             body,
             bounds: (Vector3::zeros(), Vector3::zeros()),
             at_nodes: Vec::new(),
+            largest_displacement: 0.0,
             decay: 0.0,
         };
         field.at_nodes = (field.approximation.nodes.iter().enumerate())
             .map(|(node, X)| field.inside(X).ok_or(WarpError::UncoveredNode { node, position: *X }))
             .collect::<Result<_, _>>()?;
-        field.decay = decay.unwrap_or(DECAY * field.largest_displacement());
+        field.largest_displacement = field.at_nodes.iter().map(|u| u.norm()).fold(0.0, f64::max);
+        field.decay = decay.unwrap_or(DECAY * field.largest_displacement);
         let nodes = &field.approximation.nodes;
         let (lower, upper) = field.body.bounding_box().unwrap_or_else(|| corners(nodes));
         let reach = Vector3::repeat(field.decay);
         field.bounds = (lower - reach, upper + reach);
         Ok(field)
-    }
-
-    /// The largest displacement of a node \[m\].
-    pub fn largest_displacement(&self) -> f64 {
-        self.at_nodes.iter().map(|u| u.norm()).fold(0.0, f64::max)
     }
 
     /// Reference positions of the nodes \[m\].
@@ -138,7 +137,7 @@ impl DisplacementField {
     /// Whether a place may have two sources, in the body and outside of it: the steepest slope
     /// of the decay is 3/2 over its distance.
     pub(super) fn may_fold(&self) -> bool {
-        self.decay < 1.5 * self.largest_displacement()
+        self.decay < 1.5 * self.largest_displacement
     }
 
     /// The nearest point of the body \[m\].

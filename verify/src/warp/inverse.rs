@@ -54,7 +54,7 @@ pub fn source_of(
 /// The source in the body, if there is one: what has moved to a place has driven out what was
 /// there.
 fn in_body(field: &DisplacementField, x: &Vector3) -> Option<Source> {
-    if field.distance_outside(x) > field.largest_displacement() {
+    if field.distance_outside(x) > field.largest_displacement {
         return None;
     }
     let gap = |vector: &Vector3| field.at_nearest(&(x + vector)) + vector;

@@ -137,10 +137,19 @@ impl Visibility {
         };
         let mut nearest: Vec<(f64, u32)> = around.iter().map(|&n| (distance(n), n)).collect();
         nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        keep_nearest(&mut nearest, 4);
-        nearest.retain(|&(_, node)| !self.is_barred(point, node));
-        keep_nearest(&mut nearest, 2);
-        nearest.into_iter().map(|(_, node)| node).collect()
+        let mut guides: Vec<(f64, u32)> = Vec::new();
+        let as_near = |list: &[(f64, u32)], count: usize, distance: f64| {
+            list.get(count - 1).is_none_or(|&(farthest, _)| distance <= farthest + ROUND_OFF)
+        };
+        for &(distance, node) in &nearest {
+            if !as_near(&nearest, 4, distance) || !as_near(&guides, 2, distance) {
+                break;
+            }
+            if !self.is_barred(point, node) {
+                guides.push((distance, node));
+            }
+        }
+        guides.into_iter().map(|(_, node)| node).collect()
     }
 
     /// Whether a gap bars the straight way from a point to a node.
@@ -158,13 +167,6 @@ impl Visibility {
             true => self.barred[a].binary_search(&(b as u32)).is_err(),
             false => !self.body.parts(&self.nodes[a], &self.nodes[b], spacing),
         }
-    }
-}
-
-/// Keeps the first of an ascending list, and those that are as near but for round-off.
-fn keep_nearest(nearest: &mut Vec<(f64, u32)>, count: usize) {
-    if let Some(&(farthest, _)) = nearest.get(count - 1) {
-        nearest.retain(|(distance, _)| *distance <= farthest + ROUND_OFF);
     }
 }
 

@@ -43,7 +43,7 @@ impl Summary {
     /// Of a field by which nothing is warped yet.
     pub fn of(field: &DisplacementField) -> Summary {
         Summary {
-            largest_displacement: field.largest_displacement(),
+            largest_displacement: field.largest_displacement,
             decay: field.decay,
             deformed: None,
             landmarks: Vec::new(),
@@ -56,7 +56,7 @@ impl Summary {
         if let Some(counts) = self.deformed.as_ref().filter(|counts| counts.unconverged > 0) {
             common.warn(format!(
                 "for {} of {} voxels no place was found that moved there to within {} mm (up to {} mm remain): \
-                 the body has folded there, or has left the place and --decay is too short",
+                 the body has folded there, two sides of a gap have parted or met there, or it has left the place and --decay is too short",
                 counts.unconverged,
                 counts.voxels,
                 four_digits(1e3 * TOLERANCE),

@@ -42,7 +42,7 @@ pub fn cut_panels(case: &Case, solved: &Solved) -> Result<Option<Panels>> {
     let Some((plane, through)) = Plane::of(&case.problem) else { return Ok(None) };
     let stored = StoredField::new(case, &solved.prepared, &solved.state.displacement, false);
     let field = DisplacementField::new(&stored, &case.problem, None)?;
-    let reach = case.problem.obstacles.first().map_or(field.largest_displacement(), |o| o.offset);
+    let reach = case.problem.obstacles.first().map_or(field.largest_displacement, |o| o.offset);
     let cut = Cut::new(&field, &case.problem.body, plane, reach, labels.voxel());
     let cut = cut.context("the body has no bounds")?;
     let parts = parts(case, labels.smoothing())?;
