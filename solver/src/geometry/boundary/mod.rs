@@ -12,6 +12,7 @@ mod patch;
 mod points;
 mod solid_panels;
 mod target_spacing;
+mod vicinity;
 mod voxel_panels;
 
 pub use panel::Panel;

@@ -10,6 +10,7 @@ use crate::geometry::boundary::patch::Patch;
 use crate::geometry::boundary::solid_panels::{
     box_patches, cylinder_patches, ellipsoid_patches, prism_patches, rectangle, triangle_patches,
 };
+use crate::geometry::boundary::vicinity::Vicinity;
 use crate::geometry::boundary::voxel_panels::{merges_voxels, voxel_patches};
 use crate::geometry::dimension::Dimension;
 use crate::geometry::error::{GeometryError, positive};
@@ -54,34 +55,34 @@ impl Shape {
     ) -> Result<Vec<T>, GeometryError> {
         positive("the panel size", size)?;
         match dimension {
-            Dimension::Three => surface_pieces(self, size, self.finite_bounds(dimension)?),
+            Dimension::Three => {
+                surface_pieces(self, size, &Vicinity::new(self.finite_bounds(dimension)?))
+            }
             Dimension::PlaneStrain { z, .. } => {
                 let section = self.section_at(*z)?;
-                let around = section.finite_bounds(dimension)?;
-                let patches = curve_patches(&section, size, *z, around)?;
+                let around = Vicinity::new(section.finite_bounds(dimension)?);
+                let patches = curve_patches(&section, size, *z, &around)?;
                 Ok(patches.into_iter().map(T::from).collect())
             }
         }
     }
 }
 
-/// Corners of the box outside which half-spaces need no panels \[m\].
-type Bounds = (Vector3, Vector3);
-
-/// The part of a plane that passes the box: its middle and half its edge.
-fn patch(point: &Vector3, normal: &Vector3, (lower, upper): Bounds) -> (Vector3, f64) {
-    let middle = 0.5 * (lower + upper);
-    (middle - (middle - point).dot(normal) * normal, 0.5 * (upper - lower).norm())
-}
-
 /// Refuses a shape, or a member of one that may be much larger than the body, before any of
 /// its panels is made.
-fn refuse_too_many(shape: &Shape, size: f64, dimension: &Dimension) -> Result<(), GeometryError> {
+fn refuse_too_many(
+    shape: &Shape,
+    size: f64,
+    dimension: &Dimension,
+    around: &Vicinity,
+) -> Result<(), GeometryError> {
     let Ok((lower, upper)) = shape.finite_bounds(dimension) else { return Ok(()) };
-    let extent = upper - lower;
-    // Bands are as fine everywhere as the longest radius wants them.
-    let round = matches!(shape, Shape::Ellipsoid { .. });
-    let extent = if round { Vector3::repeat(extent.max()) } else { extent };
+    let extent = match shape {
+        Shape::Box { min, max } => around.common_edges(min, max),
+        // Bands are as fine everywhere as the longest radius wants them.
+        Shape::Ellipsoid { .. } => Vector3::repeat((upper - lower).max()),
+        _ => upper - lower,
+    };
     PANELS.check(FILLED * pieces_of_box(&extent, size, dimension))
 }
 
@@ -90,15 +91,15 @@ fn curve_patches(
     shape: &Shape,
     size: f64,
     z: f64,
-    around: Bounds,
+    around: &Vicinity,
 ) -> Result<Vec<Patch>, GeometryError> {
     let flat = Dimension::PlaneStrain { thickness: 1.0, z };
-    refuse_too_many(shape, size, &flat)?;
+    refuse_too_many(shape, size, &flat, around)?;
     match shape {
         Shape::Polygon { points, .. } => Ok(line_patches(&anticlockwise(points), size, z)),
         Shape::Ellipsoid { centre, radii } => Ok(ellipse_patches(centre, radii, size, z)),
         Shape::HalfSpace { point, normal } => {
-            let (middle, reach) = patch(point, normal, around);
+            let (middle, reach) = around.square(point, normal);
             let along = reach * Vector3::new(-normal.y, normal.x, 0.0);
             let (a, b) = (middle - along, middle + along);
             Ok(segment_patches([a.x, a.y], [b.x, b.y], size, z).collect())
@@ -121,9 +122,9 @@ fn curve_patches(
 fn surface_pieces<T: From<Patch> + Send>(
     shape: &Shape,
     size: f64,
-    around: Bounds,
+    around: &Vicinity,
 ) -> Result<Vec<T>, GeometryError> {
-    refuse_too_many(shape, size, &Dimension::Three)?;
+    refuse_too_many(shape, size, &Dimension::Three, around)?;
     let pieces: Vec<T> = match shape {
         Shape::Labels(field) if merges_voxels(field, size) => {
             voxel_patches(shape, field, size)?.into_iter().map(T::from).collect()
@@ -141,27 +142,27 @@ fn surface_pieces<T: From<Patch> + Send>(
 }
 
 /// Of a shape that is stated by a few numbers, and of composites.
-fn solid_patches(shape: &Shape, size: f64, around: Bounds) -> Result<Vec<Patch>, GeometryError> {
+fn solid_patches(shape: &Shape, size: f64, around: &Vicinity) -> Result<Vec<Patch>, GeometryError> {
     match shape {
-        Shape::Box { min, max } => Ok(box_patches(min, max, size)),
+        Shape::Box { min, max } => Ok(box_patches(min, max, size, around)),
         Shape::Cylinder { base, axis, radius, height } => {
-            Ok(cylinder_patches(base, axis, *radius, *height, size))
+            Ok(cylinder_patches(base, axis, *radius, *height, (size, around)))
         }
         Shape::Sphere { centre, radius } => {
-            Ok(ellipsoid_patches(centre, &Vector3::repeat(*radius), size))
+            Ok(ellipsoid_patches(centre, &Vector3::repeat(*radius), size, around))
         }
         Shape::Ellipsoid { centre, radii } if radii.z.is_finite() => {
-            Ok(ellipsoid_patches(centre, radii, size))
+            Ok(ellipsoid_patches(centre, radii, size, around))
         }
         Shape::Polygon { points, z } if (z.1 - z.0).is_finite() => {
-            Ok(prism_patches(points, *z, size))
+            Ok(prism_patches(points, *z, size, around))
         }
         Shape::HalfSpace { point, normal } => {
-            let (middle, reach) = patch(point, normal, around);
+            let (middle, reach) = around.square(point, normal);
             let (u, v) = perpendicular(normal);
             let mut patches = Vec::new();
             let corner = middle - reach * (u + v);
-            rectangle(corner, 2.0 * reach * u, 2.0 * reach * v, size, &mut patches);
+            rectangle(corner, [2.0 * reach * u, 2.0 * reach * v], (size, around), &mut patches);
             Ok(patches)
         }
         Shape::Union(_) | Shape::Intersection(_) | Shape::Difference(..) => {

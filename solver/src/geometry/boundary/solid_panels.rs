@@ -1,18 +1,19 @@
-//! Panels of single solids.
+//! Panels of single solids, where they are near the body.
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::boundary::panel::{Panel, pieces};
 use crate::geometry::boundary::patch::{Chart, Patch};
+use crate::geometry::boundary::vicinity::Vicinity;
 use crate::geometry::polygon::{anticlockwise, triangulate};
 use crate::geometry::primitives::perpendicular;
 use crate::geometry::triangles::{Triangle, area_vector, subdivide};
 use std::f64::consts::TAU;
 
+/// Panels of edge `size` \[m\] of a parallelogram, those in a vicinity.
 pub(super) fn rectangle(
     corner: Vector3,
-    u: Vector3,
-    v: Vector3,
-    size: f64,
+    [u, v]: [Vector3; 2],
+    (size, around): (f64, &Vicinity),
     patches: &mut Vec<Patch>,
 ) {
     let (nu, nv) = (pieces(u.norm(), size), pieces(v.norm(), size));
@@ -20,8 +21,9 @@ pub(super) fn rectangle(
     let area = whole.norm() / (nu * nv) as f64;
     let normal = whole.normalize();
     let (du, dv) = (u / nu as f64, v / nv as f64);
-    for j in 0..nv {
-        for i in 0..nu {
+    for j in around.steps(&corner, &dv, nv, &u) {
+        let row = corner + j as f64 * dv;
+        for i in around.steps(&row, &du, nu, &dv) {
             let (s, t) = ((i as f64 + 0.5) / nu as f64, (j as f64 + 0.5) / nv as f64);
             let panel = Panel::flat(corner + s * u + t * v, area, normal);
             let from = corner + i as f64 * du + j as f64 * dv;
@@ -30,7 +32,12 @@ pub(super) fn rectangle(
     }
 }
 
-pub(super) fn box_patches(min: &Vector3, max: &Vector3, size: f64) -> Vec<Patch> {
+pub(super) fn box_patches(
+    min: &Vector3,
+    max: &Vector3,
+    size: f64,
+    around: &Vicinity,
+) -> Vec<Patch> {
     let mut panels = Vec::new();
     let edges = max - min;
     for axis in 0..3 {
@@ -39,25 +46,31 @@ pub(super) fn box_patches(min: &Vector3, max: &Vector3, size: f64) -> Vec<Patch>
             edge[(axis + k) % 3] = edges[(axis + k) % 3];
             edge
         };
-        rectangle(*min, along(2), along(1), size, &mut panels);
-        rectangle(min + along(0), along(1), along(2), size, &mut panels);
+        rectangle(*min, [along(2), along(1)], (size, around), &mut panels);
+        rectangle(min + along(0), [along(1), along(2)], (size, around), &mut panels);
     }
     panels
 }
 
-pub(super) fn prism_patches(points: &[[f64; 2]], z: (f64, f64), size: f64) -> Vec<Patch> {
+pub(super) fn prism_patches(
+    points: &[[f64; 2]],
+    z: (f64, f64),
+    size: f64,
+    around: &Vicinity,
+) -> Vec<Patch> {
     let points = anticlockwise(points);
     let mut panels = Vec::new();
     let up = Vector3::new(0.0, 0.0, z.1 - z.0);
     for (n, a) in points.iter().enumerate() {
         let b = points[(n + 1) % points.len()];
         let edge = Vector3::new(b[0] - a[0], b[1] - a[1], 0.0);
-        rectangle(Vector3::new(a[0], a[1], z.0), edge, up, size, &mut panels);
+        rectangle(Vector3::new(a[0], a[1], z.0), [edge, up], (size, around), &mut panels);
     }
     for [a, b, c] in triangulate(&points) {
         let at = |z: f64| move |p: [f64; 2]| Vector3::new(p[0], p[1], z);
         let caps = [[a, b, c].map(at(z.1)), [a, c, b].map(at(z.0))];
-        panels.extend(triangle_patches::<Patch>(caps.into_iter(), size));
+        let near = caps.into_iter().filter(|corners| around.meets(corners));
+        panels.extend(triangle_patches::<Patch>(near, size));
     }
     panels
 }
@@ -67,7 +80,7 @@ pub(super) fn cylinder_patches(
     axis: &Vector3,
     radius: f64,
     height: f64,
-    size: f64,
+    (size, vicinity): (f64, &Vicinity),
 ) -> Vec<Patch> {
     let (u, v) = perpendicular(axis);
     let ends = |n: usize, count: usize| {
@@ -78,6 +91,11 @@ pub(super) fn cylinder_patches(
         cos * u + sin * v
     };
     let mut patches = Vec::new();
+    let mut push = |patch: Patch| {
+        if vicinity.is_near(&patch.panel.centre, size) {
+            patches.push(patch);
+        }
+    };
     let (count, layers) = (pieces(TAU * radius, size).max(8), pieces(height, size));
     for n in 0..layers * count {
         let normal = around(n % count, count);
@@ -86,7 +104,7 @@ pub(super) fn cylinder_patches(
         let area = TAU * radius * height / (count * layers) as f64;
         let along = (height * layer / layers as f64, height * (layer + 1.0) / layers as f64);
         let (base, axis, across, angle) = (*base, *axis, [u, v], ends(n % count, count));
-        patches.push(Patch::square(
+        push(Patch::square(
             Panel::flat(base + s * axis + radius * normal, area, normal),
             Chart::Side { base, axis, across, radius, angle, along },
         ));
@@ -102,9 +120,9 @@ pub(super) fn cylinder_patches(
             let (across, radius, angle) = ([u, v], (inner, outer), ends(n, count));
             let cap =
                 |centre: Vector3, side: f64| Chart::Sector { centre, across, radius, angle, side };
-            patches.push(Patch::square(Panel::flat(at, area, -axis), cap(*base, -1.0)));
+            push(Patch::square(Panel::flat(at, area, -axis), cap(*base, -1.0)));
             let top = Panel::flat(at + height * axis, area, *axis);
-            patches.push(Patch::square(top, cap(base + height * axis, 1.0)));
+            push(Patch::square(top, cap(base + height * axis, 1.0)));
         }
     }
     patches
@@ -112,7 +130,12 @@ pub(super) fn cylinder_patches(
 
 /// Bands of latitude on the unit sphere with exact areas, mapped by Nanson's
 /// formula N dA = cof(D) n da with D the diagonal of the radii.
-pub(super) fn ellipsoid_patches(centre: &Vector3, radii: &Vector3, size: f64) -> Vec<Patch> {
+pub(super) fn ellipsoid_patches(
+    centre: &Vector3,
+    radii: &Vector3,
+    size: f64,
+    around: &Vicinity,
+) -> Vec<Patch> {
     let largest = radii.max();
     let bands = pieces(0.5 * TAU * largest, size).max(4);
     let cofactor = Vector3::repeat(radii.product()).component_div(radii);
@@ -131,10 +154,12 @@ pub(super) fn ellipsoid_patches(centre: &Vector3, radii: &Vector3, size: f64) ->
             let at = centre + radii.component_mul(&unit);
             let (centre, radii, polar) = (*centre, *radii, (top, bottom));
             let angle = (longitude(n as f64), longitude(n as f64 + 1.0));
-            patches.push(Patch::square(
-                Panel::flat(at, area * mapped.norm(), mapped.normalize()),
-                Chart::Ellipsoid { centre, radii, polar, angle },
-            ));
+            if around.is_near(&at, size) {
+                patches.push(Patch::square(
+                    Panel::flat(at, area * mapped.norm(), mapped.normalize()),
+                    Chart::Ellipsoid { centre, radii, polar, angle },
+                ));
+            }
         }
     }
     patches
