@@ -18,7 +18,7 @@ from mtled_reference.scikit_fem.newton import solve_static
 from mtled_reference.scikit_fem.record import Recorder
 from mtled_reference.scikit_fem.solve import solve_mesh
 from mtled_reference.shared.case import BodyForce, read_case
-from mtled_reference.shared.selection import bounding_box
+from mtled_reference.shared.selection import bounding_box, cut_of_ball
 
 CASES = Path(__file__).parent.parent / "cases"
 
@@ -36,6 +36,13 @@ def volume(shape: dict, dimension: int) -> float:
         return 4.0 / 3.0 * np.pi * content["radius"] ** 3
     if kind == "cylinder":
         return np.pi * content["radius"] ** 2 * content["height"]
+    if kind == "intersection":  # of a ball and a half-space
+        radius, depth = cut_of_ball(shape)
+        return np.pi / 3.0 * (radius + depth) ** 2 * (2.0 * radius - depth)
+    if kind == "difference":  # of two boxes
+        whole, cut = map(bounding_box, content)
+        common = np.minimum(whole[1], cut[1]) - np.maximum(whole[0], cut[0])
+        return float(np.prod(whole[1] - whole[0]) - np.prod(common))
     x, y = np.array(content["points"]).T
     return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
 

@@ -132,9 +132,12 @@ def extruded(blocks: list[Block], low: float, high: float, count: int, grading) 
     return [Block(raised(block), (*block.counts, count)) for block in blocks]
 
 
-def half_disc(radius: float, foot_angle: float, counts, power: float) -> list[Block]:
+def half_disc(
+    radius: float, foot_angle: float, counts, power: float, cut: bool = False
+) -> list[Block]:
     """The half x ≥ 0 of a disc around the origin: a rectangle and three shells, of
-    which the lowest reaches from −π/2 to `foot_angle` [rad] along the circle.
+    which the lowest reaches from −π/2 to `foot_angle` [rad] along the circle, or, where
+    the disc is `cut` there, along the chord.
 
     `counts` is the number of cells along a shell's arc and across a shell; `power`
     grades them towards the point of the circle at `foot_angle`.
@@ -157,6 +160,9 @@ def half_disc(radius: float, foot_angle: float, counts, power: float) -> list[Bl
             return start + graded(s) * (end - start)
 
         def arc(s, first=first, last=last, graded=graded):
+            if cut and last == foot_angle:
+                end = radius * np.array([np.cos(last), np.sin(last)])
+                return np.stack([graded(s[:, 0]) * end[0], np.full(len(s), end[1])], axis=1)
             angle = first + graded(s[:, 0]) * (last - first)
             return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..shared.case import Case
 from ..shared.measurements import recorded_times
-from ..shared.selection import bounding_box
+from ..shared.selection import bounding_box, cut_of_ball
 from .kinematics import Axisymmetric, PlaneStrain
 from .mesh_blocks import mesh_of_blocks
 from .mesh_shapes import (
@@ -162,6 +162,45 @@ def _sphere_gravity(case: Case, level: int) -> Recipe:
     )
 
 
+def _cut_ball(case: Case, level: int) -> Recipe:
+    """A meridian section; the rim of the cut is a node of the mesh."""
+    radius, height = cut_of_ball(case.shape)
+    n = (4, 8, 16)[level]
+    blocks = half_disc(radius, -np.arcsin(height / radius), (n, n), 1.0, cut=True)
+    points, cells = mesh_of_blocks(blocks, "quadrilateral")
+    family = "curved quadrilaterals of a meridian section, even along the cut"
+    return Recipe(
+        "quadrilateral", 2, points, cells, radius / (2 * n), family, Axisymmetric(), load_steps=5
+    )
+
+
+def _parted_arms(case: Case, level: int) -> Recipe:
+    """The half y above the middle: boxes around the slot, graded towards its end."""
+    body, slot = case.shape["difference"]
+    low, high = bounding_box(body)
+    slot_low, slot_high = bounding_box(slot)
+    middle = 0.5 * (low[1] + high[1])
+    n = (1, 2, 4)[level]
+    power = 1.3
+    x = [(low[0], slot_low[0], 2 * n, towards_one(power))]
+    x += [(slot_low[0], high[0], 6 * n, towards_zero(power))]
+    z = [(low[2], slot_low[2], 2 * n, towards_one(power))]
+    z += [(slot_low[2], slot_high[2], n, even)]
+    z += [(slot_high[2], high[2], 2 * n, towards_zero(power))]
+    blocks = []
+    for i, along in enumerate(x):
+        for j, up in enumerate(z):
+            if (i, j) != (1, 1):
+                start, end = (along[0], middle, up[0]), (along[1], high[1], up[1])
+                gradings = [along[3], even, up[3]]
+                blocks += box(start, end, (along[2], 2 * n, up[2]), gradings)
+    points, cells = mesh_of_blocks(blocks, "tetrahedron")
+    family = "tetrahedra, six to a brick, graded towards the slot; half of the body"
+    size = (high[2] - low[2]) / (5 * n)
+    mirrors = (Mirror(1, middle),)
+    return Recipe("tetrahedron", 2, points, cells, size, family, mirrors=mirrors, load_steps=8)
+
+
 def _twisted_cylinder(case: Case, level: int) -> Recipe:
     """A meridian section, graded towards the rims of both ends."""
     shape = case.shape["cylinder"]
@@ -219,6 +258,8 @@ RECIPES = {
         "hexahedra, graded towards the bonded edges; half of the cube",
     ),
     "cook_membrane": _cook_membrane,
+    "cut_ball": _cut_ball,
+    "parted_arms": _parted_arms,
     "cube_compression": _eighth_of_cube(
         "tetrahedron", (4, 6, 9), 1.3, TETRAHEDRA + "; an eighth of the cube", steps=2
     ),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..shared.case import Case
-from ..shared.selection import bounding_box
+from ..shared.selection import bounding_box, cut_of_ball
 from .hexahedra import (
     between,
     beyond_patch,
@@ -178,6 +178,60 @@ def _sphere_gravity(case: Case, level: int) -> CaseMesh:
     return CaseMesh(blocks, radius / (3 * n), family, [(0, 0.0), (1, 0.0)], 3)
 
 
+def _cut_ball(case: Case, level: int) -> CaseMesh:
+    """A cylinder inside the ball and a layer between it and the sphere; its lower end
+    projects on the cut along the axis, its wall on the sphere from the rim of the cut up."""
+    radius, height = cut_of_ball(case.shape)
+    rim, core = np.sqrt(radius**2 - height**2), 0.5
+    n = (1, 2, 4)[level]
+    patches = quarter_disc(n, n)
+    blocks = extruded(patches, core * rim, (-core * height, core * height), 2 * n)
+    outward = on_sphere(radius)
+    finer = towards_end(0.4)
+    for patch, counts in patches:
+        inner, cut = (_end(patch, counts, k * rim, -k * height) for k in (core, 1.0))
+        blocks.append(between(inner, cut.map, 2 * n, finer))
+    surfaces = [_end(patch, counts, core * rim, core * height) for patch, counts in patches]
+    surfaces += [_wall(core * rim, core * height, n, swap) for swap in (False, True)]
+    for surface in surfaces:
+        sphere = Block(lambda r, inner=surface: outward(inner.map(r)), surface.counts)
+        blocks.append(between(surface, sphere.map, 2 * n, finer))
+    family = "hexahedra, O-grid in a cylinder and a layer around it, rim of the cut a mesh line"
+    return CaseMesh(blocks, radius / (3 * n), family, [(0, 0.0), (1, 0.0)], 3)
+
+
+def _parted_arms(case: Case, level: int) -> CaseMesh:
+    """Boxes around the slot, halved across y, finer towards its end and its faces."""
+    whole_box, slot = case.shape["difference"]
+    low, high = bounding_box(whole_box)
+    slot_low, slot_high = bounding_box(slot)
+    middle = 0.5 * (low[1] + high[1])
+    n = (1, 2, 4)[level]
+    strength = 0.4
+    x = [
+        (low[0], slot_low[0], 2 * n, towards_end(strength)),
+        (slot_low[0], high[0], 6 * n, towards_start(strength)),
+    ]
+    z = [
+        (low[2], slot_low[2], 2 * n, towards_end(strength)),
+        (slot_low[2], slot_high[2], n, evenly),
+        (slot_high[2], high[2], 2 * n, towards_start(strength)),
+    ]
+    blocks = [
+        box_block(
+            (along[0], middle, up[0]),
+            (along[1], high[1], up[1]),
+            (along[2], 2 * n, up[2]),
+            (along[3], evenly, up[3]),
+        )
+        for i, along in enumerate(x)
+        for j, up in enumerate(z)
+        if (i, j) != (1, 1)
+    ]
+    family = "hexahedra in boxes around the slot, graded towards it; half of the body"
+    return CaseMesh(blocks, (high[2] - low[2]) / (5 * n), family, [(1, middle)], 6)
+
+
 def _end(patch, counts, scale: float, z: float) -> Block:
     """An end of the inner cylinder as a surface."""
     return Block(lambda r: np.column_stack([scale * patch(r), np.full(len(r), z)]), counts)
@@ -237,6 +291,8 @@ MESHES: dict[str, Callable[[Case, int], CaseMesh]] = {
     "indented_block": _indented_block,
     "soft_inclusion": _soft_inclusion,
     "sphere_gravity": _sphere_gravity,
+    "cut_ball": _cut_ball,
+    "parted_arms": _parted_arms,
     "cook_membrane": _cook_membrane,
     "turek_hron_csm1": _turek_hron((2, 4, 8)),
     "turek_hron_csm2": _turek_hron((2, 4, 8)),

@@ -59,8 +59,11 @@ def inside(shape: dict, positions: np.ndarray, tolerance: float = 0.0) -> np.nda
 
 
 def bounding_box(shape: dict) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest and highest corner [m] of a box, cylinder along z, sphere or polygon."""
+    """Lowest and highest corner [m] of a box, cylinder, sphere or polygon; of an intersection or
+    a difference that of its first member, which contains it."""
     ((kind, content),) = shape.items()
+    if kind in ("intersection", "difference"):
+        return bounding_box(content[0])
     if kind == "box":
         return np.array(content["min"], float), np.array(content["max"], float)
     if kind == "sphere":
@@ -76,6 +79,13 @@ def bounding_box(shape: dict) -> tuple[np.ndarray, np.ndarray]:
         points, z = np.asarray(content["points"]), content["z"]
         return np.append(points.min(axis=0), z[0]), np.append(points.max(axis=0), z[1])
     raise ValueError(f"no bounding box for shape {kind}")
+
+
+def cut_of_ball(shape: dict) -> tuple[float, float]:
+    """Radius [m] of the ball around the origin in an intersection with a half-space, and how
+    far below its centre the plane cuts it [m]."""
+    ball, above = shape["intersection"]
+    return ball["sphere"]["radius"], -above["half_space"]["point"][2]
 
 
 def _height(plane: dict, positions: np.ndarray) -> np.ndarray:
