@@ -1,7 +1,7 @@
 //! Loss of stability, seen in the motion itself or searched among smooth modes.
 #![allow(non_snake_case)]
 
-use crate::algebra::packed::{axpy, largest};
+use crate::algebra::packed::{axpy, dot, largest};
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::error::{Error, Instability};
 use crate::geometry::indices;
@@ -10,7 +10,7 @@ use crate::model::essential::ConstraintForces;
 use crate::motion::internal_force::Workspace;
 use crate::motion::state::State;
 use crate::motion::tangent::Tangent;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Δu·Δf_int of a step between displacements that the conditions leave free, which is
@@ -41,6 +41,42 @@ pub(crate) struct Stability {
     in_turn: usize,
     /// The first one.
     pub found: Option<Instability>,
+    /// Products with the tangent that looked for it.
+    pub products: usize,
+}
+
+/// An equilibrium.
+#[derive(Clone, Copy)]
+pub(crate) struct Here<'a> {
+    pub step: usize,
+    /// \[s\]
+    pub time: f64,
+    /// \[m\]
+    pub displacement: &'a [f64],
+    /// Nodes in contact.
+    pub touching: &'a [u32],
+    /// Free unbalanced forces \[N\], where they are known.
+    pub unbalanced: Option<&'a [f64]>,
+}
+
+impl<'a> Here<'a> {
+    /// That of a state.
+    pub fn of(state: &'a State) -> Here<'a> {
+        let State { step, time, displacement, contact, .. } = state;
+        Here {
+            step: *step,
+            time: *time,
+            displacement,
+            touching: &contact.touching,
+            unbalanced: None,
+        }
+    }
+}
+
+/// A motion, and the work of the tangent along it.
+pub(crate) struct Mode {
+    pub motion: Vec<f64>,
+    pub curvature: Curvature,
 }
 
 impl Stability {
@@ -48,21 +84,41 @@ impl Stability {
     pub fn observe(&mut self, model: &Model, state: &State, change: &[f64], curvature: Curvature) {
         self.in_turn = if curvature.is_negative() { self.in_turn + 1 } else { 0 };
         if self.in_turn == IN_TURN && self.found.is_none() {
-            self.found = Some(instability(model, state, change));
+            self.found = Some(instability(model, state.step, change));
         }
     }
 
-    /// Looks for a mode away from the equilibrium that has been reached; returns the
-    /// number of products with the tangent.
-    pub fn search(&mut self, model: &Model, state: &State, workspace: &mut Workspace) -> usize {
-        let State { displacement, time, contact, .. } = state;
-        let (products, mode) =
-            negative_mode(model, displacement, *time, &contact.touching, workspace);
-        match (&mut self.found, mode) {
+    /// Looks for a mode away from the equilibrium that has been reached.
+    pub fn search(
+        &mut self,
+        model: &Model,
+        here: Here,
+        workspace: &mut Workspace,
+    ) -> Option<Vec<f64>> {
+        let mode = self.softest(model, here, workspace).filter(|mode| mode.curvature.is_negative());
+        match (&mut self.found, &mode) {
             (Some(found), mode) => found.passed = mode.is_none(),
-            (None, mode) => self.found = mode.map(|mode| instability(model, state, &mode)),
+            (None, Some(mode)) => self.found = Some(instability(model, here.step, &mode.motion)),
+            (None, None) => {}
         }
-        products
+        mode.map(|mode| mode.motion)
+    }
+
+    /// The softest mode of the equilibrium that has been reached.
+    pub fn softest(
+        &mut self,
+        model: &Model,
+        here: Here,
+        workspace: &mut Workspace,
+    ) -> Option<Mode> {
+        let (products, mode) = softest_mode(model, here, workspace);
+        self.products += products;
+        mode
+    }
+
+    /// The body has left an equilibrium along a motion.
+    pub fn left(&mut self, model: &Model, step: usize, motion: &[f64]) {
+        self.found.get_or_insert_with(|| instability(model, step, motion)).passed = true;
     }
 
     /// An error of the run with the instability that led to it.
@@ -77,20 +133,14 @@ impl Stability {
 /// Highest total degree of the fields in which a negative mode is searched.
 const DEGREE: i32 = 2;
 
-/// A mode of the tangent with negative curvature at displacements `u` \[m\] under the
-/// conditions of time `t` \[s\], among fields that are polynomials times the distances to the
+/// The mode of the tangent with the least curvature at an equilibrium, among fields that are polynomials times the distances to the
 /// nodes that each condition holds in their component, and to those `touching` obstacles: bodies buckle and topple in such smooth modes, which
 /// iterations from a random start would find last. The first number is that of products
 /// with the tangent (method book, eq. 20.7).
-pub(crate) fn negative_mode(
-    model: &Model,
-    u: &[f64],
-    t: f64,
-    touching: &[u32],
-    workspace: &mut Workspace,
-) -> (usize, Option<Vec<f64>>) {
-    let mut tangent = Tangent::new(model, u, t, workspace);
-    let fields = smooth_fields(model, t, touching);
+fn softest_mode(model: &Model, here: Here, workspace: &mut Workspace) -> (usize, Option<Mode>) {
+    let u = here.displacement;
+    let mut tangent = Tangent::new(model, u, here.time, workspace);
+    let fields = smooth_fields(model, here.time, here.touching);
     let images: Vec<Vec<f64>> = fields.iter().map(|field| tangent.stiffness_times(field)).collect();
     let n = fields.len();
     let columns = |fields: &[Vec<f64>]| DMatrix::from_iterator(u.len(), n, fields.concat());
@@ -109,13 +159,46 @@ pub(crate) fn negative_mode(
         gram.eigenvectors[(i, kept[j])] / gram.eigenvalues[kept[j]].sqrt()
     });
     let eigen = (basis.transpose() * form * &basis).symmetric_eigen();
-    let weights = basis * eigen.eigenvectors.column(eigen.eigenvalues.imin());
-    let mut mode = vec![0.0; u.len()];
-    (0..n).for_each(|i| axpy(&mut mode, weights[i], &fields[i]));
-    let image = tangent.stiffness_times(&mode);
-    let works = mode.iter().zip(&image).map(|(u, f)| u * f);
+    let (least, most) = (eigen.eigenvalues.min(), eigen.eigenvalues.amax());
+    let alike = |&k: &usize| eigen.eigenvalues[k] - least <= ALIKE.0 * least.abs() + ALIKE.1 * most;
+    let softest: Vec<usize> = (0..kept.len()).filter(alike).collect();
+    let modes = basis * eigen.eigenvectors.select_columns(&softest);
+    let weights = &modes * weights_of(model, here, least, &(&all * &modes));
+    let mut motion = vec![0.0; u.len()];
+    (0..n).for_each(|i| axpy(&mut motion, weights[i], &fields[i]));
+    let image = tangent.stiffness_times(&motion);
+    let works = motion.iter().zip(&image).map(|(u, f)| u * f);
     let curvature = Curvature { work: works.clone().sum(), sizes: works.map(f64::abs).sum() };
-    (n + 1, curvature.is_negative().then_some(mode))
+    (n + 1, Some(Mode { motion, curvature }))
+}
+
+/// Differences of curvatures over the least and over the largest that count as none \[–\].
+const ALIKE: (f64, f64) = (1e-3, 1e-9);
+/// Displacements along a motion over those that unbalanced forces may have made, and over all, from
+/// which they are no round-off \[–\].
+const CERTAIN: (f64, f64) = (10.0, 1e-9);
+
+/// Weights of orthonormal motions, columns, of the curvature `least` \[N/m\], in the motion to look
+/// at: the part of the displacements in them, or where that is round-off, of a field without a
+/// symmetry. Round-off would choose otherwise to which side a body buckles.
+fn weights_of(model: &Model, here: Here, least: f64, motions: &DMatrix<f64>) -> DVector<f64> {
+    let part = |field: &[f64]| motions.tr_mul(&DVector::from_column_slice(field));
+    let (u, d) = (here.displacement, model.components);
+    let moved = part(u);
+    let by_chance = here.unbalanced.map_or(f64::INFINITY, |force| part(force).norm() / least.abs());
+    let round_off = CERTAIN.1 * dot(u, u).sqrt();
+    if moved.norm() > CERTAIN.0 * by_chance + round_off {
+        return moved.normalize();
+    }
+    let slanted = (0..u.len()).map(|i| {
+        let x = (model.positions[i / d] - model.positions[0]) / model.extent;
+        [1.0, 0.61, 0.37][i % d] * (1.0 + 0.43 * x.x + 0.29 * x.y + 0.19 * x.z)
+    });
+    let along = part(&slanted.collect::<Vec<f64>>());
+    match along.norm() > 0.0 {
+        true => along.normalize(),
+        false => DVector::from_element(motions.ncols(), 1.0),
+    }
 }
 
 /// Fields of one component each that the conditions allow \[field\]\[component of node\].
@@ -181,11 +264,11 @@ fn distance_to(model: &Model, nodes: &[u32]) -> Vec<f64> {
     model.positions.par_iter().map(distance).collect()
 }
 
-fn instability(model: &Model, state: &State, motion: &[f64]) -> Instability {
+fn instability(model: &Model, step: usize, motion: &[f64]) -> Instability {
     let (node, _) = fastest_node(model, motion);
     let size = largest(motion).max(f64::MIN_POSITIVE);
     Instability {
-        step: state.step,
+        step,
         node,
         position: model.positions[node],
         mode: motion.iter().map(|u| u / size).collect(),

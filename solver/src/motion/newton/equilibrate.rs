@@ -1,6 +1,7 @@
 //! Newton's method towards a static solution, the load in as few parts as it takes.
 
-use super::increment::Unsolved;
+use super::branch::{AHEAD, Branch};
+use super::increment::{Load, Unsolved};
 use super::pressures::can_be_unknowns;
 use super::solver::{Equilibrium, Solver};
 use crate::algebra::packed::dot;
@@ -18,6 +19,9 @@ use crate::problem::Newton;
 const SMALLEST_INCREMENT: f64 = 1e-3;
 /// The same where pressures are unknowns, which are given up there.
 const SMALLEST_WITH_PRESSURES: f64 = 0.02;
+/// Fraction of the load above which it is halved where the body cannot be led away from an
+/// unstable equilibrium.
+const LARGEST_UNSTABLE: f64 = 0.1;
 /// Residual of the increments before the last one, unless more is allowed at the end \[–\].
 const PASSING_TOLERANCE: f64 = 1e-4;
 
@@ -35,17 +39,30 @@ pub(crate) fn equilibrate(
     let mut buffers = Buffers::new(model, false);
     let mut solver = Solver::new(model, settings, state, &mut buffers);
     let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
+    let load_at = |fraction: f64| {
+        let passing = settings.tolerance.max(PASSING_TOLERANCE);
+        Load { fraction, tolerance: if fraction == 1.0 { settings.tolerance } else { passing } }
+    };
+    let mut branch = Branch::default();
     let (mut reached, mut increment) = (0.0, 1.0f64);
     while reached < 1.0 && !stopped {
         // No tiny last increment.
         let fraction = if reached + 1.5 * increment > 1.0 { 1.0 } else { reached + increment };
-        let last = fraction == 1.0;
-        let tolerance = match last {
-            true => settings.tolerance,
-            false => settings.tolerance.max(PASSING_TOLERANCE),
-        };
-        match solver.solve(&state.displacement, fraction, tolerance, &mut buffers, observer) {
+        let load = load_at(fraction);
+        let kept = (solver.contacts.clone(), solver.pressures.clone());
+        match solver.solve(&state.displacement, load, &mut buffers, observer) {
             Ok(equilibrium) => {
+                let found = branch.stable(&mut solver, equilibrium, load, &mut buffers, observer);
+                let equilibrium = match found {
+                    Ok(stable) => stable,
+                    Err(_) if fraction - reached > LARGEST_UNSTABLE => {
+                        // Nearer to where it lost its stability it has fewer ways to go.
+                        (solver.contacts, solver.pressures) = kept;
+                        increment = 0.5 * (fraction - reached);
+                        continue;
+                    }
+                    Err(unstable) => branch.stay_on(*unstable),
+                };
                 let jacobian = equilibrium.exact().smallest_jacobian.jacobian;
                 solver.accept(equilibrium, fraction, state, &mut buffers);
                 reached = fraction;
@@ -72,6 +89,13 @@ pub(crate) fn equilibrate(
                     increment = 1.0 - reached;
                 }
                 if increment < SMALLEST_INCREMENT {
+                    let load = load_at((reached + AHEAD).min(1.0));
+                    let beyond = branch.beyond(&mut solver, state, load, &mut buffers, observer);
+                    if let Some(equilibrium) = beyond {
+                        solver.accept(equilibrium, load.fraction, state, &mut buffers);
+                        (reached, increment) = (load.fraction, AHEAD);
+                        continue;
+                    }
                     return Err(Error::NoEquilibrium {
                         reached,
                         iterations: solver.counts.iterations,
@@ -83,12 +107,8 @@ pub(crate) fn equilibrate(
             }
         }
     }
-    let mut stability = Stability::default();
-    let products = match stopped {
-        true => 0,
-        false => stability.search(model, state, &mut buffers.workspace),
-    };
-    Ok(solver.summary(state, stopped, stability.found, products))
+    let Stability { found, products, .. } = branch.stability;
+    Ok(solver.summary(state, stopped, found, products))
 }
 
 impl Solver<'_> {

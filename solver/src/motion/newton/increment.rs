@@ -34,6 +34,15 @@ const TOO_FAR: f64 = 10.0;
 /// Factor of the shift while a body falls that touches nothing \[–\].
 const FALLING: f64 = 0.5;
 
+/// What an equilibrium is looked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Load {
+    /// Of the whole load \[–\].
+    pub fraction: f64,
+    /// Of the residual \[–\].
+    pub tolerance: f64,
+}
+
 /// Why an increment has no equilibrium.
 pub(super) enum Unsolved {
     Failed {
@@ -49,14 +58,14 @@ impl Solver<'_> {
     pub fn solve(
         &mut self,
         start: &[f64],
-        fraction: f64,
-        tolerance: f64,
+        load: Load,
         buffers: &mut Buffers,
         observer: &mut dyn Observer,
     ) -> Result<Equilibrium, Unsolved> {
         let (contacts, pressures) = (self.contacts.clone(), self.pressures.clone());
+        let fraction = load.fraction;
         let asked = largest(&self.jump(start, fraction));
-        let solved = self.iterate(start, fraction, tolerance, buffers, observer);
+        let solved = self.iterate(start, load, buffers, observer);
         // Whatever an iteration does, it may not end short of what is prescribed.
         let solved =
             solved.and_then(|now| match is_left(&self.jump(&now.u, fraction), asked, &now.u) {
@@ -75,8 +84,7 @@ impl Solver<'_> {
     fn iterate(
         &mut self,
         start: &[f64],
-        fraction: f64,
-        tolerance: f64,
+        Load { fraction, tolerance }: Load,
         buffers: &mut Buffers,
         observer: &mut dyn Observer,
     ) -> Result<Equilibrium, Unsolved> {
@@ -250,8 +258,8 @@ impl Solver<'_> {
             .with_pressures(self.pressures.as_ref().map(|pressures| pressures.own.clone()));
         let saddle = self.pressures.as_ref().map(|pressures| pressures.saddle(model));
         let residual = now.imbalance.free(model);
-        let system =
-            System { tangent, residual, change, forcing, sliding, shift: self.shift, saddle };
+        let (shift, guide) = (self.shift, self.guide.as_ref());
+        let system = System { tangent, residual, change, forcing, sliding, shift, guide, saddle };
         let correction = self.linear.solve(model, &mut self.free, system, go_on);
         self.counts.iterations += 1;
         self.counts.products += correction.products;

@@ -1,6 +1,7 @@
 //! Newton's method towards a static solution, with contact.
 
 mod active_contacts;
+mod branch;
 mod drift;
 mod equilibrate;
 mod free_space;

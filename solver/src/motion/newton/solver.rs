@@ -2,7 +2,7 @@
 
 use super::active_contacts::ActiveContacts;
 use super::free_space::FreeSpace;
-use super::linear::Solver as LinearSolver;
+use super::linear::{Guide, Solver as LinearSolver};
 use super::load_path::Path;
 use super::pressures::{Pressures, are_unknowns, most};
 use crate::model::Model;
@@ -31,6 +31,8 @@ pub(super) struct Solver<'a> {
     pub(super) shift: f64,
     /// Of the patches, where they are unknowns beside the displacements.
     pub(super) pressures: Option<Pressures>,
+    /// Of a body that is led away from an equilibrium.
+    pub(super) guide: Option<Guide>,
 }
 
 /// Displacements in equilibrium at a fraction of the load.
@@ -70,6 +72,7 @@ impl<'a> Solver<'a> {
             floating: !model.contact.obstacles.is_empty() && !held(),
             shift: 0.0,
             pressures: None,
+            guide: None,
         };
         // Before anything fades: the conditions and forces at the start.
         let forces = &mut solver.free.forces;
@@ -107,6 +110,9 @@ impl<'a> Solver<'a> {
     ) -> Imbalance {
         self.counts.evaluations += 1;
         self.path.external_force(self.model, fraction, &mut buffers.f_ext);
+        if let Some(guide) = &self.guide {
+            guide.add_force(u, &mut buffers.f_ext);
+        }
         let (t, forces) = (self.path.time(fraction), &mut self.free.forces);
         let mut imbalance = Imbalance::with_pressures(self.model, (u, own), t, buffers, forces);
         self.free.project_contacts(&mut imbalance.acceleration);

@@ -7,7 +7,7 @@ use crate::model::rigid_motions::free_rigid_motions;
 use crate::motion::balance::Imbalance;
 use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::relaxation::damping::Damping;
-use crate::motion::stability::{Stability, fastest_node};
+use crate::motion::stability::{Here, Stability, fastest_node};
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, Scheme, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};
@@ -79,14 +79,13 @@ pub(crate) fn relax(
         let jacobian = report.smallest_jacobian.jacobian;
         let stop = notify(model, state, jacobian, progress, observer) == Continue::Stop;
         if converged || stop {
-            let stability_products = match converged {
-                true => stability.search(model, state, &mut buffers.workspace),
-                false => 0,
-            };
+            if converged {
+                stability.search(model, Here::of(state), &mut buffers.workspace);
+            }
             let summary = control.summary(state, residuals, stop && !converged);
             // Stopped early, it may never have been assessed.
             let relaxation = convergence.residual.is_finite().then_some(convergence);
-            let instability = stability.found;
+            let Stability { found: instability, products: stability_products, .. } = stability;
             return Ok(Summary { relaxation, instability, stability_products, ..summary });
         }
         if last || decay.has_stalled(count, report.largest_increment) && loaded {

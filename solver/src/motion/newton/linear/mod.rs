@@ -3,10 +3,12 @@
 mod coarse_matrix;
 mod coarse_space;
 mod conjugate_gradients;
+mod guide;
 mod minimal_residuals;
 mod nodal_values;
 mod preconditioner;
 mod system;
 
 pub(super) use conjugate_gradients::Solver;
+pub(super) use guide::Guide;
 pub(super) use system::{Correction, Saddle, SaddlePatch, System};

@@ -1,5 +1,6 @@
 //! The system of a correction, and its solution.
 
+use super::guide::Guide;
 use crate::algebra::tensor::Matrix3;
 use crate::model::Model;
 use crate::motion::tangent::Tangent;
@@ -31,6 +32,8 @@ pub(crate) struct System<'a> {
     pub sliding: Vec<(u32, Matrix3)>,
     /// Part of the diagonal D that is added to K, against large steps \[–\].
     pub shift: f64,
+    /// A spring that leads the body.
+    pub guide: Option<&'a Guide>,
     /// The rows of pressures that are unknowns.
     pub saddle: Option<Saddle>,
 }
@@ -96,6 +99,9 @@ impl System<'_> {
             }
         }
         add_sliding(model, &self.sliding, v, &mut product);
+        if let Some(guide) = self.guide {
+            guide.add_stiffness_times(v, &mut product);
+        }
         product
     }
 }
