@@ -20,6 +20,8 @@ const STEP: f64 = 0.1;
 const TURNED: f64 = 0.4;
 /// Outward normals with a smaller product face each other across the outside.
 const FACING: f64 = -0.3;
+/// Where between two places the outside beside one of them is looked at \[half of the way across\].
+const BEFORE: f64 = 0.1;
 /// Steps along a way outside \[length\].
 const FINE: f64 = 0.01;
 /// Farther outside than this is straight between two faces \[half of the way across\].
@@ -122,9 +124,11 @@ impl Shape {
         let (middle, half) = (0.5 * (X + Y), 0.5 * (Y - X).norm());
         let distance = self.signed_distance(&middle);
         let is_out = |X: &Vector3| self.signed_distance(X).max(0.0);
+        // On a corner round-off chooses one of its faces; beside it the one towards the other place is the nearest.
+        let away = |X: &Vector3| self.gradient(&(X + BEFORE * (middle - X)));
         distance > THIN * half
             && distance > 2.0 * is_out(X).max(is_out(Y))
-            && (distance > STRAIGHT * half || self.gradient(X).dot(&self.gradient(Y)) < FACING)
+            && (distance > STRAIGHT * half || away(X).dot(&away(Y)) < FACING)
     }
 }
 

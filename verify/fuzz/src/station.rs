@@ -54,7 +54,8 @@ impl Station {
         let start = std::time::Instant::now();
         let answer = {
             let stderr = self.sandbox.messages();
-            let limits = &self.limits;
+            let cpu_s = target.calls() * self.limits.cpu_s;
+            let limits = &Limits { cpu_s, ..self.limits };
             let worker = match self.workers.entry(target) {
                 std::collections::btree_map::Entry::Occupied(entry) => entry.into_mut(),
                 std::collections::btree_map::Entry::Vacant(entry) => {

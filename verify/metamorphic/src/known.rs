@@ -39,11 +39,13 @@ pub const KNOWN: &[Known] = &[
     },
     Known {
         relation: "united_with_itself",
-        scenes: "wedges of two materials",
-        has: |scene| scene.form == Form::Wedge && scene.inclusion.is_some(),
+        scenes: "wedges and cylinders of two materials",
+        has: |scene| {
+            matches!(scene.form, Form::Wedge | Form::Cylinder) && scene.inclusion.is_some()
+        },
         figure: "0.0001",
-        reason: "the smallest cells at the re-entrant edge are cut by each member in turn, in other \
-                 pieces",
+        reason: "the smallest cells at a re-entrant edge, or where a border between materials passes a \
+                 curved wall, are cut by each member in turn, in other pieces",
     },
     Known {
         relation: "volume_of_a_flat_body",
@@ -77,7 +79,56 @@ pub const KNOWN: &[Known] = &[
         reason: "obstacles push nodes after conditions were imposed, and the value at a held node \
                  is a mean over its neighbours; the audit doubts the run where it matters",
     },
+    Known {
+        relation: "one_material_in_two_regions",
+        scenes: "motions",
+        has: |scene| !scene.is_static(),
+        figure: "1.3",
+        reason: "a wave in a few steps over three to six spacings: the middle of such a body moves by 5.9 or \
+                 4.9 % of its size at one spacing and at half of it",
+    },
+    Known {
+        relation: "as_voxels",
+        scenes: "motions",
+        has: |scene| !scene.is_static(),
+        figure: "0.8",
+        reason: "as above: another cloud is another wave",
+    },
+    Known {
+        relation: "turned_or_mirrored_in_other_pieces",
+        scenes: "bodies of three spacings with curved faces",
+        has: |scene| scene.spacings <= 3 && scene.form != Form::Box,
+        figure: "0.5",
+        reason: "along the shortest of its edges such a body has one or two spacings, and a pressure on \
+                 panels of half a spacing moves it as these are cut",
+    },
+    Known {
+        relation: "cloud_of_a_moved_body",
+        scenes: "domes with a held end",
+        has: ends_on_a_dome,
+        figure: "0.00000002",
+        reason: "the way from the edge of what is held to the nodes beside it is a mean over the panels \
+                 about the edge, and hangs on digits beyond the eighth",
+    },
+    Known {
+        relation: "a_hair_larger",
+        scenes: "domes with a held end",
+        has: ends_on_a_dome,
+        figure: "0.000002",
+        reason: "as above",
+    },
+    Known {
+        relation: "lengths_times_thousand",
+        scenes: "domes with a held end",
+        has: ends_on_a_dome,
+        figure: "0.000002",
+        reason: "as above",
+    },
 ];
+
+fn ends_on_a_dome(scene: &Scene) -> bool {
+    scene.form == Form::Dome && scene.holds.iter().any(|hold| ends_within_a_face(&hold.part))
+}
 
 fn ends_within_a_face(part: &Part) -> bool {
     match part {
