@@ -139,10 +139,13 @@ impl Run<'_> {
             (X, regions[part].material.density * size * acceleration)
         };
         let forces: Vec<(Vector3, Vector3)> = of_regions.map(force).collect();
-        let volumes = sampled.volumes.iter().take(regions.len());
-        let (size, doubt) = volumes.fold((0.0, 0.0), |(s, d), v| (s + v.size, d + v.doubt));
+        let masses = sampled.volumes.iter().zip(regions).map(|(volume, region)| {
+            let density = region.material.density;
+            (density * volume.size, density * volume.doubt)
+        });
+        let (mass, doubt) = masses.fold((0.0, 0.0), |(m, d), (mass, doubt)| (m + mass, d + doubt));
         let mut resultant = Resultant { forces, doubt: 0.0 };
-        resultant.doubt = doubt / size.max(f64::MIN_POSITIVE) * resultant.size();
+        resultant.doubt = doubt / mass.max(f64::MIN_POSITIVE) * resultant.size();
         Ok(resultant)
     }
 

@@ -1,6 +1,7 @@
 //! The cells, from the coarsest to those in which the signed distance is linear.
 #![allow(non_snake_case)]
 
+use super::cost::{cost, cost_of, has_labels};
 use super::level::level;
 use super::simplex::{Halves, OF_BOX, Tetrahedron, vector_area, volume};
 use super::surface::Facet;
@@ -26,17 +27,16 @@ const SAMPLED_CELL: (f64, f64) = (0.5, 0.25);
 /// Deviation of the signed distance from a linear function over the edge of the cell \[–\]: with
 /// it a ball of radius R is cut in cells of 0.08 R and its volume is right to 0.1 %.
 const BEND: f64 = 0.01;
+/// Bend over the edge of a cell from which on a border is not curved but has two sides in the cell, and
+/// what is hidden there over it \[–\].
+const KINK: f64 = 0.1;
+const HIDDEN: f64 = 2.0;
 /// Tetrahedra that a part without distances passes are halved so often.
 const HALVINGS: usize = 3;
 /// Part of a cell that such a part may be off by \[–\], where pieces of 1/48 of it are asked.
 const BY_PLACES: f64 = 0.45;
 /// The nodes of a body from an image may take so many times that: its set-up takes seconds.
 const OF_IMAGE: usize = 4;
-/// Cost of a signed distance of a shape that is no primitive, over that of one that is \[–\].
-const OF_LABELS: usize = 1;
-const OF_TRIANGLES: usize = 40;
-/// The same of a part without distances, which is asked at many places of a cell.
-const OF_PLACES: usize = 4;
 /// Signed distances of a primitive that are spent in all: a few milliseconds, and per node, about
 /// as much as a step of the solution costs there.
 const BUDGET: (usize, usize) = (60_000, 30);
@@ -102,8 +102,8 @@ struct Cut {
     /// Deviation of the signed distance from a linear function \[m\].
     bend: f64,
     edge: bool,
-    /// The same of the borders between parts \[m\].
-    border_bend: f64,
+    /// The same of the borders of the parts that may lie in the cell: part, \[m\].
+    border_bends: Vec<(usize, f64)>,
     /// Whether the pieces were told by places, not by distances.
     by_places: bool,
 }
@@ -148,36 +148,6 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     }
     sampled.volumes.iter_mut().for_each(|part| part.doubt += part.variance.sqrt());
     Ok(sampled)
-}
-
-fn has_labels(shape: &Shape) -> bool {
-    match shape {
-        Shape::Union(members) | Shape::Intersection(members) => members.iter().any(has_labels),
-        Shape::Difference(body, hole) => has_labels(body) || has_labels(hole),
-        _ => matches!(shape, Shape::Labels(_)),
-    }
-}
-
-/// Signed distances of a primitive that take as long as one of a shape.
-fn cost(shape: &Shape) -> usize {
-    match shape {
-        Shape::Union(members) | Shape::Intersection(members) => members.iter().map(cost).sum(),
-        Shape::Difference(body, hole) => cost(body) + cost(hole),
-        Shape::Labels(_) => OF_LABELS,
-        Shape::Surface(_) | Shape::Function(_) => OF_TRIANGLES,
-        _ => 1,
-    }
-}
-
-fn cost_of(part: &Selector) -> usize {
-    match part {
-        Selector::Inside { shape, .. } => cost(shape),
-        Selector::Union(parts) | Selector::Intersection(parts) => parts.iter().map(cost_of).sum(),
-        Selector::Not(part) => cost_of(part),
-        Selector::All | Selector::Plane { .. } => 0,
-        Selector::Label { .. } => OF_PLACES,
-        Selector::Facing { .. } => 1,
-    }
 }
 
 impl Cell {
@@ -313,20 +283,25 @@ impl Divided<'_> {
         let filled = volumes.into_iter().enumerate().filter(|(_, (_, size))| *size > 0.0);
         let pieces = filled.map(|(part, (first, size))| (first / size, size, part)).collect();
         let edge = is_edge && !halves.border.is_empty();
-        let border_bend = if owner.is_none() { self.bend_of_borders(cell) } else { 0.0 };
-        Fate::Cut(Cut { pieces, facets, bend, edge, by_places, border_bend })
+        let border_bends = if owner.is_none() { self.border_bends(cell) } else { Vec::new() };
+        Fate::Cut(Cut { pieces, facets, bend, edge, by_places, border_bends })
     }
 
-    /// How far the borders between parts are from where a linear function has them \[m\].
-    fn bend_of_borders(&self, cell: &Cell) -> f64 {
-        let of = |part: &&Selector| {
+    /// How far the borders of parts are from where a linear function has them: part, \[m\]. A layer
+    /// that lies between the corners of a cell has all of itself there.
+    fn border_bends(&self, cell: &Cell) -> Vec<(usize, f64)> {
+        let reach = cell.half.x * (self.dimension.components() as f64).sqrt();
+        let of = |(index, part): (usize, &&Selector)| {
             let at = |X: &Vector3| level(part, &self.at(*X), None);
             let (corners, middle) =
                 ([0, 1, 2, 3, 4, 5, 6, 7].map(|n| at(&cell.corner(n))), at(&cell.centre));
-            let is_known = middle.metric && middle.value.is_finite();
-            if is_known { bend(&corners.map(|corner| corner.value), middle.value) } else { 0.0 }
+            let is_known = middle.metric && middle.value.is_finite() && !middle.is_uniform(reach);
+            is_known.then(|| {
+                let bend = bend(&corners.map(|corner| corner.value), middle.value);
+                (index, if bend > KINK * 2.0 * cell.half.x { HIDDEN * bend } else { bend })
+            })
         };
-        self.parts.iter().map(of).fold(0.0, f64::max)
+        self.parts.iter().enumerate().filter_map(of).collect()
     }
 
     /// Divides tetrahedra among the parts, along planes where the level is a distance; whether it
@@ -376,12 +351,18 @@ impl Sampled {
         let area: f64 = cut.facets.iter().map(|facet| vector_area(&facet.corners).norm()).sum();
         let parts = cut.pieces.len() as f64;
         let face = cell.volume() / (2.0 * cell.half.x);
+        let border_bend = cut.border_bends.iter().fold(0.0, |most, (_, bend)| bend.max(most));
+        for (part, bend) in &cut.border_bends {
+            if !cut.pieces.iter().any(|(_, _, other)| other == part) {
+                self.volumes[*part].doubt += bend * face;
+            }
+        }
         for (place, size, part) in &cut.pieces {
             let own = &mut self.volumes[*part];
             own.size += size;
             own.first += *size * place;
             // What a boundary that bends is off, and what several owners may get of another.
-            own.doubt += cut.bend * area / parts + cut.border_bend * face;
+            own.doubt += cut.bend * area / parts + border_bend * face;
             if cut.by_places {
                 own.variance += (BY_PLACES * cell.volume()).powi(2);
             }

@@ -2,6 +2,7 @@
 //! cuts are divided until it is linear in them, and cut there. Nothing here is used to solve.
 
 mod cells;
+mod cost;
 mod level;
 mod simplex;
 mod surface;

@@ -39,3 +39,27 @@ fn the_volume_of_a_label_is_known_within_its_doubt() {
         assert!(found.doubt < 0.4 * volume, "{spacing}: {}", found.doubt);
     }
 }
+
+#[test]
+fn a_layer_that_lies_between_the_corners_of_cells_is_not_denied() {
+    let body = Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(0.1) };
+    for thickness in [1e-3, 3e-3, 6e-3] {
+        let shape = Shape::Box {
+            min: Vector3::new(-1.0, -1.0, 0.0445),
+            max: Vector3::new(1.0, 1.0, 0.0445 + thickness),
+        };
+        let layer = Selector::Inside { shape, tolerance: 0.0 };
+        for spacing in [20e-3, 12.5e-3, 6e-3] {
+            let divided = Divided {
+                body: &body,
+                dimension: &Dimension::Three,
+                parts: vec![&layer, &Selector::All],
+                spacing,
+                nodes: 700,
+            };
+            let found = sample(&divided).unwrap().volumes[0];
+            let error = (found.size - 0.01 * thickness).abs();
+            assert!(error <= found.doubt + 1e-9, "{thickness} {spacing}: {error} {found:?}");
+        }
+    }
+}
