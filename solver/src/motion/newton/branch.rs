@@ -115,7 +115,8 @@ impl Branch {
             self.stability.left(model, solver.counts.iterations, &motion);
         }
         self.found_beyond += 1;
-        Some(equilibrium)
+        let stable = self.stable(solver, equilibrium, load, buffers, observer);
+        Some(stable.unwrap_or_else(|unstable| self.stay_on(*unstable)))
     }
 
     /// Gives up to look for another one.

@@ -63,12 +63,9 @@ pub(crate) fn equilibrate(
                     }
                     Err(unstable) => branch.stay_on(*unstable),
                 };
-                let jacobian = equilibrium.exact().smallest_jacobian.jacobian;
-                solver.accept(equilibrium, fraction, state, &mut buffers);
+                stopped = solver.reach(equilibrium, fraction, state, &mut buffers, observer);
                 reached = fraction;
                 increment *= 2.0;
-                let stop = notify(model, state, jacobian, reached, observer);
-                stopped = stop == Continue::Stop;
             }
             Err(Unsolved::Stopped(here)) => {
                 let jacobian = here.exact().smallest_jacobian.jacobian;
@@ -92,7 +89,9 @@ pub(crate) fn equilibrate(
                     let load = load_at((reached + AHEAD).min(1.0));
                     let beyond = branch.beyond(&mut solver, state, load, &mut buffers, observer);
                     if let Some(equilibrium) = beyond {
-                        solver.accept(equilibrium, load.fraction, state, &mut buffers);
+                        let fraction = load.fraction;
+                        stopped =
+                            solver.reach(equilibrium, fraction, state, &mut buffers, observer);
                         (reached, increment) = (load.fraction, AHEAD);
                         continue;
                     }
@@ -112,6 +111,21 @@ pub(crate) fn equilibrate(
 }
 
 impl Solver<'_> {
+    /// Makes an equilibrium the state of the body and shows it; whether the observer ends the
+    /// run.
+    fn reach(
+        &mut self,
+        equilibrium: Equilibrium,
+        fraction: f64,
+        state: &mut State,
+        buffers: &mut Buffers,
+        observer: &mut dyn Observer,
+    ) -> bool {
+        let jacobian = equilibrium.exact().smallest_jacobian.jacobian;
+        self.accept(equilibrium, fraction, state, buffers);
+        notify(self.model, state, jacobian, fraction, observer) == Continue::Stop
+    }
+
     /// Makes an equilibrium the state of the body, at rest.
     pub(super) fn accept(
         &mut self,
