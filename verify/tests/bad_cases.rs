@@ -12,7 +12,6 @@ const BAD_CASES: &[Expected] = &[
     ("syntax_error", 7, "", "unclosed table"),
     ("duplicate_key", 10, "", "duplicate key"),
     ("unknown_key", 9, "material.tissue.densty", "did you mean `density`?"),
-    ("old_key", 16, "discretisation.dilatation", "is now `volumetric_projection = \"none\"`; `mtled case migrate "),
     ("unknown_table", 26, "solver", "is not a key that is known here; expected one of title"),
     ("unknown_law", 8, "material.tissue.law", "did you mean `neo_hookean_log_j`?"),
     ("unknown_shape", 5, "geometry.shape", "`cube` is not a choice that is known here"),

@@ -76,14 +76,13 @@ fn help_and_version_are_data() {
 
 #[test]
 fn wrong_usage_ends_with_code_2_and_a_message_on_standard_error() {
-    let wrong: [&[&str]; 11] = [
+    let wrong: [&[&str]; 10] = [
         &[],
         &["slove"],
         &["solve", "--nodes", "3"],
         &["solve", "no_such_case.toml"],
         &["case", "check", "no_such_case.toml"],
         &["case", "show", "no_such_case"],
-        &["case", "migrate", "no_such_case.toml"],
         &["inspect"],
         &["inspect", "no_such_case.toml"],
         &["inspect", "no_such_case.toml", "--modes", "sometimes"],
@@ -163,37 +162,6 @@ fn a_wrong_key_is_located() {
         assert!(err.contains("case.toml:9") && err.contains("did you mean `density`?"), "{err}");
     }
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1, "something was written");
-}
-
-#[test]
-fn an_old_key_is_updated_in_place_and_a_check_writes_nothing() {
-    let old = "spacing = 0.02\ndilatation = \"projected\" # of J";
-    let (_dir, case) = case_with("spacing = 0.02", old);
-    let before = std::fs::read_to_string(&case).unwrap();
-    let path = case.to_str().unwrap();
-    let (code, out, err) = run(&["case", "migrate", "--check", path]);
-    assert_eq!((code, err.as_str()), (0, ""));
-    assert!(out.starts_with(path) && out.contains("volumetric_projection"), "{out}");
-    assert_eq!(std::fs::read_to_string(&case).unwrap(), before);
-    assert_eq!(run(&["case", "check", path]).0, 2);
-    assert_eq!(run(&["case", "migrate", path]), (0, out, String::new()));
-    let after = std::fs::read_to_string(&case).unwrap();
-    let new = "volumetric_projection = \"patches\" # of J";
-    assert_eq!(after, before.replace("dilatation = \"projected\" # of J", new));
-    assert_eq!(run(&["case", "check", path]).0, 0);
-    let (code, out, _) = run(&["case", "migrate", path]);
-    assert!(code == 0 && out.ends_with("nothing to change\n"), "{out}");
-    assert_eq!(std::fs::read_to_string(&case).unwrap(), after);
-}
-
-#[test]
-fn a_file_that_is_not_toml_is_not_migrated() {
-    let (_dir, case) = case_with("density = 1000.0", "density = = 1000.0");
-    let before = std::fs::read_to_string(&case).unwrap();
-    let (code, out, err) = run(&["case", "migrate", case.to_str().unwrap()]);
-    assert_eq!((code, out.as_str()), (2, ""));
-    assert!(err.contains("case.toml"), "{err}");
-    assert_eq!(std::fs::read_to_string(&case).unwrap(), before);
 }
 
 #[test]

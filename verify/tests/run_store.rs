@@ -302,29 +302,9 @@ fn list_and_export_take_the_same_filters_and_say_what_does_not_fit() {
     for (wrong, message) in [
         (&["--where", "dilatoin=1.6"][..], "did you mean `dilation`?"),
         (&["--since", "yesterday"], "is not a day such as 2026-01-31"),
-        (&["--format", "json"], "[possible values: csv, parquet]"),
-        (&["--format", "parquet"], "name it with --output"),
+        (&["-o", "runs.parquet"], "name a file that ends in .csv"),
     ] {
         let (code, _, err) = filtered("export", wrong);
         assert!(code == 2 && err.contains(message), "{wrong:?}: {err}");
-    }
-}
-
-#[test]
-fn the_ending_of_a_file_decides_between_csv_and_parquet_unless_the_format_is_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    store_of_one(folder, "runs");
-    for (arguments, start) in [
-        (&["-o", "deep/a.parquet"][..], "PAR1"),
-        (&["-o", "b.csv"], "key,run,case_name"),
-        (&["-o", "c.parquet", "--format", "csv"], "key,run,case_name"),
-        (&["-o", "d", "--format", "parquet"], "PAR1"),
-    ] {
-        let all = [&["runs", "export", "--store", "runs"], arguments].concat();
-        let (code, out, err) = run(folder, &all);
-        assert!(code == 0 && out.contains(" rows of 1 runs in "), "{out}{err}");
-        let bytes = std::fs::read(folder.join(arguments[1])).unwrap();
-        assert!(bytes.starts_with(start.as_bytes()), "{arguments:?}");
     }
 }

@@ -261,11 +261,10 @@ fn every_command_prints_one_json_document_where_json_is_asked_for() {
     let (_dir, folder) = folder_with(&[BLOCK, STATIC]);
     std::fs::create_dir(folder.join("store")).unwrap();
     let shard = ["study", "consistency", "case.toml", "--dilation", "2", "--shard", "1/1"];
-    let commands: [(&[&str], &str); 8] = [
+    let commands: [(&[&str], &str); 7] = [
         (&["case", "list"], "/0"),
         (&["case", "show", "uniaxial_bar"], "/text"),
         (&["case", "check", "case.toml", "uniaxial_bar"], "/cases/1/valid"),
-        (&["case", "migrate", "--check", "case.toml"], "/files/0/changes"),
         (&shard, "/stored"),
         (&["runs", "list"], "/0/key"),
         (&["runs", "prune"], "/removed/records"),

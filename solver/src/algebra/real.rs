@@ -25,7 +25,12 @@ pub trait Real:
     fn power_minus_two_thirds(self) -> Self;
     /// g(A) = Σ_k g(a_k) n_k ⊗ n_k of a symmetric tensor (method book, eq. 3.17).
     fn isotropic(a: &[[Self; 3]; 3], g: &impl Scalar) -> [[Self; 3]; 3];
+    /// A function of a tensor that takes one number after the other, with its derivative.
+    fn one_by_one(a: &[[Self; 3]; 3], f: &impl Fn(&Single) -> Single) -> [[Self; 3]; 3];
 }
+
+/// A tensor at one point with its derivative in one direction.
+pub type Single = [[Dual<f64>; 3]; 3];
 
 impl Real for f64 {
     #[inline(always)]
@@ -48,6 +53,10 @@ impl Real for f64 {
     #[inline(always)]
     fn isotropic(a: &[[f64; 3]; 3], g: &impl Scalar) -> [[f64; 3]; 3] {
         isotropic(a, g)
+    }
+
+    fn one_by_one(a: &[[f64; 3]; 3], f: &impl Fn(&Single) -> Single) -> [[f64; 3]; 3] {
+        without_slopes(a, f)
     }
 }
 
@@ -88,6 +97,11 @@ impl<S: Simd> Real for f64x8<S> {
     #[inline(always)]
     fn isotropic(a: &[[Self; 3]; 3], g: &impl Scalar) -> [[Self; 3]; 3] {
         isotropic(a, g)
+    }
+
+    #[inline(always)]
+    fn one_by_one(a: &[[Self; 3]; 3], f: &impl Fn(&Single) -> Single) -> [[Self; 3]; 3] {
+        without_slopes(a, f)
     }
 }
 
@@ -136,6 +150,70 @@ impl<R: Real + Plain> Real for Dual<R> {
             }
         }
         result
+    }
+
+    #[inline(always)]
+    fn one_by_one(a: &[[Self; 3]; 3], f: &impl Fn(&Single) -> Single) -> [[Self; 3]; 3] {
+        one_by_one(a, f)
+    }
+}
+
+/// A function of a tensor, point after point.
+#[inline(always)]
+fn one_by_one<R: Plain>(
+    a: &[[Dual<R>; 3]; 3],
+    f: &impl Fn(&Single) -> Single,
+) -> [[Dual<R>; 3]; 3] {
+    let mut result = *a;
+    for lane in 0..R::COUNT {
+        let at = |x: Dual<R>| Dual { value: x.value.get(lane), slope: x.slope.get(lane) };
+        let own = f(&a.map(|row| row.map(at)));
+        for (entry, own) in result.iter_mut().flatten().zip(own.iter().flatten()) {
+            entry.value.set(lane, own.value);
+            entry.slope.set(lane, own.slope);
+        }
+    }
+    result
+}
+
+#[inline(always)]
+fn without_slopes<R: Plain>(a: &[[R; 3]; 3], f: &impl Fn(&Single) -> Single) -> [[R; 3]; 3] {
+    one_by_one(&a.map(|row| row.map(|value| Dual { value, slope: value * 0.0 })), f)
+        .map(|row| row.map(|x| x.value))
+}
+
+impl From<f64> for Dual<Dual<f64>> {
+    fn from(value: f64) -> Self {
+        let fixed = |value| Dual { value, slope: 0.0 };
+        Dual { value: fixed(value), slope: fixed(0.0) }
+    }
+}
+
+impl Dual<Dual<f64>> {
+    /// g(x), from g, g' and g'' there.
+    fn with(self, [g, first, second]: [f64; 3]) -> Self {
+        let Dual { value: x, slope } = self;
+        let outer = Dual { value: first, slope: second * x.slope };
+        Dual { value: Dual { value: g, slope: first * x.slope }, slope: outer * slope }
+    }
+
+    /// Exponential function.
+    pub fn exp(self) -> Self {
+        let g = self.value.value.exp();
+        self.with([g, g, g])
+    }
+
+    /// Natural logarithm.
+    pub fn ln(self) -> Self {
+        let x = self.value.value;
+        self.with([x.ln(), 1.0 / x, -1.0 / (x * x)])
+    }
+
+    /// x to a power.
+    pub fn powf(self, power: f64) -> Self {
+        let x = self.value.value;
+        let first = power * x.powf(power - 1.0);
+        self.with([x.powf(power), first, power * (power - 1.0) * x.powf(power - 2.0)])
     }
 }
 
@@ -220,6 +298,26 @@ mod tests {
             });
             for (x, power) in chunk.iter().zip(powers) {
                 approx::assert_relative_eq!(power, x.powf(-2.0 / 3.0), max_relative = 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn mixed_slopes_are_derivatives_of_slopes() {
+        type Function = fn(Dual<Dual<f64>>) -> Dual<Dual<f64>>;
+        let functions: [Function; 3] = [|x| (x * x).exp(), |x| (x * 3.0).ln(), |x| x.powf(-1.7)];
+        for function in functions {
+            let at = |x: f64| {
+                let value = Dual { value: x, slope: 1.0 };
+                function(Dual { value, slope: Dual { value: 1.0, slope: 0.0 } })
+            };
+            for x in [0.4, 1.0, 1.5] {
+                let [less, same, more] = [x - 1e-5, x, x + 1e-5].map(at);
+                let first = (more.value.value - less.value.value) / 2e-5;
+                let second = (more.slope.value - less.slope.value) / 2e-5;
+                approx::assert_relative_eq!(same.slope.value, first, max_relative = 1e-7);
+                approx::assert_relative_eq!(same.value.slope, first, max_relative = 1e-7);
+                approx::assert_relative_eq!(same.slope.slope, second, max_relative = 1e-7);
             }
         }
     }

@@ -29,6 +29,12 @@ pub trait Plain:
     fn with_sign_of(self, sign: Self) -> Self;
     /// f of every pair of numbers, one after the other.
     fn each(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self;
+    /// How many stand side by side.
+    const COUNT: usize;
+    /// One of them.
+    fn get(&self, lane: usize) -> f64;
+    /// Changes one of them.
+    fn set(&mut self, lane: usize, value: f64);
 }
 
 impl Plain for f64 {
@@ -45,6 +51,18 @@ impl Plain for f64 {
     #[inline(always)]
     fn each(self, other: f64, f: impl Fn(f64, f64) -> f64) -> f64 {
         f(self, other)
+    }
+
+    const COUNT: usize = 1;
+
+    #[inline(always)]
+    fn get(&self, _: usize) -> f64 {
+        *self
+    }
+
+    #[inline(always)]
+    fn set(&mut self, _: usize, value: f64) {
+        *self = value;
     }
 }
 
@@ -66,6 +84,18 @@ impl<S: Simd> Plain for f64x8<S> {
             #[inline(always)]
             |lane| f(self[lane], other[lane]),
         )
+    }
+
+    const COUNT: usize = 8;
+
+    #[inline(always)]
+    fn get(&self, lane: usize) -> f64 {
+        self[lane]
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, value: f64) {
+        self[lane] = value;
     }
 }
 

@@ -5,6 +5,7 @@ use super::{Kind, Row, Run};
 use crate::algebra::packed::largest;
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::motion::energy::{energies, excess_of_mean};
+use crate::motion::internal_force::{Workspace, internal_force, strain_energy};
 use crate::motion::step::{add_pressures, external_force};
 
 /// Sum of all forces on a body at rest over the sum of their sizes \[–\]: Newton's method leaves up
@@ -18,6 +19,16 @@ const ROUND_OFF: f64 = 1e-12;
 const ENERGY: f64 = 0.01;
 /// The same of the work of what does not move \[–\].
 const WORK: f64 = 0.01;
+/// Difference of the work of internal forces over that of their sizes \[–\].
+const INTERNAL: f64 = 1e-4;
+/// Part by which the displacement is changed for the derivative of the energy \[–\]: the difference
+/// is wrong by its square, and round-off of the energy is divided by it.
+const CHANGE: f64 = 1e-4;
+/// Round-off of the energy of a point over its volume times the bulk modulus \[–\].
+const OF_ENERGY: f64 = 1e-15;
+/// The same over the second difference of the energy \[–\], of which the third derivative that is
+/// left out is no large multiple.
+const THIRD: f64 = 1e-5;
 
 impl Run<'_> {
     /// Loads at the nodes, reactions and contact of a body at rest, which add up to zero.
@@ -68,6 +79,29 @@ impl Run<'_> {
             }
             _ => X + vector_at(u, node, model.components),
         }
+    }
+
+    /// f_int · u, by the loop that a run spends its time in, against the derivative of the strain
+    /// energy along u, by one that takes point after point.
+    pub(super) fn internal_work(&self) -> Row {
+        let (model, u) = (self.model, &self.state.displacement);
+        let mut force = vec![0.0; model.size()];
+        internal_force(model, u, &mut Workspace::new(model), &mut force);
+        let works = || u.iter().zip(&force).map(|(u, f)| u * f);
+        let (done, sizes): (f64, f64) = (works().sum(), works().map(f64::abs).sum());
+        let energy =
+            |factor: f64| strain_energy(model, &u.iter().map(|u| factor * u).collect::<Vec<_>>());
+        let [less, same, more] = [1.0 - CHANGE, 1.0, 1.0 + CHANGE].map(energy);
+        let asked = (more - less) / (2.0 * CHANGE);
+        let second = (more - 2.0 * same + less) / (CHANGE * CHANGE);
+        let stiffness: f64 = model.stiffness.iter().sum();
+        let of_forces = ROUND_OFF * stiffness * largest(u) * largest(u);
+        let volumes = self.sampled.volumes.iter().zip(&self.problem.regions);
+        let moduli = volumes
+            .map(|(volume, region)| volume.size * region.material.law.constants().bulk_modulus);
+        let round_off = of_forces + OF_ENERGY * moduli.sum::<f64>() / CHANGE;
+        let limit = INTERNAL * sizes + THIRD * second.abs() + round_off;
+        Row::numbers(Kind::InternalWork, "", asked, done, limit)
     }
 
     /// The energies of a motion whose works were accumulated.

@@ -46,19 +46,22 @@ impl Run<'_> {
         let facets = self.sampled.facets.iter();
         let now: Vec<Vector3> = facets.map(|facet| moved(&self.at(facet.centre()))).collect();
         let swallowed = self.model.contact.unresolved(self.discretisation, u);
-        let row = |obstacle: &Obstacle| {
+        let row = |(index, obstacle): (usize, &Obstacle)| {
             let inside = swallowed.iter().find_map(|warning| match warning {
                 Warning::ObstacleInBody { name, position } if *name == obstacle.name => {
                     Some(-self.body.signed_distance(position))
                 }
                 _ => None,
             });
+            // On the way it was between nodes: half a spacing, as nobody has measured it.
+            let entered = self.state.contact.entered.iter().any(|(own, _)| *own as usize == index);
+            let inside = inside.or(entered.then_some(0.5 * self.spacing));
             let row = |depth| {
                 Row::numbers(Kind::Depth, &obstacle.name, 0.0, depth, SWALLOWED * self.spacing)
             };
             inside.map_or_else(|| self.depth(obstacle, &now), |depth| Ok(row(depth)))
         };
-        obstacles.iter().map(row).collect()
+        obstacles.iter().enumerate().map(row).collect()
     }
 
     fn depth(&self, obstacle: &Obstacle, now: &[Vector3]) -> Result<Row, Error> {

@@ -9,6 +9,8 @@ use crate::algebra::tensor::Vector3;
 const SIZE: f64 = 0.01;
 /// The same over the whole body \[–\]: regions smaller than this do not matter to it.
 const OF_BODY: f64 = 2e-4;
+/// Difference between the masses of points and those of nodes, which share them, over them \[–\].
+const SHARED: f64 = 1e-8;
 /// Shift of a centre over the size of the region, the cube root of its volume \[–\].
 const SHIFT: f64 = 0.01;
 
@@ -27,7 +29,8 @@ impl Run<'_> {
         let whole = self.sampled.volume();
         let mut rows = Vec::new();
         let (mut mass, mut doubt) = (0.0, 0.0);
-        for ((region, asked), (done, first)) in regions.iter().zip(&self.sampled.volumes).zip(sums)
+        for ((region, asked), (done, first)) in
+            regions.iter().zip(&self.sampled.volumes).zip(sums.iter().copied())
         {
             mass += region.material.density * asked.size;
             doubt += region.material.density * asked.doubt;
@@ -42,6 +45,10 @@ impl Run<'_> {
         }
         let done: f64 = self.model.lumped_mass.iter().sum();
         rows.push(Row::numbers(Kind::Mass, "", mass, done, SIZE * mass + doubt));
+        let density = |region: usize| regions[region].material.density;
+        let of_points = sums.iter().enumerate().map(|(region, sum)| density(region) * sum.0);
+        let of_points: f64 = of_points.sum();
+        rows.push(Row::numbers(Kind::NodalMass, "", of_points, done, SHARED * of_points));
         rows
     }
 

@@ -100,6 +100,7 @@ pub fn audit(
     let mut rows = run.prescribed()?;
     rows.extend(run.loads()?);
     rows.extend(run.forces());
+    rows.push(run.internal_work());
     rows.extend(run.masses());
     rows.extend(run.energy());
     rows.extend(run.edges());

@@ -5,7 +5,7 @@ use super::sampling::part_of_surface;
 use super::{Kind, Row, Run};
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::error::Error;
-use crate::geometry::Extent;
+use crate::geometry::{Extent, Selector};
 use crate::problem::{Enforcement, EssentialCondition, Prescribed};
 
 /// Difference at a node over the largest prescribed displacement \[–\]: collocation is solved to
@@ -70,9 +70,7 @@ impl Run<'_> {
             }
             let at_end = AtEnd { condition, factor: condition.amplitude.at(self.time) };
             rows.extend(self.at_nodes(&at_end)?);
-            if condition.extent == Extent::Surface {
-                rows.extend(self.between_nodes(&at_end)?);
-            }
+            rows.extend(self.between_nodes(&at_end)?);
         }
         Ok(rows)
     }
@@ -110,11 +108,16 @@ impl Run<'_> {
 
     fn between_nodes(&self, at_end: &AtEnd) -> Result<Option<Row>, Error> {
         let AtEnd { condition, .. } = at_end;
-        let dimension = &self.problem.dimension;
-        let facets = &self.sampled.facets;
-        let part = part_of_surface(facets, &condition.part, dimension, self.spacing);
-        let step = part.pieces.len().div_ceil(SAMPLES).max(1);
-        let places: Vec<Vector3> = part.pieces.iter().step_by(step).map(|piece| piece.0).collect();
+        let places = match condition.extent {
+            Extent::Surface => {
+                let (facets, dimension) = (&self.sampled.facets, &self.problem.dimension);
+                let part = part_of_surface(facets, &condition.part, dimension, self.spacing);
+                part.pieces.iter().map(|piece| piece.0).collect()
+            }
+            Extent::Volume => self.places_within(&condition.part),
+        };
+        let step = places.len().div_ceil(SAMPLES).max(1);
+        let places: Vec<Vector3> = places.into_iter().step_by(step).collect();
         let values = self.field_at(&places)?;
         let components = self.model.components;
         let squares = places.iter().zip(&values);
@@ -124,6 +127,12 @@ impl Run<'_> {
         let limit = BETWEEN * self.range() + ROUND_OFF * self.extent();
         Ok((!places.is_empty())
             .then(|| Row::numbers(Kind::PrescribedBetween, &condition.name, 0.0, mean, limit)))
+    }
+
+    /// Places of the body in a part of space.
+    fn places_within(&self, part: &Selector) -> Vec<Vector3> {
+        let places = self.sampled.pieces.iter().map(|piece| self.at(piece.0));
+        places.filter(|X| part.contains(X)).collect()
     }
 
     /// The place \[m\] with the largest difference of its displacement \[m\].

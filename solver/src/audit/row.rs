@@ -101,12 +101,18 @@ kinds! {
     /// Their moments about the centre of the body.
     Moments: "moments", "moments of loads, reactions and contact", "N m",
         "the moments on the body do not add up to zero, so that some forces act at a wrong place: lower the tolerance";
+    /// Work of the internal forces along the displacement.
+    InternalWork: "internal_work", "work of the internal forces", "J",
+        "the internal forces are not the derivative of the strain energy, so that the material is not the one that was asked for: report this as a fault of the program";
     /// Volume of a region.
     Volume: "volume", "volume of", "m³",
         "the quadrature points have another volume than the shape: use smaller cells, and look whether parts of the body are stated twice";
     /// Mass at the nodes.
     Mass: "mass", "mass of", "kg",
         "the nodes carry another mass than the shape has: use smaller cells, and look whether parts of the body are stated twice";
+    /// Mass at the nodes.
+    NodalMass: "nodal_mass", "mass at the nodes", "kg",
+        "the nodes have not the mass of the quadrature points: report this as a fault of the program";
     /// Centre of a region.
     Centre: "centre", "centre of", "m",
         "the quadrature points lie elsewhere than the shape: use smaller cells";

@@ -103,6 +103,8 @@ fn a_good_run_is_not_doubted_and_has_a_row_of_every_kind_that_applies() {
         Kind::Moments,
         Kind::Volume,
         Kind::Mass,
+        Kind::NodalMass,
+        Kind::InternalWork,
         Kind::Centre,
         Kind::Edges,
         Kind::Gap,
@@ -167,10 +169,10 @@ fn reactions_of_one_condition_that_balance_each_other_are_not_doubted() {
 fn mass_volume_and_centre_that_are_not_those_of_the_shape_are_doubted() {
     let mut simulation = run(&block());
     simulation.model.lumped_mass[0] *= 100.0;
-    assert_eq!(doubts(&simulation), [Kind::Mass]);
+    assert_eq!(doubts(&simulation), [Kind::Mass, Kind::NodalMass]);
     let mut simulation = run(&block());
     simulation.discretisation.quadrature.weights.iter_mut().for_each(|w| *w *= 1.03);
-    assert_eq!(doubts(&simulation), [Kind::Volume]);
+    assert_eq!(doubts(&simulation), [Kind::Volume, Kind::NodalMass]);
     let mut simulation = run(&block());
     simulation.discretisation.quadrature.positions.iter_mut().for_each(|X| X.x += 0.003);
     assert_eq!(doubts(&simulation), [Kind::Centre]);
@@ -239,6 +241,61 @@ fn an_obstacle_that_has_been_entered_between_nodes_is_doubted() {
     let swallowed = ball(0.003, 0.04);
     let Figure::Number(depth) = swallowed.done else { panic!() };
     assert!(swallowed.exceeds() && (depth - 0.01).abs() < 0.003, "{swallowed:?}");
+}
+
+/// A free block that flies at 1 m/s against a rod of a radius and at a place along x \[m\].
+fn flown_at_a_rod(radius: f64, x: f64, time: f64) -> Simulation {
+    let mut problem = falling_on_a_plane();
+    problem.loads.initial_velocities[0].1.z = -1.0;
+    problem.regions[0].material = tissue(20_000.0);
+    problem.obstacles[0].shape = Shape::Cylinder {
+        base: Vector3::new(x, -1.0, -0.007),
+        axis: Vector3::y(),
+        radius,
+        height: 2.0,
+    };
+    problem.motion = Motion::dynamic(time, 0.0);
+    run(&problem)
+}
+
+#[test]
+fn an_obstacle_that_went_through_the_body_between_nodes_is_doubted_afterwards() {
+    let simulation = flown_at_a_rod(0.0015, 0.035, 0.12);
+    let lowest = simulation.model.positions.len();
+    let top =
+        (0..lowest).map(|n| simulation.state.displacement[3 * n + 2]).fold(f64::MIN, f64::max);
+    assert!(top < -0.1, "all of it must be below the rod: {top}");
+    assert_eq!(doubts(&simulation), [Kind::Depth]);
+}
+
+#[test]
+fn an_obstacle_that_nodes_run_into_is_not_one_that_went_in_between() {
+    let simulation = flown_at_a_rod(0.006, 0.04, 0.005);
+    assert!(!simulation.state.contact_forces().is_empty(), "it must touch");
+    assert!(simulation.state.contact.entered.is_empty());
+}
+
+#[test]
+fn mass_that_is_lost_between_points_and_nodes_is_doubted() {
+    let mut simulation = Simulation::new(&block()).unwrap();
+    assert!(!row(&simulation, Kind::NodalMass).exceeds());
+    simulation.model.lumped_mass[0] *= 0.999;
+    assert!(row(&simulation, Kind::NodalMass).exceeds());
+}
+
+#[test]
+fn a_held_volume_that_deforms_between_its_nodes_is_doubted() {
+    let mut problem = block();
+    let shape = cuboid([-1.0, -1.0, -1.0], [1.0, 1.0, 0.03]);
+    problem.conditions[0].part = Selector::Inside { shape, tolerance: 1e-9 };
+    problem.conditions[0].extent = crate::geometry::Extent::Volume;
+    let mut simulation = run(&problem);
+    silent(&simulation);
+    let positions = simulation.model.positions.clone();
+    for (u, X) in simulation.state.displacement.chunks_mut(3).zip(positions) {
+        u[2] -= if X.z < 0.031 { 0.01 } else { 0.0 };
+    }
+    assert!(doubts(&simulation).contains(&Kind::PrescribedBetween));
 }
 
 #[test]

@@ -31,6 +31,8 @@ pub enum MaterialError {
     OgdenTerms { count: usize },
     #[error("alpha is {value}; it must be finite and not 0")]
     OgdenExponent { value: f64 },
+    #[error("the strain energy has a stress of {stress:e} Pa at rest; it must be stationary there")]
+    StressAtRest { stress: f64 },
 }
 
 impl ElasticConstants {

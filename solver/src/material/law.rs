@@ -9,6 +9,7 @@ use crate::material::mooney_rivlin::MooneyRivlin;
 use crate::material::neo_hookean_isochoric::NeoHookeanIsochoric;
 use crate::material::neo_hookean_log_j::NeoHookeanLogJ;
 use crate::material::ogden::Ogden;
+use crate::material::own_law::OwnLaw;
 use crate::material::st_venant_kirchhoff::StVenantKirchhoff;
 
 /// A law with its parameters.
@@ -26,6 +27,8 @@ pub enum Law {
     StVenantKirchhoff(StVenantKirchhoff),
     /// Hooke's law for small rotations.
     LinearElastic(LinearElastic),
+    /// A strain energy of the caller's own.
+    Own(OwnLaw),
 }
 
 /// Runs `$body` with `$law` bound to the concrete law, so that it is compiled
@@ -39,6 +42,7 @@ macro_rules! with_law {
             $crate::material::Law::Ogden($law) => $body,
             $crate::material::Law::StVenantKirchhoff($law) => $body,
             $crate::material::Law::LinearElastic($law) => $body,
+            $crate::material::Law::Own($law) => $body,
         }
     };
 }

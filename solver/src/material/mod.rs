@@ -9,6 +9,7 @@ mod mooney_rivlin;
 mod neo_hookean_isochoric;
 mod neo_hookean_log_j;
 mod ogden;
+mod own_law;
 mod st_venant_kirchhoff;
 mod volumetric_term;
 
@@ -21,6 +22,7 @@ pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean_isochoric::NeoHookeanIsochoric;
 pub use neo_hookean_log_j::NeoHookeanLogJ;
 pub use ogden::{Ogden, OgdenTerm, OgdenTerms};
+pub use own_law::{Number, OwnLaw, StrainEnergy};
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use volumetric_term::VolumetricTerm;
 

@@ -30,7 +30,21 @@ fn laws() -> Vec<(&'static str, Law)> {
         ),
         ("St Venant-Kirchhoff", Law::StVenantKirchhoff(StVenantKirchhoff::new(constants))),
         ("linear elastic", Law::LinearElastic(LinearElastic::new(constants))),
+        ("Demiray's, of the caller's own", Law::Own(OwnLaw::new(Demiray).unwrap())),
     ]
+}
+
+/// ψ = μ/2b (e^(b (I₁ − 3)) − 1) − μ ln J + λ/2 (ln J)² (Demiray 1972) with b = 2.
+#[derive(Debug)]
+struct Demiray;
+
+impl StrainEnergy for Demiray {
+    fn energy(&self, C: &[[Number; 3]; 3]) -> Number {
+        let minor = |a: usize, b: usize| C[1][a] * C[2][b] - C[1][b] * C[2][a];
+        let third = C[0][0] * minor(1, 2) - C[0][1] * minor(0, 2) + C[0][2] * minor(0, 1);
+        let (first, log) = (C[0][0] + C[1][1] + C[2][2] - 3.0, third.ln() * 0.5);
+        ((first * 2.0).exp() - 1.0) * (1000.0 / 4.0) - log * 1000.0 + log * log * 1000.0
+    }
 }
 
 /// Ogden's law with terms (μ \[Pa\], α).

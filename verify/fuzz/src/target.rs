@@ -16,8 +16,6 @@ pub enum Target {
     Inspect,
     /// Case files: `mtled solve`.
     Solve,
-    /// Case files: `mtled case migrate`.
-    Migrate,
     /// Records of runs: `mtled runs …`, `mtled merge`.
     Store,
     /// results.json: `mtled report`.
@@ -67,10 +65,6 @@ const SOLVE: &[Step] = &[Step {
     writes: "out",
     largest: Some(3e4),
 }];
-const MIGRATE: &[Step] = &[
-    step(&["case", "migrate", "input.toml", "--check"], "out"),
-    step(&["case", "migrate", "input.toml"], "input.toml"),
-];
 const STORE: &[Step] = &[
     step(&["runs", "list", "--store", "store"], "out"),
     step(&["runs", "list", "--store", "store", "--format", "json"], "out"),
@@ -102,14 +96,13 @@ impl Target {
     }
 
     /// All but the traps.
-    pub const ALL: [Target; 15] = [
+    pub const ALL: [Target; 14] = [
         Target::Case,
         Target::LabelMap,
         Target::Surface,
         Target::Points,
         Target::Inspect,
         Target::Solve,
-        Target::Migrate,
         Target::Store,
         Target::Report,
         Target::Baseline,
@@ -129,7 +122,6 @@ impl Target {
             Target::Points => "points",
             Target::Inspect => "inspect",
             Target::Solve => "solve",
-            Target::Migrate => "migrate",
             Target::Store => "store",
             Target::Report => "report",
             Target::Baseline => "baseline",
@@ -162,7 +154,6 @@ impl Target {
             | Target::Trap => None,
             Target::Inspect => Some(INSPECT),
             Target::Solve => Some(SOLVE),
-            Target::Migrate => Some(MIGRATE),
             Target::Store => Some(STORE),
             Target::Report => Some(REPORT),
             Target::Baseline => Some(BASELINE),

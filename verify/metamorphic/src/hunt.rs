@@ -49,10 +49,13 @@ pub fn examine(scene: &Scene, chosen: &dyn Fn(&Relation) -> bool) -> Result<Vec<
     let subject = Subject::new(scene)?;
     Ok(all()
         .filter(|relation| chosen(relation))
-        .map(|relation| Verdict {
-            relation,
-            compared: (relation.compare)(&subject),
-            known: known(relation, scene).is_some(),
+        .map(|relation| {
+            let compared = (relation.compare)(&subject);
+            let known = match &compared {
+                Some(Compared::Difference(d)) => known(relation, scene, *d).is_some(),
+                _ => false,
+            };
+            Verdict { relation, compared, known }
         })
         .collect())
 }

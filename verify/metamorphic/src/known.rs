@@ -13,8 +13,8 @@ pub struct Known {
     pub scenes: &'static str,
     /// The same as a test.
     pub has: fn(&Scene) -> bool,
-    /// The largest difference that was seen.
-    pub figure: &'static str,
+    /// The largest difference that is excused, at most twice the largest that was seen \[–\].
+    pub largest: f64,
     /// Why.
     pub reason: &'static str,
 }
@@ -25,7 +25,7 @@ pub const KNOWN: &[Known] = &[
         relation: "united_with_itself",
         scenes: "label maps, and unions and intersections with curved members",
         has: |scene| matches!(scene.form, Form::Voxels | Form::Dome | Form::Rounded),
-        figure: "0.8",
+        largest: 1.0,
         reason: "of coinciding faces that are not flat each member keeps about a half, by a distance \
                  that is round-off or that of marching cubes (`geometry::boundary::composite`)",
     },
@@ -33,7 +33,7 @@ pub const KNOWN: &[Known] = &[
         relation: "one_material_in_two_regions",
         scenes: "boxes with a bore, whose walls are a seventh of a spacing thick",
         has: |scene| scene.form == Form::Bored,
-        figure: "0.7",
+        largest: 1.0,
         reason: "the wall is one point thick or two, as the border has it; the cloud cannot say \
                  which is right",
     },
@@ -44,7 +44,7 @@ pub const KNOWN: &[Known] = &[
             matches!(scene.form, Form::Wedge | Form::Corner | Form::Cylinder)
                 && scene.inclusion.is_some()
         },
-        figure: "0.0001",
+        largest: 2e-4,
         reason: "the smallest cells at the re-entrant edge of a wedge are cut by each member in turn, in \
                  other pieces; of corners and cylinders not yet understood",
     },
@@ -52,7 +52,7 @@ pub const KNOWN: &[Known] = &[
         relation: "volume_of_a_flat_body",
         scenes: "boxes with a part held on the surface that ends within a face",
         has: |scene| scene.holds.iter().any(|hold| !hold.inner && ends_within_a_face(&hold.part)),
-        figure: "0.002",
+        largest: 4e-3,
         reason: "shares of panels that the edge of what is held cuts stand at nodes beside it, and \
                  weights are scaled to the volume that these enclose",
     },
@@ -60,7 +60,7 @@ pub const KNOWN: &[Known] = &[
         relation: "order_of_nodes",
         scenes: "motions",
         has: |scene| !scene.is_static(),
-        figure: "0.0001",
+        largest: 2e-4,
         reason: "the critical step is iterated from random nodal values, which go with the number of \
                  a node; other steps are another discretisation in time",
     },
@@ -68,7 +68,7 @@ pub const KNOWN: &[Known] = &[
         relation: "turned_or_mirrored",
         scenes: "motions",
         has: |scene| !scene.is_static(),
-        figure: "0.00001",
+        largest: 2e-5,
         reason: "the critical step is iterated from random nodal values, whose directions do not turn \
                  with the body",
     },
@@ -76,7 +76,7 @@ pub const KNOWN: &[Known] = &[
         relation: "prescribed_values_are_taken",
         scenes: "motions with an obstacle beside what is held",
         has: |scene| !scene.is_static() && scene.obstacle.is_some(),
-        figure: "0.002",
+        largest: 4e-3,
         reason: "obstacles push nodes after conditions were imposed, and the value at a held node \
                  is a mean over its neighbours; the audit doubts the run where it matters",
     },
@@ -84,7 +84,7 @@ pub const KNOWN: &[Known] = &[
         relation: "one_material_in_two_regions",
         scenes: "motions",
         has: |scene| !scene.is_static(),
-        figure: "1.3",
+        largest: 1.5,
         reason: "a wave in a few steps over three to six spacings: the middle of such a body moves by 5.9 or \
                  4.9 % of its size at one spacing and at half of it",
     },
@@ -92,14 +92,14 @@ pub const KNOWN: &[Known] = &[
         relation: "as_voxels",
         scenes: "motions",
         has: |scene| !scene.is_static(),
-        figure: "0.8",
+        largest: 1.0,
         reason: "as above: another cloud is another wave",
     },
     Known {
         relation: "turned_or_mirrored_in_other_pieces",
         scenes: "motions, and bodies of three spacings with curved faces",
         has: |scene| !scene.is_static() || scene.spacings <= 3 && scene.form != Form::Box,
-        figure: "1.04",
+        largest: 1.5,
         reason: "another cloud is another wave; and along the shortest of its edges such a body has one \
                  or two spacings, and a pressure on panels of half a spacing moves it as these are cut",
     },
@@ -107,7 +107,7 @@ pub const KNOWN: &[Known] = &[
         relation: "cloud_of_a_moved_body",
         scenes: "domes with a held end",
         has: ends_on_a_dome,
-        figure: "0.00000002",
+        largest: 4e-8,
         reason: "not yet understood: a node beside the edge of what is held lies elsewhere by 1.4e-8 of \
                  the size; finer tolerances of projections and of clipped panels changed nothing",
     },
@@ -115,14 +115,14 @@ pub const KNOWN: &[Known] = &[
         relation: "a_hair_larger",
         scenes: "domes with a held end",
         has: ends_on_a_dome,
-        figure: "0.000002",
+        largest: 4e-6,
         reason: "not yet understood; the nodes are the same to 3e-11 of the size",
     },
     Known {
         relation: "lengths_times_thousand",
         scenes: "domes with a held end",
         has: ends_on_a_dome,
-        figure: "0.000002",
+        largest: 4e-6,
         reason: "not yet understood; the nodes are the same to 3e-11 of the size",
     },
     Known {
@@ -131,7 +131,7 @@ pub const KNOWN: &[Known] = &[
         has: |scene| {
             scene.form == Form::Bored || scene.form == Form::Corner && scene.inclusion.is_some()
         },
-        figure: "0.02",
+        largest: 0.04,
         reason: "of a bore whose radius is half a spacing it hangs on the last digit whether two points in \
                  72 see a node at the end of its wall; of corners (0.00003) not yet understood",
     },
@@ -139,14 +139,14 @@ pub const KNOWN: &[Known] = &[
         relation: "order_of_regions",
         scenes: "boxes with a bore, of two materials",
         has: |scene| scene.form == Form::Bored && scene.inclusion.is_some(),
-        figure: "0.000006",
+        largest: 1e-5,
         reason: "not yet understood",
     },
     Known {
         relation: "translated",
         scenes: "wedges and boxes with a bore, of two materials",
         has: |scene| matches!(scene.form, Form::Wedge | Form::Bored) && scene.inclusion.is_some(),
-        figure: "0.00001",
+        largest: 2e-5,
         reason: "not yet understood",
     },
 ];
@@ -163,7 +163,10 @@ fn ends_within_a_face(part: &Part) -> bool {
     }
 }
 
-/// The known fault by which a relation fails for a scene.
-pub fn known(relation: &Relation, scene: &Scene) -> Option<&'static Known> {
-    KNOWN.iter().find(|known| known.relation == relation.name && (known.has)(scene))
+/// The known fault by which a relation fails for a scene with this difference. A larger one has
+/// another reason.
+pub fn known(relation: &Relation, scene: &Scene, difference: f64) -> Option<&'static Known> {
+    KNOWN.iter().find(|known| {
+        known.relation == relation.name && difference <= known.largest && (known.has)(scene)
+    })
 }

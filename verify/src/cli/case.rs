@@ -3,7 +3,6 @@
 use super::common::{COULD_NOT_RUN, Common, Format};
 use super::load::{SetArgs, located};
 use super::messages::place;
-use super::migrate::{MigrateArgs, migrate};
 use super::streams::{print_data, print_json, print_text};
 use crate::bundled::{CASES, TEMPLATES, Template};
 use crate::run::{load, prepare_to_run};
@@ -33,8 +32,6 @@ pub enum CaseCommand {
         #[command(flatten)]
         set: SetArgs,
     },
-    /// Update case files to the current names of keys and values.
-    Migrate(MigrateArgs),
     /// List the bundled cases.
     List,
     /// Print a bundled case.
@@ -51,7 +48,6 @@ pub fn case(command: &CaseCommand, common: &Common) -> Result<u8> {
         CaseCommand::New { template: None, .. } => list_templates(common)?,
         CaseCommand::New { template: Some(name), out } => new(name, out.as_deref(), common)?,
         CaseCommand::Check { files, set } => return check(files, &set.overrides, common),
-        CaseCommand::Migrate(arguments) => return migrate(arguments, common),
         CaseCommand::List => {
             let names: Vec<&str> = CASES.iter().map(|(name, _)| *name).collect();
             common.print_result(&|| Ok(format!("{}\n", json!(names))), &|| {

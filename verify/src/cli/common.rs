@@ -33,12 +33,6 @@ pub enum Format {
     Human,
     /// One JSON document, and one JSON object per line on standard error.
     Json,
-    /// A table for people's own programs: `mtled runs export` alone takes this.
-    #[value(skip)]
-    Csv,
-    /// As [`Format::Csv`].
-    #[value(skip)]
-    Parquet,
 }
 
 impl Common {

@@ -71,7 +71,7 @@ impl Common {
     /// A line of text, or of JSON with the place of what it is about.
     fn message(&self, severity: &str, shown: &str, message: &str, place: Option<Value>) {
         match self.format {
-            Format::Human | Format::Csv | Format::Parquet => {
+            Format::Human => {
                 to_standard_error(&printable_lines(shown));
             }
             Format::Json => {

@@ -9,7 +9,6 @@ mod inspect;
 mod load;
 mod manual;
 mod messages;
-mod migrate;
 mod progress;
 mod protocol;
 mod publish;
@@ -61,7 +60,7 @@ const EXAMPLES: &str = "Examples:
   mtled case new block -o my_case.toml          a commented case to start from
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the bundled cases
-  mtled runs export -o runs.parquet             the results of stored runs as a table
+  mtled runs export -o runs.csv                 the results of stored runs as a table
   mtled bench --quick                           how fast is the solver here?
   mtled study solvers --solver 'mine=python3 mine.py {job} {answer}'
                                                 how accurate and fast is my own solver?

@@ -7,7 +7,6 @@ use crate::scene::diagnostic::Diagnostic;
 use crate::scene::document::Document;
 use crate::scene::edit::Override;
 use crate::scene::format::CaseFormat;
-use crate::scene::migrate::outdated;
 use mtled_checks::input::refuse_named_pipe;
 use std::fs::File;
 use std::io::{self, Read};
@@ -61,10 +60,9 @@ pub fn parse_overridden(
 ) -> Result<Case, Vec<Diagnostic>> {
     let document =
         Document::overridden(text, file_name, overrides).map_err(|mistake| vec![mistake])?;
-    for mistakes in [document.numbers_that_are_not_finite(), outdated(&document)] {
-        if !mistakes.is_empty() {
-            return Err(mistakes);
-        }
+    let mistakes = document.numbers_that_are_not_finite();
+    if !mistakes.is_empty() {
+        return Err(mistakes);
     }
     let format: CaseFormat = deserialise(&document).map_err(|mistake| vec![mistake])?;
     build(&format, document, file_name, base_dir)

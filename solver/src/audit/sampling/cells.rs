@@ -126,8 +126,10 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     let cost = cost(divided.body) + divided.parts.iter().map(|part| cost_of(part)).sum::<usize>();
     let mut sampled =
         Sampled { volumes: vec![Volume::default(); divided.parts.len()], ..Sampled::default() };
-    // About half of the children of a cell on the boundary lie on it, fewer on an edge.
-    let mut growth = if flat { 2.0 } else { 4.0 };
+    // About half of the children of a cell on the boundary lie on it, fewer on an edge; of the
+    // coarsest cells all are divided, which says nothing.
+    let of_boundary = if flat { 2.0 } else { 4.0 };
+    let mut growth: f64 = of_boundary;
     while !cells.is_empty() {
         let spent = cells.len() * cost * 5;
         budget = budget.saturating_sub(spent);
@@ -143,7 +145,7 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
             }
         }
         sampled.finest = 2.0 * cells[0].half.x;
-        growth = next.len() as f64 / cells.len() as f64;
+        growth = of_boundary.min(next.len() as f64 / cells.len() as f64);
         cells = next;
     }
     sampled.volumes.iter_mut().for_each(|part| part.doubt += part.variance.sqrt());
@@ -249,7 +251,7 @@ impl Divided<'_> {
         }
         let bend = bend(&values, distance);
         let flat = bend <= BEND * edge && edge <= 1.01 * FLAT_CELL * self.spacing;
-        if !(last || flat && owner.is_some()) {
+        if !(last || flat && (owner.is_some() || self.has_flat_borders(cell))) {
             return Fate::Divided;
         }
         self.cut(cell, &values, owner, bend)
@@ -285,6 +287,13 @@ impl Divided<'_> {
         let edge = is_edge && !halves.border.is_empty();
         let border_bends = if owner.is_none() { self.border_bends(cell) } else { Vec::new() };
         Fate::Cut(Cut { pieces, facets, bend, edge, by_places, border_bends })
+    }
+
+    /// Whether the borders of all parts are planes in a cell.
+    fn has_flat_borders(&self, cell: &Cell) -> bool {
+        let has_distance = |part: &&Selector| level(part, &self.at(cell.centre), None).metric;
+        self.parts.iter().all(has_distance)
+            && self.border_bends(cell).iter().all(|(_, bend)| *bend <= BEND * 2.0 * cell.half.x)
     }
 
     /// How far the borders of parts are from where a linear function has them: part, \[m\]. A layer

@@ -21,6 +21,8 @@ pub struct ContactState {
     /// What obstacles exert, to be multiplied by the force factor of the state: the values
     /// are m Δu of the last step \[kg·m\], or of Newton's method forces \[N\].
     pub forces: Vec<ContactForce>,
+    /// Narrow obstacles that were seen between the nodes of the body: obstacle, its place then \[m\].
+    pub entered: Vec<(u32, Vector3)>,
     /// What strikes have taken from nodes; only of motions.
     pub impacts: Impacts,
 }
@@ -51,7 +53,8 @@ impl ContactState {
         let components = step.displacement.len() / positions.len();
         let increment = largest_increment * (components as f64).sqrt();
         self.travelled += increment;
-        if !self.searched || self.travelled > plan.skin {
+        let search = !self.searched || self.travelled > plan.skin;
+        if search {
             self.search(plan, positions, step.displacement, increment);
         }
         self.touching.clear();
@@ -66,6 +69,18 @@ impl ContactState {
             self.touching.push(node);
             let force = step.push(node, target - x);
             self.forces.push(ContactForce { obstacle, node, force });
+        }
+        if search {
+            self.look(plan, positions, step.displacement);
+        }
+    }
+
+    /// Keeps which narrow obstacles have gone in between nodes that were put back.
+    fn look(&mut self, plan: &ContactPlan, positions: &[Vector3], u: &[f64]) {
+        for (index, place) in plan.between_nodes(positions, u) {
+            if self.entered.iter().all(|(known, _)| *known != index) {
+                self.entered.push((index, place));
+            }
         }
     }
 

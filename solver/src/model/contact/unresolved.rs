@@ -1,6 +1,7 @@
 //! What contact has left inside narrow obstacles, and obstacles inside the body.
 #![allow(non_snake_case)]
 
+use super::between::Outside;
 use super::plan::{ContactPlan, gap};
 use crate::algebra::tensor::{Vector3, bounding_box, vector_at};
 use crate::discretisation::{Discretisation, Warning};
@@ -13,6 +14,13 @@ const DEEP: f64 = 0.1;
 const SAMPLES: usize = 12;
 /// Iterations X ← y − u(X) towards what has moved to y; strains of soft bodies are below one.
 const ITERATIONS: usize = 12;
+/// Nodes so near are around a place, over the mean spacing \[–\].
+const AROUND: f64 = 1.5;
+/// Length of the mean direction to them above which they lie on one side \[–\]: in front of a flat
+/// face it is 0.5 and more.
+const ONE_SIDED: f64 = 0.3;
+/// Depth of such a place in the body over the mean spacing \[–\].
+const INSIDE: f64 = 0.25;
 /// Distance over the mean spacing that is none \[–\].
 const FOUND: f64 = 0.05;
 
@@ -59,6 +67,40 @@ impl ContactPlan {
             }
         }
         warnings
+    }
+
+    /// Narrow obstacles with nodes close around a place of them, which then have gone in between the
+    /// nodes: index, that place \[m\]. Without shape functions, for a look on the way.
+    pub(super) fn between_nodes(&self, positions: &[Vector3], u: &[f64]) -> Vec<(u32, Vector3)> {
+        let Some(Outside { body, .. }) = &self.outside else { return Vec::new() };
+        let d = u.len() / positions.len();
+        let now: Vec<Vector3> =
+            positions.iter().enumerate().map(|(node, X)| X + vector_at(u, node, d)).collect();
+        let mut hash = PointHash::new(self.skin, self.skin);
+        now.iter().for_each(|x| hash.insert(*x));
+        let is_inside = |y: &Vector3| {
+            let (mut nearest, mut sum, mut count) = ((f64::INFINITY, 0), Vector3::zeros(), 0.0);
+            hash.visit(y, AROUND * self.skin, |node, _| {
+                let way = now[node] - y;
+                let distance = way.norm();
+                sum += way / distance.max(f64::MIN_POSITIVE);
+                count += 1.0;
+                if distance < nearest.0 {
+                    nearest = (distance, node);
+                }
+                true
+            });
+            let X = || y - vector_at(u, nearest.1, d);
+            nearest.0 < self.skin
+                && sum.norm() < ONE_SIDED * count
+                && body.signed_distance(&X()) < -INSIDE * self.skin
+        };
+        let around = bounding_box(&now);
+        let narrow = (0..self.obstacles.len()).filter(|index| self.narrow[*index].is_some());
+        let found = narrow.filter_map(|index| {
+            Some((index as u32, self.samples(index, around).into_iter().find(is_inside)?))
+        });
+        found.collect()
     }
 
     /// Where an obstacle lies inside the deformed body, in the undeformed one \[m\].

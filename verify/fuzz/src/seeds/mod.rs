@@ -31,7 +31,7 @@ pub fn inputs(target: Target) -> Result<Vec<Input>> {
         all.push(Input::new(bytes, name.split_once('.').map_or("", |(_, extension)| extension)));
     }
     match target {
-        Target::Case | Target::Inspect | Target::Solve | Target::Migrate => all.extend(bundled()?),
+        Target::Case | Target::Inspect | Target::Solve => all.extend(bundled()?),
         Target::LabelMap => all.extend(binary::label_maps()),
         Target::Surface => all.extend(binary::surfaces(&companions()?)),
         Target::Points => all.extend(binary::points()?),

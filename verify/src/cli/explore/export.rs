@@ -1,12 +1,11 @@
 //! `mtled runs export`.
 
 use super::filter::FilterArgs;
-use crate::cli::common::{Common, Format};
+use crate::cli::common::Common;
 use crate::cli::streams::print_data;
-use crate::explore::records::{quantities_are_missing, runs_table, to_csv, to_parquet};
+use crate::explore::records::{quantities_are_missing, runs_table, to_csv};
 use anyhow::{Result, bail};
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use mtled_checks::report::{ensure_writable, write_atomically};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -14,10 +13,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_help = TABLE)]
 pub struct ExportArgs {
-    /// Format of the table [default: by the ending of the file, else csv].
-    #[arg(long, value_name = "FORMAT", value_parser = table_format(), help_heading = "Table")]
-    format: Option<Format>,
-    /// File of the table [default: standard output, for CSV only].
+    /// File of the table, in CSV [default: standard output].
     #[arg(short, long, value_name = "FILE", help_heading = "Table")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -31,41 +27,18 @@ date and version. A run that failed has one row, with the reason. Errors depend 
 they are in the reports of studies.
 
 Examples:
-  mtled runs export -o runs.parquet
+  mtled runs export -o runs.csv
   mtled runs export --case my_case --where dilation=1.4..2.2:0.2 > runs.csv
-  mtled runs export --since 2026-01-31 --format csv -o january.txt";
-
-/// Other words than elsewhere, of the same type: the option of all commands is read from it.
-fn table_format() -> impl TypedValueParser<Value = Format> {
-    PossibleValuesParser::new(["csv", "parquet"])
-        .map(|word| if word == "parquet" { Format::Parquet } else { Format::Csv })
-}
-
-impl ExportArgs {
-    /// Whether the table is Parquet; the format of messages says nothing about it.
-    fn is_parquet(&self) -> bool {
-        match self.format {
-            Some(Format::Parquet) => true,
-            Some(Format::Csv) => false,
-            Some(Format::Human | Format::Json) | None => {
-                let ending = self.output.as_deref().and_then(Path::extension);
-                ending.is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
-            }
-        }
-    }
-}
+  mtled runs export --since 2026-01-31 -o january.csv";
 
 pub fn export(arguments: &ExportArgs, common: &Common) -> Result<u8> {
-    let parquet = arguments.is_parquet();
-    match &arguments.output {
-        None if parquet => {
-            bail!("a Parquet file cannot be read from a pipe; name it with --output")
+    if let Some(file) = &arguments.output {
+        let ending = file.extension().unwrap_or_default().to_string_lossy();
+        if ["parquet", "xlsx"].contains(&ending.to_lowercase().as_str()) {
+            bail!("{}: the table is written as CSV; name a file that ends in .csv", file.display());
         }
-        None => {}
-        Some(file) => {
-            let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
-            ensure_writable(folder.unwrap_or(Path::new(".")))?;
-        }
+        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+        ensure_writable(folder.unwrap_or(Path::new(".")))?;
     }
     let chosen = arguments.filter.read(common)?;
     let nameless = chosen.records.iter().filter(|record| quantities_are_missing(record)).count();
@@ -76,7 +49,7 @@ pub fn export(arguments: &ExportArgs, common: &Common) -> Result<u8> {
         ));
     }
     let table = runs_table(&chosen.records);
-    let bytes = if parquet { to_parquet(&table)? } else { to_csv(&table)? };
+    let bytes = to_csv(&table)?;
     match &arguments.output {
         None => print_data(&String::from_utf8(bytes)?)?,
         Some(file) => {

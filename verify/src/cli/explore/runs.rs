@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 pub enum RunsCommand {
     /// List the records of a store, one per line.
     List(FilterArgs),
-    /// Write the results of the records of a store as a table, CSV or Parquet.
+    /// Write the results of the records of a store as a table in CSV.
     Export(ExportArgs),
     /// Print one record as JSON.
     Show {
