@@ -18,6 +18,7 @@ const BAD_CASES: &[Expected] = &[
     ("unknown_key_in_shape", 5, "geometry.shape.box.mx", "did you mean `max`?"),
     ("missing_law", 7, "material.tissue.law", "is missing"),
     ("missing_time", 1, "time", "is missing"),
+    ("missing_title", 1, "title", "is missing"),
     ("missing_extent", 17, "prescribe[0].of", "is missing"),
     ("wrong_type", 15, "discretisation.spacing", "expected a number"),
     ("short_vector", 5, "geometry.shape.box.max", "expected an array of length 3"),

@@ -15,7 +15,9 @@ pub fn deserialise<T: DeserializeOwned>(document: &Document) -> Result<T, Diagno
 
 fn located(document: &Document, error: &toml_edit::de::Error) -> Diagnostic {
     let span = error.span().unwrap_or(0..0);
-    let path = document.path_at(span.start);
+    // What the file as a whole lacks belongs to no table that begins where the file does.
+    let is_whole = document.tree().as_item().span().as_ref() == Some(&span);
+    let path = if is_whole { String::new() } else { document.path_at(span.start) };
     let message = error.message().trim_end();
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     if message.starts_with("missing field") {

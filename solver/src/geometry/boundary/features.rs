@@ -141,6 +141,10 @@ fn prism(points: &[[f64; 2]], z: (f64, f64), target: &TargetSpacing, features: &
     }
 }
 
+/// Lattice points keep more than this distance from an outline \[spacing\]: more than half by what
+/// round-off may add, as inside of the body.
+const CLEARANCE: f64 = 0.5 + 1e-6;
+
 /// Lattice points inside a polygon, on both of its ends.
 fn caps(points: &[[f64; 2]], z: (f64, f64), spacing: f64, features: &mut Features) {
     let bound = |axis: usize| {
@@ -154,7 +158,7 @@ fn caps(points: &[[f64; 2]], z: (f64, f64), spacing: f64, features: &mut Feature
         for i in 1..nx {
             let x = x0 + (x1 - x0) * i as f64 / nx as f64;
             let y = y0 + (y1 - y0) * j as f64 / ny as f64;
-            if outline.signed_distance(x, y) < -0.5 * spacing {
+            if outline.signed_distance(x, y) < -CLEARANCE * spacing {
                 features.faces.extend([Vector3::new(x, y, z.0), Vector3::new(x, y, z.1)]);
             }
         }

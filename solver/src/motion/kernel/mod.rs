@@ -6,6 +6,7 @@
 mod nodes;
 mod own_pressures;
 mod points;
+mod tangents;
 
 use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock};
 use crate::material::with_law;
@@ -16,6 +17,7 @@ use fearless_simd::Simd;
 use nodes::{add_forces, deformation_gradients};
 pub use own_pressures::{BlockPressures, OwnPressures};
 use points::{jacobians, pressures, stresses};
+use tangents::Tangents;
 
 /// Vectors at the nodes of the block that a thread works on.
 #[derive(Debug)]
@@ -44,6 +46,8 @@ pub struct Scratch {
     pub patches: Vec<PatchMoments>,
     /// F \[–\] of all points at the displacements of a derivative, once there has been one.
     linearised: Vec<SimdBlock>,
+    /// What derivatives there have of a costly law.
+    tangents: Tangents,
     /// F \[–\], row by row, of each eight points of a chunk.
     deformation: Parts<SimdBlock>,
     /// P \[Pa\] in the same order.
@@ -68,6 +72,7 @@ impl Scratch {
                 None => Vec::new(),
             },
             linearised: Vec::new(),
+            tangents: Tangents::default(),
             deformation,
             stress: Parts::new(9 * groups),
             jacobians: Parts::new(groups),
@@ -84,8 +89,9 @@ pub fn linearise<S: Simd, const D: usize>(
     u: &LocalVectors,
     scratch: &mut Scratch,
 ) {
-    let Scratch { linearised, deformation, .. } = scratch;
+    let Scratch { linearised, tangents, deformation, .. } = scratch;
     linearised.clear();
+    tangents.clear();
     for Chunk { groups, .. } in &block.chunks {
         let rows = &mut deformation.values[..9 * groups.len()];
         with_gradients!(&block.grad_phi, grad_phi => {
@@ -108,8 +114,9 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
 ) {
     f.clear::<D>(block.nodes.len());
     scratch.smallest = (f64::INFINITY, 0);
-    let Scratch { smallest, patches, linearised, deformation, stress, .. } = scratch;
+    let Scratch { smallest, patches, linearised, tangents, deformation, stress, .. } = scratch;
     let (jacobian, pressure) = (&mut scratch.jacobians, &mut scratch.pressures);
+    let is_known = R::SLOPES && tangents.are_worth(block);
     for (patch, Chunk { lanes, groups }) in block.chunks.iter().enumerate() {
         let count = groups.len();
         with_gradients!(&block.grad_phi, grad_phi => {
@@ -125,6 +132,10 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
         });
         let projection = block.projection.as_ref();
         with_law!(&block.law, law => {
+            if is_known {
+                let work = (&mut *deformation, &mut *stress, &mut *jacobian);
+                tangents.multiply::<S, R, _>(simd, law, groups.clone(), work);
+            }
             if let Some(projection) = projection {
                 jacobians::<S, R>(simd, count, deformation, jacobian);
                 let projection = (projection, own.map(|own| own.of(patch)));
@@ -132,7 +143,7 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
                     pressures::<S, R, _>(simd, law, projection, groups.clone(), jacobian, pressure);
             }
             let pressure = projection.map(|_| &*pressure);
-            let results = (&mut *stress, &mut *jacobian);
+            let results = (&mut *stress, &mut *jacobian, is_known);
             // In a plane half of a law is not needed; a derivative is, rarely enough.
             match D == 2 && !R::SLOPES {
                 true => stresses::<S, R, _, 2>(simd, law, count, deformation, pressure, results),

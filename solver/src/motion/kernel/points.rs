@@ -47,13 +47,14 @@ pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
 }
 
 /// J and P of the first `count` SIMD blocks; with a projected pressure p, P + p cof F, J being known.
+/// The slopes of P may be known, and stand in place of the result then.
 pub fn stresses<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
     simd: S,
     law: &L,
     count: usize,
     deformation: &Parts<SimdBlock>,
     pressures: Option<&Parts<SimdBlock>>,
-    (stress, jacobians): (&mut Parts<SimdBlock>, &mut Parts<SimdBlock>),
+    (stress, jacobians, is_known): (&mut Parts<SimdBlock>, &mut Parts<SimdBlock>, bool),
 ) {
     simd.vectorize(
         #[inline(always)]
@@ -62,7 +63,10 @@ pub fn stresses<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
                 for piece in 0..R::PER_BLOCK {
                     let F = load_tensor::<S, R>(simd, deformation, group, piece);
                     let state: Deformation<R> = Deformation::new(F);
-                    let mut P = law.first_piola_kirchhoff(&state);
+                    let mut P = match is_known {
+                        true => load_tensor::<S, R>(simd, stress, group, piece),
+                        false => law.first_piola_kirchhoff(&state),
+                    };
                     match pressures {
                         None => state.J.store(jacobians, group, piece),
                         Some(pressures) => {

@@ -59,7 +59,7 @@ pub const RELATIONS: &[Relation] = &[
     },
     Relation {
         name: "as_voxels",
-        claim: "A box of voxels moves nearly like the box",
+        claim: "A box of voxels comes to rest nearly like the box",
         bound: 0.3,
         reason: "The surface of voxels is smoothed over 0.7 of them, a twentieth of the size: its \
                  edges are rounded, with up to a tenth of what is held there",
@@ -90,7 +90,7 @@ pub const RELATIONS: &[Relation] = &[
     },
     Relation {
         name: "one_material_in_two_regions",
-        claim: "A body of one material moves like one of two regions of that material",
+        claim: "A body of one material comes to rest like one of two regions of that material",
         bound: 0.3,
         reason: "Cells that the border cuts have a point on either side of it: another quadrature \
                  of the same order on clouds as coarse as three spacings",
@@ -101,7 +101,8 @@ pub const RELATIONS: &[Relation] = &[
             let part = build::part(&Frame::home(&subject.scene), &end);
             let at = other.regions.len() - 1;
             other.regions.insert(at, Region { name: "the same".into(), part, ..rest });
-            (subject.scene.inclusion.is_none()).then(|| subject.with(other, &View::default()))?
+            let says = subject.scene.inclusion.is_none() && subject.scene.is_static();
+            says.then(|| subject.with(other, &View::default()))?
         },
     },
 ];
@@ -110,7 +111,11 @@ pub const RELATIONS: &[Relation] = &[
 fn as_voxels(subject: &Subject) -> Option<Compared> {
     let loads_surface = |push: &Push| matches!(push, Push::Traction(..) | Push::Pressure(..));
     let mut scene = subject.scene.clone();
-    if scene.form != Form::Box || scene.components() == 2 || scene.pushes.iter().any(loads_surface)
+    // Of a motion in a few steps over three to six spacings another cloud makes another wave.
+    if scene.form != Form::Box
+        || !scene.is_static()
+        || scene.components() == 2
+        || scene.pushes.iter().any(loads_surface)
     {
         return None;
     }

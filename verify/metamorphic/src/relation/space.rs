@@ -29,12 +29,15 @@ pub const RELATIONS: &[Relation] = &[
     Relation {
         name: "turned_or_mirrored_in_other_pieces",
         claim: "Where patches of points or panels of the boundary follow the axes, turned ones \
-                move nearly in the same way",
+                come to rest nearly alike",
         bound: 0.3,
         reason: "Patches of some ten points, and panels of half a spacing, are cut along the axes one \
                  after the other; another cut is another discretisation of the same order, and clouds \
                  here are as coarse as three spacings",
-        compare: |subject| (!keeps_its_directions(&subject.scene)).then(|| turned(subject))?,
+        compare: |subject| {
+            let scene = &subject.scene;
+            (scene.is_static() && !keeps_its_directions(scene)).then(|| turned(subject))?
+        },
     },
     Relation {
         name: "lengths_times_four",
