@@ -62,7 +62,7 @@ pub const KNOWN: &[Known] = &[
         has: |scene| !scene.is_static(),
         largest: 0.04,
         reason: "the critical step is iterated from random nodal values, which go with the number of \
-                 a node; of some ten steps one more or less is another discretisation in time",
+                 a node; presumably one step of ten more or less, another discretisation in time",
     },
     Known {
         relation: "turned_or_mirrored",
@@ -70,7 +70,7 @@ pub const KNOWN: &[Known] = &[
         has: |scene| !scene.is_static(),
         largest: 0.04,
         reason: "the critical step is iterated from random nodal values, whose directions do not turn \
-                 with the body; of some ten steps one more or less is another discretisation in time",
+                 with the body; presumably one step of ten more or less, another discretisation in time",
     },
     Known {
         relation: "prescribed_values_are_taken",
