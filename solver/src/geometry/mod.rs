@@ -22,8 +22,8 @@ mod voxels;
 
 pub use boundary::Panel;
 pub(crate) use boundary::{
-    BoundaryPoints, TargetSpacing, boundary_points, lattice_cells, merges_voxels, nearest_count,
-    project,
+    BoundaryPoints, CLEARANCE, TargetSpacing, boundary_points, lattice_cells, merges_voxels,
+    nearest_count, project,
 };
 pub use dimension::Dimension;
 pub use distance_function::DistanceFunction;

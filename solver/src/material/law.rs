@@ -90,6 +90,11 @@ impl Law {
         }
     }
 
+    /// Whether its derivative costs more than a product with ∂P/∂F, so that it pays to keep that.
+    pub fn is_costly(&self) -> bool {
+        matches!(self, Law::Ogden(_) | Law::Own(_))
+    }
+
     /// Cauchy stress σ = P Fᵀ/J \[Pa\].
     pub fn cauchy(&self, F: &Matrix3) -> Matrix3 {
         self.first_piola_kirchhoff(F) * F.transpose() / F.determinant()

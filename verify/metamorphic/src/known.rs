@@ -13,7 +13,7 @@ pub struct Known {
     pub scenes: &'static str,
     /// The same as a test.
     pub has: fn(&Scene) -> bool,
-    /// The largest difference that is excused, at most twice the largest that was seen \[–\].
+    /// The largest difference that is excused \[–\].
     pub largest: f64,
     /// Why.
     pub reason: &'static str,

@@ -5,14 +5,11 @@ use crate::algebra::random::Random;
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::nodes::cloud::NodeCloud;
 use crate::geometry::{
-    BoundaryPoints, GeometryError, Shape, TargetSpacing, boundary_points, indices, lattice_cells,
-    project,
+    BoundaryPoints, CLEARANCE, GeometryError, Shape, TargetSpacing, boundary_points, indices,
+    lattice_cells, project,
 };
 use crate::problem::Dimension;
 
-/// Lattice nodes keep more than this distance from the boundary \[spacing\]; a little more, so
-/// that round-off does not decide about those at just that distance.
-const CLEARANCE: f64 = 0.5 + 1e-6;
 /// Smallest distance of jittered nodes from the boundary \[spacing\].
 const JITTER_CLEARANCE: f64 = 0.25;
 

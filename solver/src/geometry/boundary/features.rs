@@ -141,9 +141,9 @@ fn prism(points: &[[f64; 2]], z: (f64, f64), target: &TargetSpacing, features: &
     }
 }
 
-/// Lattice points keep more than this distance from an outline \[spacing\]: more than half by what
-/// round-off may add, as inside of the body.
-const CLEARANCE: f64 = 0.5 + 1e-6;
+/// Lattice points keep more than this distance from a boundary or an outline \[spacing\]; a little more
+/// than half, so that round-off does not decide about those at just that distance.
+pub(crate) const CLEARANCE: f64 = 0.5 + 1e-6;
 
 /// Lattice points inside a polygon, on both of its ends.
 fn caps(points: &[[f64; 2]], z: (f64, f64), spacing: f64, features: &mut Features) {

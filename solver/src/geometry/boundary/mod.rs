@@ -15,6 +15,7 @@ mod target_spacing;
 mod vicinity;
 mod voxel_panels;
 
+pub(crate) use features::CLEARANCE;
 pub use panel::Panel;
 pub(crate) use patch::{Level, Patch};
 pub(crate) use points::{BoundaryPoints, boundary_points, project};

@@ -74,10 +74,7 @@ impl ContactPlan {
     pub(super) fn between_nodes(&self, positions: &[Vector3], u: &[f64]) -> Vec<(u32, Vector3)> {
         let Some(Outside { body, .. }) = &self.outside else { return Vec::new() };
         let d = u.len() / positions.len();
-        let now: Vec<Vector3> =
-            positions.iter().enumerate().map(|(node, X)| X + vector_at(u, node, d)).collect();
-        let mut hash = PointHash::new(self.skin, self.skin);
-        now.iter().for_each(|x| hash.insert(*x));
+        let (now, hash) = self.moved(positions, u);
         let is_inside = |y: &Vector3| {
             let (mut nearest, mut sum, mut count) = ((f64::INFINITY, 0), Vector3::zeros(), 0.0);
             hash.visit(y, AROUND * self.skin, |node, _| {
@@ -112,11 +109,7 @@ impl ContactPlan {
     ) -> Option<Vector3> {
         let cloud = &discretisation.cloud;
         let d = u.len() / cloud.positions.len();
-        let now: Vec<Vector3> = (cloud.positions.iter().enumerate())
-            .map(|(node, X)| X + vector_at(u, node, d))
-            .collect();
-        let mut hash = PointHash::new(self.skin, self.skin);
-        now.iter().for_each(|x| hash.insert(*x));
+        let (now, hash) = self.moved(&cloud.positions, u);
         let body = &self.outside.as_ref()?.body;
         let origin = |y: &Vector3| {
             let (_, nearest) = *hash.nearest(y, usize::MAX, 1).first()?;
@@ -129,6 +122,16 @@ impl ContactPlan {
             (found && body.signed_distance(&X) < -DEEP * self.skin).then_some(X)
         };
         self.samples(index, bounding_box(&now)).iter().find_map(origin)
+    }
+
+    /// Where nodes are now \[m\], and the same to look for those near a place.
+    fn moved(&self, positions: &[Vector3], u: &[f64]) -> (Vec<Vector3>, PointHash) {
+        let d = u.len() / positions.len();
+        let nodes = positions.iter().enumerate();
+        let now: Vec<Vector3> = nodes.map(|(node, X)| X + vector_at(u, node, d)).collect();
+        let mut hash = PointHash::new(self.skin, self.skin);
+        now.iter().for_each(|x| hash.insert(*x));
+        (now, hash)
     }
 
     /// Points inside a narrow obstacle within a box \[m\].

@@ -2,7 +2,7 @@
 
 use super::points::stresses;
 use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock};
-use crate::material::{ConstitutiveLaw, Law};
+use crate::material::ConstitutiveLaw;
 use crate::model::Block;
 use fearless_simd::Simd;
 use std::ops::Range;
@@ -30,7 +30,7 @@ impl Tangents {
 
     /// Counts a derivative, and says whether the tangents are to be used for it.
     pub fn are_worth(&mut self, block: &Block) -> bool {
-        if !matches!(block.law, Law::Ogden(_) | Law::Own(_)) {
+        if !block.law.is_costly() {
             return false;
         }
         self.derivatives += 1;
