@@ -15,7 +15,13 @@ pub struct Frame {
     pub shift: Vector3,
     /// Edges of the box over the size, at home \[–\].
     pub edges: Vector3,
+    /// How far a selection reaches beyond its shape \[m\].
+    pub tolerance: f64,
 }
+
+/// Tolerance of selections over the nodal spacing \[–\], as in a case file that states none:
+/// a part may end where nodes lie, and round-off does not choose whether they are in it.
+const TOLERANCE: f64 = 1e-3;
 
 impl Frame {
     /// The box with a corner at the origin and its edges along the axes.
@@ -25,6 +31,7 @@ impl Frame {
             turn: Matrix3::identity(),
             shift: Vector3::zeros(),
             edges: scene.edges.into(),
+            tolerance: TOLERANCE * scene.size / f64::from(scene.spacings),
         }
     }
 

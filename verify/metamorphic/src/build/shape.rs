@@ -187,13 +187,13 @@ pub fn closed_form_volume(scene: &Scene) -> Option<f64> {
 /// A ball about a place over the size.
 pub fn ball(frame: &Frame, centre: &Vector3, radius: f64) -> Selector {
     let shape = Shape::Sphere { centre: frame.point(centre), radius: frame.size * radius };
-    Selector::Inside { shape, tolerance: 0.0 }
+    Selector::Inside { shape, tolerance: frame.tolerance }
 }
 
 /// What lies on one side of a plane.
 fn side(frame: &Frame, point: &Vector3, normal: &Vector3) -> Selector {
     let shape = Shape::HalfSpace { point: frame.point(point), normal: frame.direction(normal) };
-    Selector::Inside { shape, tolerance: 0.0 }
+    Selector::Inside { shape, tolerance: frame.tolerance }
 }
 
 /// What lies below the middle of the box along an axis.
