@@ -58,9 +58,11 @@ impl Moves<'_> {
     ) {
         let moments = moments(pieces, quadrature);
         let has_gaps = !body.is_convex();
+        // A place belongs to the first region that holds it.
+        let owner = |X: &Vector3| regions.iter().position(|region| region.part.contains(X));
         let inside = |X: &Vector3, region: u16| {
             body.signed_distance(X) <= 0.0
-                && (regions.len() == 1 || regions[region as usize].part.contains(X))
+                && (regions.len() == 1 || owner(X) == Some(usize::from(region)))
         };
         let moved = |point: usize| {
             let (X, region) = (quadrature.positions[point], quadrature.regions[point]);

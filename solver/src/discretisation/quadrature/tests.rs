@@ -246,11 +246,6 @@ fn moved_points_integrate_functions_of_second_order() {
 
 #[test]
 fn moved_points_stay_in_the_plane_and_in_their_regions() {
-    let half = Shape::HalfSpace { point: Vector3::new(0.3, 0.0, 0.0), normal: Vector3::x() };
-    let regions = [
-        region("left", Selector::Inside { shape: half.clone(), tolerance: 0.0 }),
-        region("right", Selector::All),
-    ];
     let dimension = Dimension::PlaneStrain { thickness: 0.1, z: 0.0 };
     let body = Shape::Ellipsoid {
         centre: Vector3::new(0.3, 0.1, 0.0),
@@ -262,14 +257,21 @@ fn moved_points_stay_in_the_plane_and_in_their_regions() {
         largest: f64::INFINITY,
         beside_gap: &|_| false,
     };
-    let rule = |moves: Option<&Moves>| {
-        quadrature_following(&body, &regions, &grid, &unknown, &dimension, moves).unwrap()
-    };
-    let (before, after) = (rule(None), rule(Some(&Moves { stays: &|_| false })));
-    assert!(before.positions != after.positions);
-    assert_eq!((&before.weights, &before.regions), (&after.weights, &after.regions));
-    for (X, region) in after.positions.iter().zip(&after.regions) {
-        assert!(X.z == 0.0 && body.signed_distance(X) <= 0.0, "{X}");
-        assert_eq!(half.signed_distance(X) <= 0.0, *region == 0, "{X}");
+    for step in 0..14 {
+        // Across a cell, so that the pieces on either side become thin.
+        let point = Vector3::new(0.3 + 5e-4 * f64::from(step), 0.0, 0.0);
+        let left = Shape::HalfSpace { point, normal: Vector3::x() };
+        let part = Selector::Inside { shape: left.clone(), tolerance: 0.0 };
+        let regions = [region("left", part), region("rest", Selector::All)];
+        let rule = |moves: Option<&Moves>| {
+            quadrature_following(&body, &regions, &grid, &unknown, &dimension, moves).unwrap()
+        };
+        let (before, after) = (rule(None), rule(Some(&Moves { stays: &|_| false })));
+        assert!(before.positions != after.positions);
+        assert_eq!((&before.weights, &before.regions), (&after.weights, &after.regions));
+        for (X, region) in after.positions.iter().zip(&after.regions) {
+            assert!(X.z == 0.0 && body.signed_distance(X) <= 0.0, "{X}");
+            assert_eq!(left.signed_distance(X) <= 0.0, *region == 0, "{point}: {X}");
+        }
     }
 }
