@@ -29,6 +29,11 @@ pub(super) struct Borders<'a> {
     thin: f64,
 }
 
+/// The region of a place, the first that holds it.
+pub(super) fn owner(regions: &[Region], X: &Vector3) -> Option<usize> {
+    regions.iter().position(|region| region.part.contains(X))
+}
+
 /// A level in a cell: the linear function with its slope and its mean, and the difference.
 struct Fit {
     centre: Vector3,
@@ -112,9 +117,8 @@ impl<'a> Borders<'a> {
         {
             return false;
         }
-        let owner = |X: &Vector3| self.regions.iter().position(|region| region.part.contains(X));
-        let at_centre = owner(&cell.centre);
-        cell.samples(self.components).any(|X| owner(&X) != at_centre)
+        let at_centre = owner(self.regions, &cell.centre);
+        cell.samples(self.components).any(|X| owner(self.regions, &X) != at_centre)
     }
 
     /// The parts of a cell inside the body by region, as far as borders are linear in it; of

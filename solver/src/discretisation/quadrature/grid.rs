@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::{Matrix3, Vector3};
-use crate::discretisation::quadrature::borders::Borders;
+use crate::discretisation::quadrature::borders::{Borders, owner};
 use crate::discretisation::quadrature::cell::{Cell, in_plane};
 use crate::discretisation::quadrature::cut::{cut, spread};
 use crate::discretisation::quadrature::gauss::gauss_legendre;
@@ -368,7 +368,7 @@ impl PointCollector<'_> {
     }
 
     fn region_at(&self, X: &Vector3) -> Result<u16, Error> {
-        let found = self.regions.iter().position(|region| region.part.contains(X));
+        let found = owner(self.regions, X);
         found.map(|index| index as u16).ok_or(Error::PointWithoutRegion { position: *X })
     }
 

@@ -12,6 +12,7 @@ use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::mls::inverse;
 use crate::discretisation::moments::homogeneous;
 use crate::discretisation::neighbours::Neighbours;
+use crate::discretisation::quadrature::borders::owner;
 use crate::discretisation::quadrature::rule::Quadrature;
 use crate::geometry::Shape;
 use crate::problem::Region;
@@ -58,11 +59,9 @@ impl Moves<'_> {
     ) {
         let moments = moments(pieces, quadrature);
         let has_gaps = !body.is_convex();
-        // A place belongs to the first region that holds it.
-        let owner = |X: &Vector3| regions.iter().position(|region| region.part.contains(X));
         let inside = |X: &Vector3, region: u16| {
             body.signed_distance(X) <= 0.0
-                && (regions.len() == 1 || owner(X) == Some(usize::from(region)))
+                && (regions.len() == 1 || owner(regions, X) == Some(usize::from(region)))
         };
         let moved = |point: usize| {
             let (X, region) = (quadrature.positions[point], quadrature.regions[point]);
