@@ -13,6 +13,9 @@ pub const REGULARISATION: f64 = 1e-7;
 pub const WEIGHT_FUNCTION: WeightFunction = WeightFunction::QuarticSpline;
 /// The recommended enforcement of prescribed displacements.
 pub const ENFORCEMENT: Enforcement = Enforcement::Collocation;
+/// Of selectors that state no tolerance, over the nodal spacing \[–\]: a part may end where nodes
+/// lie, and round-off does not choose whether they are in it.
+pub const SELECTION_TOLERANCE: f64 = 1e-3;
 /// Of consistent gradients, over the defect of plain ones \[–\].
 pub const GRADIENT_TOLERANCE: f64 = 1e-3;
 /// The recommended gradients.

@@ -6,13 +6,10 @@ use super::material::{Region, regions};
 use super::version::PROTOCOL;
 use crate::scene::format::{DimensionFormat, Triple};
 use crate::scene::{Case, Diagnostic, ProbeKind, tables};
-use mtled::problem::Motion;
+use mtled::problem::{Motion, defaults};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-
-/// Tolerance of selections that state none, over the spacing \[–\].
-const TOLERANCE: f64 = 1e-3;
 
 /// A job of the solver protocol of mtled: one problem of solid mechanics at one resolution. SI
 /// units; keys that end in _m, _s, _pa, _rad … have these. Every key is always there.
@@ -118,7 +115,7 @@ impl Job {
     ) -> Result<Job, Diagnostic> {
         let format = tables(case)?;
         let Resolution { spacing_m, level, levels, time_limit_s } = resolution;
-        let tolerance_m = TOLERANCE * spacing_m;
+        let tolerance_m = defaults::SELECTION_TOLERANCE * spacing_m;
         let plane = format.plane.as_ref();
         let problem = Problem {
             dimension: format.dimension,

@@ -3,6 +3,7 @@
 use crate::scene::Scene;
 use mtled::Vector3;
 use mtled::algebra::tensor::Matrix3;
+use mtled::problem::defaults::SELECTION_TOLERANCE;
 
 /// From coordinates over the size to places in space: x = size (Q X + shift).
 #[derive(Debug, Clone, Copy)]
@@ -19,10 +20,6 @@ pub struct Frame {
     pub tolerance: f64,
 }
 
-/// Tolerance of selections over the nodal spacing \[–\], as in a case file that states none:
-/// a part may end where nodes lie, and round-off does not choose whether they are in it.
-const TOLERANCE: f64 = 1e-3;
-
 impl Frame {
     /// The box with a corner at the origin and its edges along the axes.
     pub fn home(scene: &Scene) -> Frame {
@@ -31,7 +28,7 @@ impl Frame {
             turn: Matrix3::identity(),
             shift: Vector3::zeros(),
             edges: scene.edges.into(),
-            tolerance: TOLERANCE * scene.size / f64::from(scene.spacings),
+            tolerance: SELECTION_TOLERANCE * scene.size / f64::from(scene.spacings),
         }
     }
 

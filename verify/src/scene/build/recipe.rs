@@ -13,9 +13,8 @@ use mtled::problem::{
     BackgroundGrid, Basis, Cloud, Dimension, Gradients, Mistake, Recipe, Refinement, defaults,
 };
 
-/// Tolerance of selectors that state none, over the nodal spacing \[–\].
-const TOLERANCE: f64 = 1e-3;
-/// The same where the nodes come from a file \[m\].
+/// Tolerance of selectors that state none where the nodes come from a file \[m\]; else it is
+/// [`defaults::SELECTION_TOLERANCE`].
 const TOLERANCE_OF_GIVEN_NODES: f64 = 1e-6;
 
 /// Nodes lie in a plane whose thickness is at most this fraction of its extent \[–\].
@@ -24,7 +23,7 @@ const FLAT: f64 = 1e-6;
 /// Tolerance \[m\] of selectors that state none.
 pub fn tolerance(format: &DiscretisationFormat) -> f64 {
     match format.spacing {
-        Some(spacing) if spacing > 0.0 => TOLERANCE * spacing,
+        Some(spacing) if spacing > 0.0 => defaults::SELECTION_TOLERANCE * spacing,
         _ => TOLERANCE_OF_GIVEN_NODES,
     }
 }
