@@ -1,14 +1,18 @@
 //! Tables as CSV.
 
 use super::table::{Cells, Table};
+use ::csv::{QuoteStyle, WriterBuilder};
 use anyhow::Result;
 use mtled_checks::escape::csv_text;
 
 /// A header and a line for each row (RFC 4180); an empty cell is nothing between commas.
-/// Numbers have as many digits as tell them from every other.
+/// Numbers have as many digits as tell them from every other. The header is in quotation marks:
+/// DuckDB guesses from the first 20 480 rows whether there are any, and where the first came
+/// later it took the comma in it for the end of a cell.
 pub fn to_csv(table: &Table) -> Result<Vec<u8>> {
-    let mut writer = ::csv::Writer::from_writer(Vec::new());
-    writer.write_record(table.columns.iter().map(|column| column.name))?;
+    let mut header = WriterBuilder::new().quote_style(QuoteStyle::Always).from_writer(Vec::new());
+    header.write_record(table.columns.iter().map(|column| column.name))?;
+    let mut writer = ::csv::Writer::from_writer(header.into_inner()?);
     for row in 0..table.rows {
         writer.write_record(table.columns.iter().map(|column| cell(&column.cells, row)))?;
     }
@@ -45,6 +49,7 @@ mod tests {
         };
         let written = to_csv(&table).unwrap();
         let mut reader = ::csv::Reader::from_reader(written.as_slice());
+        assert!(written.starts_with(b"\"value\","));
         assert_eq!(reader.headers().unwrap(), ["value", "text", "none"].as_slice());
         let rows: Vec<_> = reader.records().map(Result::unwrap).collect();
         for (row, (number, text)) in rows.iter().zip(numbers.iter().zip(&texts)) {
