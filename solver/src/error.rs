@@ -231,6 +231,16 @@ pub enum Error {
         residual: f64,
         indefinite: bool,
     },
+    #[error(
+        "sensitivities are those of a static problem that Newton's method solves: set its motion to Motion::Equilibrium \
+             or Motion::Automatic, without friction on obstacles"
+    )]
+    NoEquilibriumToVary,
+    #[error(
+        "the linear problem of a sensitivity is solved to {residual:.1e} of its forces only, and {limit:.0e} is needed: the \
+             body may be about to lose its stability, or contacts may be about to open; look at it under a little less load"
+    )]
+    NoSensitivity { residual: f64, limit: f64 },
     #[error("{then}; newton's method, tried before, came to {reached:.4} of the load")]
     NeitherSolver { reached: f64, then: Box<Error> },
     #[error(

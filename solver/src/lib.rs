@@ -61,6 +61,7 @@ pub mod model;
 pub mod motion;
 
 pub mod audit;
+pub mod sensitivity;
 
 pub mod simulation;
 
@@ -83,4 +84,5 @@ pub use problem::{
     Amplitude, BodyForce, EssentialCondition, Friction, Motion, Newton, Obstacle, ObstacleSide,
     Problem, Recipe, Region, Relaxation,
 };
+pub use sensitivity::{Adjoint, Answer};
 pub use simulation::Simulation;

@@ -15,6 +15,7 @@ use crate::motion::simulate::simulate;
 use crate::motion::state::State;
 use crate::motion::summary::Summary;
 use crate::problem::Problem;
+use crate::sensitivity::{Adjoint, Answer};
 
 /// A problem that is set up, and the state that it has reached.
 ///
@@ -65,6 +66,14 @@ impl Simulation {
     /// What the problem asked beside what the run has done, once it has come to its end.
     pub fn audit(&self) -> Result<Audit, Error> {
         audit(&self.problem, &self.discretisation, &self.model, &self.state)
+    }
+
+    /// How answers at the end of a static run change with the numbers of the problem.
+    ///
+    /// # Errors
+    /// As [`Adjoint::new`].
+    pub fn adjoint(&self, answers: &[Answer]) -> Result<Adjoint<'_>, Error> {
+        Adjoint::new(&self.problem, &self.discretisation, &self.model, &self.state, answers)
     }
 
     /// The displacement field \[m\] at reference positions \[m\]. Shape functions do not

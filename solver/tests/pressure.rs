@@ -7,7 +7,7 @@ use common::*;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::{Selector, Shape};
 use mtled::material::*;
-use mtled::model::Model;
+use mtled::model::{Following, Model};
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -115,7 +115,13 @@ fn the_stiffness_of_a_pressure_is_the_symmetric_part_of_its_derivative() {
             at(1.0).iter().zip(at(-1.0)).map(|(a, b)| (a - b) / (2.0 * step)).collect();
         let mut product = zero.clone();
         let d = model.components;
-        model.pressures[0].add_stiffness_times(0.0, &u, &v, d, &mut product);
+        model.pressures[0].add_stiffness_times(
+            0.0,
+            (&u, &v),
+            Following::Symmetric,
+            d,
+            &mut product,
+        );
         // Of a quadratic form only the symmetric part counts.
         let (expected, found) = (work(&v, &zero, &difference), work(&v, &zero, &product));
         let scale: f64 = product.iter().zip(&v).map(|(p, v)| (p * v).abs()).sum();
@@ -123,7 +129,7 @@ fn the_stiffness_of_a_pressure_is_the_symmetric_part_of_its_derivative() {
         // And it is symmetric.
         let w = noise(&model, 1.0, 3);
         let mut other = zero.clone();
-        model.pressures[0].add_stiffness_times(0.0, &u, &w, d, &mut other);
+        model.pressures[0].add_stiffness_times(0.0, (&u, &w), Following::Symmetric, d, &mut other);
         let (one, two) = (work(&w, &zero, &product), work(&v, &zero, &other));
         assert!((one - two).abs() < 1e-12 * scale, "{one} {two}");
     }

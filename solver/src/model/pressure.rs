@@ -31,6 +31,15 @@ pub fn pressure_loads(
     problem.loads.pressures.iter().map(load).collect()
 }
 
+/// Which part of the stiffness of a pressure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Following {
+    /// ½(K + Kᵀ), which conjugate gradients take.
+    Symmetric,
+    /// Kᵀ.
+    Transposed,
+}
+
 impl PressureLoad {
     fn new(
         pressure: &Pressure,
@@ -85,14 +94,14 @@ impl PressureLoad {
         }
     }
 
-    /// Adds ½(K + Kᵀ) v \[N\] with K = ∂f/∂u of [`Self::add_force`] (method book, eq. 14.5).
-    /// K is symmetric where the rim of the surface is held or there is none; elsewhere
+    /// Adds ½(K + Kᵀ) v or Kᵀ v \[N\] with K = ∂f/∂u of [`Self::add_force`] (method book,
+    /// eq. 14.5). K is symmetric where the rim of the surface is held or there is none; elsewhere
     /// the rest of it lies along the rim.
     pub fn add_stiffness_times(
         &self,
         t: f64,
-        u: &[f64],
-        v: &[f64],
+        (u, v): (&[f64], &[f64]),
+        part: Following,
         components: usize,
         product: &mut [f64],
     ) {
@@ -100,12 +109,16 @@ impl PressureLoad {
         if pressure == 0.0 {
             return;
         }
+        let (own, other) = match part {
+            Following::Symmetric => (0.5, 0.5),
+            Following::Transposed => (0.0, 1.0),
+        };
         for (point, area) in self.areas.iter().enumerate() {
             let F = self.rows.deformation_gradient(point, u, components);
             let dF = self.rows.gradient(point, v, components);
             let V = self.rows.interpolate(point, v, components);
-            let force = cofactor_slope(&F, &dF) * area * (-0.5 * pressure);
-            let stress = cofactor_slope(&F, &(V * area.transpose())) * (-0.5 * pressure);
+            let force = cofactor_slope(&F, &dF) * area * (-own * pressure);
+            let stress = cofactor_slope(&F, &(V * area.transpose())) * (-other * pressure);
             for entry in self.rows.row(point) {
                 let node = self.rows.nodes[entry] as usize;
                 let along = self.rows.phi[entry] * force + stress * self.rows.grad_phi[entry];

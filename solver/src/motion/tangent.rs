@@ -1,8 +1,8 @@
 //! Products with the tangent operator K = ∂f_int/∂u, without a matrix.
 #![allow(non_snake_case)]
 
-use crate::model::Model;
 use crate::model::essential::ConstraintForces;
+use crate::model::{Following, Model};
 use crate::motion::internal_force::{
     OwnPressures, Workspace, linearise, linearised_stiffness_times,
 };
@@ -61,14 +61,23 @@ impl<'a> Tangent<'a> {
         product
     }
 
-    /// K v \[N\] less the stiffness of pressures, not projected.
+    /// K v \[N\] less the stiffness of pressures, of which the symmetric part counts; not projected.
     pub fn stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {
+        self.times(Following::Symmetric, direction)
+    }
+
+    /// (K less all of the stiffness of pressures)ᵀ v \[N\], not projected.
+    pub fn transposed_times(&mut self, direction: &[f64]) -> Vec<f64> {
+        self.times(Following::Transposed, direction)
+    }
+
+    fn times(&mut self, part: Following, direction: &[f64]) -> Vec<f64> {
         let mut product = self.internal_stiffness_times(direction);
         if !self.model.pressures.is_empty() {
             let mut following = vec![0.0; self.u.len()];
             for load in &self.model.pressures {
                 let d = self.model.components;
-                load.add_stiffness_times(self.t, self.u, direction, d, &mut following);
+                load.add_stiffness_times(self.t, (self.u, direction), part, d, &mut following);
             }
             product.iter_mut().zip(&following).for_each(|(p, f)| *p -= f);
         }

@@ -5,7 +5,7 @@ use super::collocation::Collocation;
 use super::mean_gradient::fit_mean_gradient;
 use super::rows::{ConditionState, ConstraintRow, rows_of_component, selected_nodes};
 use crate::algebra::sparse_cholesky::Scratch;
-use crate::algebra::tensor::{Vector3, vector_at};
+use crate::algebra::tensor::Vector3;
 use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::problem::{Enforcement, EssentialCondition, Prescribed, Problem};
@@ -18,15 +18,15 @@ pub struct Constraints {
     /// As stated in the problem.
     pub conditions: Vec<EssentialCondition>,
     /// Consecutive time intervals between releases; the last one has no end.
-    stages: Vec<Stage>,
+    pub(super) stages: Vec<Stage>,
 }
 
 #[derive(Debug, Clone)]
-struct Stage {
+pub(super) struct Stage {
     /// Active for t < `until` \[s\].
     until: f64,
     /// One set per constrained component.
-    sets: Vec<ConstraintSet>,
+    pub(super) sets: Vec<ConstraintSet>,
 }
 
 /// All constraints on one component of the displacement.
@@ -37,7 +37,7 @@ pub struct ConstraintSet {
     /// In ascending order of nodes.
     pub rows: Vec<ConstraintRow>,
     /// `None`: the nodal parameter is set directly. Sets with the same nodes have the same.
-    collocation: Option<Arc<Collocation>>,
+    pub(super) collocation: Option<Arc<Collocation>>,
 }
 
 impl ConstraintSet {
@@ -85,27 +85,12 @@ impl ConstraintSet {
 #[derive(Debug, Default)]
 pub struct ConstraintForces {
     /// \[set\]\[row\] \[kg·m\], the sets of `stage`.
-    multipliers: Vec<Vec<f64>>,
-    stage: usize,
+    pub(super) multipliers: Vec<Vec<f64>>,
+    pub(super) stage: usize,
     states: Vec<ConditionState>,
     /// Of sets with the same nodes, one after the other.
     values: Vec<f64>,
     scratch: Scratch,
-}
-
-/// What a condition exerts on the body: all that it takes to move its nodes as prescribed.
-/// The weight and the tractions of these nodes are therefore part of it, and reactions and
-/// loads add up to zero at rest. A node that two conditions prescribe alike counts with the
-/// first stated.
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub struct Reaction {
-    /// \[N\]
-    pub force: Vector3,
-    /// \[N·m\]
-    pub moment: Vector3,
-    /// Sum of the sizes of the forces at the nodes \[N\]: more than that of their sum where they
-    /// balance each other.
-    pub sizes: f64,
 }
 
 impl Constraints {
@@ -246,13 +231,13 @@ impl Constraints {
         self.enforce_targets(t, mass, u, forces, |_, _| 0.0, |_, _| ());
     }
 
-    fn enforce_targets(
+    pub(super) fn enforce_targets(
         &self,
         t: f64,
         mass: &[f64],
         u: &mut [f64],
         forces: &mut ConstraintForces,
-        target: impl Fn(&ConstraintRow, usize) -> f64,
+        mut target: impl FnMut(&ConstraintRow, usize) -> f64,
         mut on_change: impl FnMut(usize, f64),
     ) {
         forces.stage = self.stage(t);
@@ -280,40 +265,6 @@ impl Constraints {
                 }
             }
         }
-    }
-
-    /// Force, and moment about `about` \[m\], of each condition on a body with
-    /// reference `positions` \[node\] \[m\] and nodal parameters `u` \[component of
-    /// node\] \[m\]: the multipliers of the last enforcement times `force_factor`
-    /// \[1/s²\] (method book, eqs. 15.3 and 15.4).
-    pub fn reactions(
-        &self,
-        forces: &ConstraintForces,
-        force_factor: f64,
-        about: &Vector3,
-        positions: &[Vector3],
-        u: &[f64],
-    ) -> Vec<Reaction> {
-        let components = u.len() / positions.len();
-        let mut reactions = vec![Reaction::default(); self.conditions.len()];
-        let sets = &self.stages[forces.stage].sets;
-        for (set, multipliers) in sets.iter().zip(&forces.multipliers) {
-            for (i, (row, multiplier)) in set.rows.iter().zip(multipliers).enumerate() {
-                let node = row.node as usize;
-                // Collocation prescribes the field, so the force acts there.
-                let displacement = match &set.collocation {
-                    Some(collocation) => collocation.displacement(i, u, components),
-                    None => vector_at(u, node, components),
-                };
-                let mut force = Vector3::zeros();
-                force[set.component] = multiplier * force_factor;
-                let reaction = &mut reactions[row.condition as usize];
-                reaction.force += force;
-                reaction.sizes += force.norm();
-                reaction.moment += (positions[node] + displacement - about).cross(&force);
-            }
-        }
-        reactions
     }
 }
 

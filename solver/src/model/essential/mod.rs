@@ -4,9 +4,11 @@
 mod collocation;
 mod constraints;
 mod mean_gradient;
+mod reactions;
 mod rows;
 mod shared;
 
-pub use constraints::{ConstraintForces, ConstraintSet, Constraints, Reaction};
+pub use constraints::{ConstraintForces, ConstraintSet, Constraints};
+pub use reactions::Reaction;
 pub use rows::ConstraintRow;
 pub(crate) use shared::check_shared_nodes;

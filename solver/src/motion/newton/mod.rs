@@ -1,6 +1,7 @@
 //! Newton's method towards a static solution, with contact.
 
 mod active_contacts;
+mod adjoint;
 mod branch;
 mod drift;
 mod equilibrate;
@@ -12,4 +13,5 @@ mod pressures;
 mod solver;
 mod taken;
 
+pub(crate) use adjoint::Balanced;
 pub(crate) use equilibrate::equilibrate;

@@ -64,6 +64,13 @@ impl System<'_> {
         self.with_rest(model, diagonal, v, product)
     }
 
+    /// Kᵀ v \[N\], without what is added to K.
+    pub fn transposed_times(mut self, model: &Model, v: &[f64]) -> Vec<f64> {
+        let mut product = self.tangent.transposed_times(v);
+        add_sliding(model, &self.sliding, v, &mut product);
+        product
+    }
+
     /// Both rows of the system with pressures: (K + shift D) v + s Gᵀ q and s G v − S q, one
     /// after the other.
     pub fn saddle_times(
