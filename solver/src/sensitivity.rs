@@ -21,28 +21,28 @@ use crate::problem::{Motion, Newton, Problem};
 /// A number that a solution answers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Answer {
-    /// A component of Σ_a s_a u_a \[m\]: of the displacement at a place, where s_a are the shape
-    /// functions there, of a mean or of the centre of mass of a part.
+    /// Σ_a s_a u_a \[m\] along a direction: the displacement of a place, where s_a are the shape
+    /// functions there, a mean, or that of the centre of mass of a part.
     Displacement {
         /// Nodes and their s_a \[–\].
         weights: Vec<(u32, f64)>,
-        /// 0, 1, 2 for x, y, z.
-        component: usize,
+        /// Unit vector; along the displacement itself its length is answered.
+        along: Vector3,
     },
-    /// A component of the force \[N\] that a condition exerts.
+    /// The force \[N\] that a condition exerts along a direction.
     Force {
         /// Index of the condition.
         condition: usize,
-        /// 0, 1, 2 for x, y, z.
-        component: usize,
+        /// Unit vector.
+        along: Vector3,
     },
-    /// A component of the moment \[N·m\] that a condition exerts.
+    /// The moment \[N·m\] that a condition exerts about an axis.
     Moment {
         /// Index of the condition.
         condition: usize,
-        /// 0, 1, 2 for x, y, z.
-        component: usize,
-        /// \[m\]
+        /// Unit vector.
+        along: Vector3,
+        /// A point on the axis \[m\].
         about: Vector3,
     },
     /// Of the whole body \[J\].
@@ -173,35 +173,35 @@ impl<'a> Adjoint<'a> {
 /// An answer at an equilibrium under the conditions of time `t` \[s\].
 fn asked(answer: &Answer, model: &Model, balanced: &mut Balanced, t: f64) -> Asked {
     let u = balanced.displacement().to_vec();
-    let (d, axis) = (model.components, |component: usize| Vector3::ith(component, 1.0));
+    let d = model.components;
     let still = || vec![0.0; u.len()];
     let Model { positions, inertia, constraints, .. } = model;
     let body = (&positions[..], &inertia[..], &u[..]);
     // ∂J/∂u, and the motion that ∂J/∂λ is.
     let (value, slope, mut held) = match answer {
-        Answer::Displacement { weights, component } => {
+        Answer::Displacement { weights, along } => {
             let mut slope = still();
             for (node, weight) in weights {
-                slope[d * *node as usize + component] += weight;
+                let own = &mut slope[d * *node as usize..][..d];
+                own.iter_mut().zip(along).for_each(|(slope, along)| *slope += weight * along);
             }
             (dot(&slope, &u), slope, still())
         }
-        Answer::Force { condition, component } => {
+        Answer::Force { condition, along } => {
             let forces = balanced.constraint_forces();
             let all = constraints.reactions(&forces, 1.0, &Vector3::zeros(), positions, &u);
-            let motion = |_: &Vector3| axis(*component);
+            let motion = |_: &Vector3| *along;
             let held = constraints.motion_of(*condition, t, body, &motion);
-            (all[*condition].force[*component], still(), held)
+            (all[*condition].force.dot(along), still(), held)
         }
-        Answer::Moment { condition, component, about } => {
+        Answer::Moment { condition, along, about } => {
             let forces = balanced.constraint_forces();
             let all = constraints.reactions(&forces, 1.0, about, positions, &u);
-            let along = axis(*component);
             let motion = |x: &Vector3| along.cross(&(x - about));
             let held = constraints.motion_of(*condition, t, body, &motion);
             let size = (d, u.len());
-            let slope = constraints.moment_slope(*condition, (&forces, 1.0), &along, size);
-            (all[*condition].moment[*component], slope, held)
+            let slope = constraints.moment_slope(*condition, (&forces, 1.0), along, size);
+            (all[*condition].moment.dot(along), slope, held)
         }
         Answer::StrainEnergy => {
             let mut buffers = Buffers::new(model, false);

@@ -84,6 +84,12 @@ fn blown(mut problem: Problem) -> Problem {
     problem
 }
 
+/// Compressed between plates, under no load.
+fn unloaded(mut problem: Problem) -> Problem {
+    problem.loads.body_forces.clear();
+    problem
+}
+
 /// Pressed upon a ball below its middle.
 fn on_ball(mut problem: Problem) -> Problem {
     problem.conditions.remove(0);
@@ -126,15 +132,15 @@ fn answers(problem: &Problem) -> Vec<Answer> {
     let rows = simulation.discretisation.rows_at(&[place]).unwrap();
     let weights: Vec<(u32, f64)> =
         rows.row(0).map(|entry| (rows.nodes[entry], rows.phi[entry])).collect();
-    let components = 0..problem.dimension.components();
+    let (components, axis) = (0..problem.dimension.components(), |k| Vector3::ith(k, 1.0));
     let mut answers: Vec<Answer> = components
         .clone()
-        .map(|component| Answer::Displacement { weights: weights.clone(), component })
+        .map(|k| Answer::Displacement { weights: weights.clone(), along: axis(k) })
         .collect();
     for condition in 0..problem.conditions.len() {
-        answers.extend(components.clone().map(|component| Answer::Force { condition, component }));
+        answers.extend(components.clone().map(|k| Answer::Force { condition, along: axis(k) }));
         let about = Vector3::new(0.0, 0.01, 0.02);
-        answers.push(Answer::Moment { condition, component: 2, about });
+        answers.push(Answer::Moment { condition, along: axis(2), about });
     }
     answers.push(Answer::StrainEnergy);
     answers
@@ -179,6 +185,12 @@ fn material_constants_weight_and_prescribed_values_change_answers_as_differences
     let problem = bent(jittered(cube(5), 0.2, 3), 0.3);
     agrees(&problem, &OF_MATERIAL, AGREEMENT);
     agrees(&problem, &[("top", TOP)], AGREEMENT);
+}
+
+#[test]
+fn the_energy_of_a_body_without_loads_has_an_adjoint_of_0() {
+    let problem = unloaded(bent(jittered(cube(5), 0.2, 3), 0.3));
+    agrees(&problem, &[("Young's modulus", YOUNG), ("top", TOP)], AGREEMENT);
 }
 
 #[test]

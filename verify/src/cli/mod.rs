@@ -15,6 +15,7 @@ mod publish;
 mod python;
 mod reference;
 mod report;
+mod sensitivity;
 mod solve;
 mod streams;
 mod study;
@@ -55,6 +56,7 @@ const EXAMPLES: &str = "Examples:
   mtled warp reports/brain_slice --image t1.nii deform an image by the result of a run
   mtled inspect my_case.toml                    are its nodes and supports suitable?
   mtled budget my_case.toml                     how large is the error, why, and at what cost?
+  mtled sensitivity my_case.toml                which of its numbers matter most?
   mtled tune my_case.toml --target-error 1%     the cheapest recipe with this accuracy
   mtled study convergence my_case.toml          errors over spacings, with orders
   mtled case new block -o my_case.toml          a commented case to start from
@@ -83,6 +85,8 @@ enum Command {
     Init(init::InitArgs),
     /// Estimate the error of a case, its parts, and the cost of reducing each.
     Budget(budget::BudgetArgs),
+    /// Find which numbers of a static case matter most for its answers, in per cent per per cent.
+    Sensitivity(sensitivity::SensitivityArgs),
     /// Find the cheapest recipe with at most a given error, or the most accurate one for a given
     /// cost.
     Tune(tune::TuneArgs),
@@ -190,6 +194,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Verify(arguments) => verify::verify(arguments, &cli.common),
         Command::Init(arguments) => init::init(arguments, &cli.common),
         Command::Budget(arguments) => budget::budget(arguments, &cli.common),
+        Command::Sensitivity(arguments) => sensitivity::sensitivity(arguments, &cli.common),
         Command::Tune(arguments) => tune::tune_cases(arguments, &cli.common),
         Command::Report(arguments) => report::report(arguments, &cli.common),
         Command::Study(command) => study::study(command, &cli.common),

@@ -82,7 +82,9 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         Error::Mistake(_) => "discretisation",
         Error::Geometry(GeometryError::NoVolume) => "geometry.shape",
         Error::Geometry(_) => "discretisation",
-        Error::NoEquilibrium { .. } => "time.solver",
+        Error::NoEquilibrium { .. } | Error::NoEquilibriumToVary | Error::NoSensitivity { .. } => {
+            "time.solver"
+        }
         Error::HasRun { .. }
         | Error::Diverged { .. }
         | Error::Inverted { .. }

@@ -19,6 +19,11 @@ pub struct MassCentre {
 }
 
 impl MassCentre {
+    /// s_a \[node\] \[–\].
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
     /// Displacement of the centre \[m\] for nodal parameters `u`.
     pub fn displacement(&self, u: &[f64], components: usize) -> Vector3 {
         let mut displacement = Vector3::zeros();

@@ -19,6 +19,9 @@ use crate::problem::Newton;
 const BALANCED: f64 = 1e-9;
 /// Free forces that a linear problem leaves, over those that it begins with \[–\].
 const SOLVED: f64 = 1e-8;
+/// Free forces smaller than this part of all are judged by that \[–\]: of a body without loads those
+/// of its energy are round-off.
+const ROUND_OFF: f64 = 1e-3;
 /// The same above which it has no solution to speak of \[–\].
 const UNSOLVED: f64 = 1e-5;
 /// What one solution with the symmetric part of K aims at \[–\].
@@ -92,7 +95,8 @@ impl<'a> Balanced<'a> {
         let mut z = held;
         let begin = self.left_by(&z, forces);
         let mut free = self.free_part(&begin);
-        let first = self.product(&free, &free).sqrt();
+        let least = ROUND_OFF * self.product(&begin, &begin).sqrt();
+        let first = self.product(&free, &free).sqrt().max(least);
         let mut directions: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
         while self.product(&free, &free).sqrt() > SOLVED * first && directions.len() < MOST_ROUNDS {
             let mut motion = self.solved(&free);
