@@ -2,6 +2,7 @@
 
 pub(crate) mod lanes;
 pub(crate) mod packed;
+pub(crate) mod pseudo_inverse;
 pub mod random;
 pub mod real;
 pub(crate) mod sets;

@@ -1,6 +1,7 @@
 //! Affine moments of values at points.
 #![allow(non_snake_case)]
 
+use crate::algebra::pseudo_inverse::pseudo_inverse;
 use crate::algebra::tensor::Vector3;
 use nalgebra::{Matrix4, Matrix4x3, Vector4};
 
@@ -9,7 +10,7 @@ pub fn homogeneous(x: &Vector3) -> Vector4<f64> {
     Vector4::new(1.0, x.x, x.y, x.z)
 }
 
-/// Directions with less than this fraction of the largest moment are empty \[–\].
+/// Directions with less than this fraction of all sizes are empty \[–\].
 const EMPTY: f64 = 1e-12;
 
 /// Changes the `values` at the points of `own` as little as possible, in proportion
@@ -36,8 +37,6 @@ pub fn reduce_moments(
         gram += sizes[i] * p(i) * p(i).transpose();
         moments += p(i) * values[i].transpose();
     }
-    if let Ok(inverse) = gram.pseudo_inverse(EMPTY * total) {
-        let change = inverse * excess(moments, length);
-        own.iter().for_each(|&i| values[i] -= sizes[i] * change.tr_mul(&p(i)));
-    }
+    let change = pseudo_inverse(gram, EMPTY * total) * excess(moments, length);
+    own.iter().for_each(|&i| values[i] -= sizes[i] * change.tr_mul(&p(i)));
 }

@@ -12,7 +12,7 @@ from .case import Case, bundled, load
 from .errors import CaseError, ImageError, Mistake, MtledError, SetUpError, SolveError
 from .protocol import Refused, Solver, solver
 from .result import Picture, Result, WarpedImage
-from .studies import Report, budget, measure_solvers, study, tune, verify
+from .studies import Report, Sensitivities, budget, measure_solvers, sensitivity, study, tune, verify
 
 __all__ = [
     "Case",
@@ -25,6 +25,7 @@ __all__ = [
     "Refused",
     "Report",
     "Result",
+    "Sensitivities",
     "SetUpError",
     "SolveError",
     "Solver",
@@ -37,6 +38,7 @@ __all__ = [
     "measure_solvers",
     "problem",
     "schema",
+    "sensitivity",
     "solver",
     "study",
     "tune",

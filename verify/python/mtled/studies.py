@@ -97,6 +97,51 @@ def budget(case: CaseLike, **options: Any) -> Report:
     return _report(["budget"], [case], Path("reports", "budget", _name(case)), options)
 
 
+class Sensitivities:
+    """How the answers of a static case change with its numbers."""
+
+    def __init__(self, document: dict[str, Any]) -> None:
+        #: What the program prints as JSON.
+        self.json = document
+        #: Value of each answer in its SI unit.
+        self.answers: dict[str, float] = {answer["name"]: answer["value"] for answer in document["answers"]}
+        #: Change of each answer in per cent where a number grows by one per cent: numbers by their
+        #: keys, those that matter most first, answers by their names.
+        self.per_cent_per_per_cent = self._by_key("per_cent_per_per_cent")
+        #: Derivative of each answer by each number, in SI units.
+        self.derivatives = self._by_key("derivatives")
+        #: ``per_cent_per_per_cent`` by solutions on both sides of each number; empty without ``check``.
+        self.by_solutions = self._by_key("by_solutions")
+
+    def _by_key(self, what: str) -> dict[str, dict[str, float]]:
+        numbers = (number for number in self.json["numbers"] if number[what] is not None)
+        return {number["key"]: dict(zip(self.answers, number[what], strict=True)) for number in numbers}
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """``per_cent_per_per_cent`` as a data frame: a row for each number, a column for each answer."""
+        import pandas
+
+        return pandas.DataFrame.from_dict(self.per_cent_per_per_cent, orient="index")
+
+    def __repr__(self) -> str:
+        most = max(self.per_cent_per_per_cent, key=self._largest, default=None)
+        return f"<mtled.Sensitivities of {len(self.answers)} answers, most to {most}>"
+
+    def _largest(self, key: str) -> float:
+        return max(map(abs, self.per_cent_per_per_cent[key].values()))
+
+
+def sensitivity(case: CaseLike, *, of: Sequence[str] = (), check: bool = False, **options: Any) -> Sensitivities:
+    """Which numbers of a static case matter most for its answers (``mtled sensitivity``).
+
+    ``of`` names answers such as ``"force/top"`` or ``"displacement/middle.z"``; without names they are
+    those of all probes and supports and the strain energy. ``check`` solves the case on both sides of
+    each number too.
+    """
+    document, _ = _table(["sensitivity"], [case], {"of": list(of), "check": check} | options)
+    return Sensitivities(document)
+
+
 def measure_solvers(
     solvers: Mapping[str, str | os.PathLike[str]],
     *cases: CaseLike,
@@ -133,19 +178,26 @@ def _name(case: CaseLike) -> str:
 
 
 def _report(command: Sequence[str], cases: Iterable[CaseLike], folder: Path, options: Mapping[str, Any]) -> Report:
-    options = {name: value for name, value in options.items() if value is not None and value is not False}
-    folder = Path(options.pop("out", folder))
+    folder = Path(options.get("out") or folder)
+    document, outcome = _table(command, cases, {**options, "out": folder})
+    return Report(document, outcome, folder)
+
+
+def _table(
+    command: Sequence[str], cases: Iterable[CaseLike], options: Mapping[str, Any]
+) -> tuple[dict[str, Any], str]:
+    """What a command prints as JSON, and its outcome."""
     with tempfile.TemporaryDirectory(prefix="mtled-") as own:
-        names = [_file(case, Path(own)) for case in cases]
-        arguments = [*command, *names, "--out", str(folder), "--format", "json", "--quiet"]
+        arguments = [*command, *(_file(case, Path(own)) for case in cases), "--format", "json", "--quiet"]
         for name, value in options.items():
-            arguments += _option(name, value)
+            if value is not None and value is not False:
+                arguments += _option(name, value)
         code, printed, messages = _run(arguments)
     if code == _STOPPED:
         raise KeyboardInterrupt
     if code not in _OUTCOMES or not printed.strip():
         raise _error(messages, code)
-    return Report(json.loads(printed), _OUTCOMES[code], folder)
+    return json.loads(printed), _OUTCOMES[code]
 
 
 def _file(case: CaseLike, folder: Path) -> str:
@@ -167,7 +219,7 @@ def _option(name: str, value: Any) -> list[str]:
     flag = f"--{name.replace('_', '-')}"
     if value is True:
         return [flag]
-    if name in ("solver", "set", "reference") and isinstance(value, (list, tuple)):
+    if name in ("of", "solver", "set", "reference") and isinstance(value, (list, tuple)):
         return [word for item in value for word in (flag, str(item))]
     if isinstance(value, (list, tuple)):
         value = ",".join(map(str, value))

@@ -62,6 +62,22 @@ def test_tuning_writes_a_case_file(here):
         assert list(report.folder.glob("*.tuned.toml"))
 
 
+def test_sensitivities_are_tables_by_numbers_and_answers(here):
+    found = mtled.sensitivity("cube_shear", of=["force/top", "strain_energy"], check=True)
+    young = "material.tissue.young_modulus"
+    assert list(found.answers) == ["force/top", "strain_energy"]
+    # A force grows as the stiffness where displacements are prescribed.
+    assert found.per_cent_per_per_cent[young]["force/top"] == pytest.approx(1.0, abs=1e-7)
+    assert found.by_solutions[young]["force/top"] == pytest.approx(1.0, abs=1e-4)
+    modulus = next(number["value"] for number in found.json["numbers"] if number["key"] == young)
+    assert found.derivatives[young]["force/top"] == pytest.approx(found.answers["force/top"] / modulus)
+    assert "prescribe.top" in repr(found)
+    pytest.importorskip("pandas")
+    assert found.to_pandas().loc[young, "strain_energy"] == pytest.approx(1.0, abs=1e-7)
+    with pytest.raises(mtled.MtledError, match="there is no answer `force/bottm`"):
+        mtled.sensitivity("cube_shear", of=["force/bottm"])
+
+
 def test_a_mistake_in_a_studied_case_is_a_case_error(here):
     with pytest.raises(mtled.MtledError, match="nowhere"):
         mtled.study("convergence", "nowhere.toml")

@@ -11,7 +11,7 @@ use mtled::error::Error;
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
-use mtled::problem::{Motion, Problem};
+use mtled::problem::{Friction, Motion, Obstacle, Problem};
 use mtled::{Adjoint, Answer};
 use std::path::Path;
 
@@ -168,27 +168,23 @@ pub fn measure(
     })
 }
 
-/// Newton's method in place of relaxation; refuses motions and friction.
+/// Newton's method in place of relaxation; refuses motions, and obstacles that hold.
 fn by_newton(case: &mut Case) -> Result<(), Unmeasured> {
     if let Motion::Static(relaxation) = case.problem.motion {
         case.problem.motion = Motion::Automatic(relaxation);
     }
-    let refused = match case.problem.motion {
-        Motion::Dynamic { .. } => Some((
-            "time.method",
-            "is \"dynamic\"; sensitivities are those of a static solution: set time = { method = \"static\" }",
-        )),
-        _ if !case.problem.by_newton() => Some((
-            "obstacle",
-            "has friction, under which a solution depends on the way to it; sensitivities are those of one \
-             that does not",
-        )),
-        _ => None,
+    let holds = |obstacle: &Obstacle| obstacle.friction == Friction::NoSlip;
+    let (key, reason) = if let Motion::Dynamic { .. } = case.problem.motion {
+        let reason = "is \"dynamic\"; sensitivities are those of a static solution: set time = { method = \"static\" }";
+        ("time.method".to_string(), reason)
+    } else if let Some(index) = case.problem.obstacles.iter().position(holds) {
+        let reason = "is \"no_slip\": a solution then depends on the way to it; sensitivities are those of one \
+                      that does not, with friction = \"frictionless\"";
+        (format!("obstacle[{index}].friction"), reason)
+    } else {
+        return Ok(());
     };
-    match refused {
-        Some((key, reason)) => Err(Unmeasured::Case(vec![case.diagnostic(key, reason.into())])),
-        None => Ok(()),
-    }
+    Err(Unmeasured::Case(vec![case.diagnostic(&key, reason.into())]))
 }
 
 fn solve(problem: &Problem) -> Result<Solved, Error> {

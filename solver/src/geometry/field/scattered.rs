@@ -1,6 +1,7 @@
 //! A vector field through scattered data.
 #![allow(non_snake_case)]
 
+use crate::algebra::pseudo_inverse::pseudo_inverse;
 use crate::algebra::tensor::{Matrix3, Vector3, bounding_box};
 use crate::geometry::point_hash::PointHash;
 
@@ -92,8 +93,7 @@ impl Scattered {
             scatter += w * t * t.transpose();
             slope += w * (self.values[index] - value) * t.transpose();
         }
-        let inverse = scatter.pseudo_inverse(FLAT * scatter.trace());
-        inverse.map_or(value, |inverse| value - slope * inverse * offset)
+        value - slope * pseudo_inverse(scatter, FLAT * scatter.trace()) * offset
     }
 }
 

@@ -3,6 +3,7 @@
 #![allow(non_snake_case)]
 
 use super::rows::ConstraintRow;
+use crate::algebra::pseudo_inverse::pseudo_inverse;
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::Discretisation;
 use crate::discretisation::moments::homogeneous;
@@ -45,10 +46,8 @@ pub(super) fn fit_mean_gradient(
         defect -= (row.displacement - affine(&at(row))) * area;
         gram += area * area.transpose();
     }
-    if let Ok(inverse) = gram.pseudo_inverse(EMPTY * gram.trace()) {
-        let beta = inverse * defect;
-        rows.iter_mut().zip(&areas).for_each(|(row, area)| row.displacement += beta.dot(area));
-    }
+    let beta = pseudo_inverse(gram, EMPTY * gram.trace()) * defect;
+    rows.iter_mut().zip(&areas).for_each(|(row, area)| row.displacement += beta.dot(area));
 }
 
 /// The field that alone prescribes all `rows`, if these include all nodes with areas.
@@ -82,6 +81,6 @@ fn affine_fit(samples: Vec<(Vector3, f64, f64)>) -> Option<impl Fn(&Vector3) -> 
         gram += *size * p(X) * p(X).transpose();
         moments += *size * *value * p(X);
     }
-    let coefficients = gram.pseudo_inverse(EMPTY * gram.trace()).ok()? * moments;
+    let coefficients = pseudo_inverse(gram, EMPTY * gram.trace()) * moments;
     Some(move |X: &Vector3| coefficients.dot(&p(X)))
 }
