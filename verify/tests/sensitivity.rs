@@ -4,7 +4,7 @@ use assert_cmd::Command;
 use serde_json::Value;
 use std::time::Duration;
 
-/// The issue asks for 1e-4 of differences of solutions; their own error is a part of it \[–\].
+/// The bound of the study of sensitivities; the error of the two solutions is a part of it \[–\].
 const AGREEMENT: f64 = 1e-4;
 
 /// Exit code, standard output and standard error.

@@ -9,7 +9,9 @@ const PER_LABEL: f64 = 4.0;
 const PER_DISTANCE: f64 = 8.0;
 /// Of a voxel while its distance is computed: image, distance, samples far away, and where the
 /// nearest point came from.
-const PER_VOXEL_READING: f64 = 36.0;
+const PER_VOXEL_READING: f64 = 32.0;
+/// What computes distances beside its voxels.
+const READING_IMAGE: f64 = 2.0e6;
 /// Of a triangle with its vertices, normals and search tree, and while it is read.
 const PER_TRIANGLE: f64 = 300.0;
 const PER_TRIANGLE_READING: f64 = 700.0;
@@ -55,7 +57,7 @@ impl Parts {
                 self.add(field.map(), PER_LABEL * voxels, PER_LABEL * voxels);
                 let samples = field.samples() as f64;
                 let kept = PER_DISTANCE * samples + field.surface_bytes();
-                self.add(field, kept, PER_VOXEL_READING * samples);
+                self.add(field, kept, READING_IMAGE + PER_VOXEL_READING * samples);
             }
             Shape::Surface(surface) => {
                 let triangles = surface.triangle_count() as f64;
