@@ -143,7 +143,7 @@ fn counts(tried: &BTreeMap<&str, Tried>) -> Table {
 fn known_faults() -> Table {
     let row = |known: &mtled_metamorphic::known::Known| {
         let [relation, scenes, reason] =
-            [&known.relation.replace('_', " "), known.scenes, known.reason]
+            [&known.relations.join(", ").replace('_', " "), known.scenes, known.reason]
                 .map(|cell| Cell::Text(cell.to_string()));
         vec![relation, scenes, Cell::Number(known.largest), reason]
     };

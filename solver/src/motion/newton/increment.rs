@@ -16,6 +16,9 @@ use crate::motion::tangent::Tangent;
 const MOST_ITERATIONS: usize = 20;
 const MOST_ITERATIONS_WITH_PRESSURES: usize = 40;
 const MOST_ITERATIONS_IN_CONTACT: usize = 100;
+/// Residual \[–\] below which more of them follow, as long as each leaves at most this part of it:
+/// where pressures follow a free rim the tangent is not symmetric, and convergence linear.
+const STILL_FALLING: (f64, f64) = (1e-3, 0.7);
 /// Bounds of the relative residual at which conjugate gradients end.
 const FORCING: (f64, f64) = (1e-4, 0.1);
 /// Part of the tolerance that the last correction aims at \[–\].
@@ -104,13 +107,16 @@ impl Solver<'_> {
             true => MOST_ITERATIONS,
             false => MOST_ITERATIONS_IN_CONTACT,
         };
-        for _ in 0..=most {
+        let (mut before, mut corrections) = (f64::INFINITY, 0..=most);
+        loop {
             let changes = self.settle(start, &mut now);
             let residual = now.exact().relative(model);
             let failed = Unsolved::Failed { residual, indefinite };
-            if residual.is_nan() {
+            let falls = residual < STILL_FALLING.0 && residual < STILL_FALLING.1 * before;
+            if residual.is_nan() || corrections.next().is_none() && !falls {
                 return Err(failed);
             }
+            before = residual;
             let open = self.free.contacts.iter().fold(0.0f64, |a, row| a.max(row.way.abs()));
             let settled = changes == 0 && open <= CLOSED.max(tolerance) * model.contact.skin;
             if !jumping && settled && !indefinite && self.is_balanced(&now, tolerance) {
@@ -163,7 +169,6 @@ impl Solver<'_> {
             jumping = left.is_some();
             jump = left.unwrap_or_else(|| vec![0.0; start.len()]);
         }
-        Err(Unsolved::Failed { residual: now.exact().relative(model), indefinite })
     }
 
     fn is_balanced(&self, now: &Equilibrium, tolerance: f64) -> bool {

@@ -5,6 +5,10 @@ use mtled::Vector3;
 use mtled::algebra::tensor::Matrix3;
 use mtled::problem::defaults::SELECTION_TOLERANCE;
 
+/// Part of the usual tolerance of selections \[–\], so that a part whose depth has three digits
+/// does not end at a node of a lattice.
+const UNEVEN: f64 = 0.9713;
+
 /// From coordinates over the size to places in space: x = size (Q X + shift).
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
@@ -28,7 +32,7 @@ impl Frame {
             turn: Matrix3::identity(),
             shift: Vector3::zeros(),
             edges: scene.edges.into(),
-            tolerance: SELECTION_TOLERANCE * scene.size / f64::from(scene.spacings),
+            tolerance: UNEVEN * SELECTION_TOLERANCE * scene.size / f64::from(scene.spacings),
         }
     }
 
