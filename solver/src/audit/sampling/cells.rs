@@ -259,7 +259,7 @@ impl Divided<'_> {
 
     /// Tetrahedra of a cell inside the body, by part, and the boundary between.
     fn cut(&self, cell: &Cell, values: &[f64; 8], owner: Option<usize>, bend: f64) -> Fate {
-        let mut halves = Halves::default();
+        let mut halves = Halves::of(OF_BOX.len());
         for tetrahedron in OF_BOX {
             halves.cut(tetrahedron.map(|n| (cell.corner(n), values[n])));
         }

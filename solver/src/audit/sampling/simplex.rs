@@ -32,12 +32,18 @@ pub(super) fn vector_area([a, b, c]: &Triangle) -> Vector3 {
 const UNLESS_ALIKE: usize = 1;
 
 impl Halves {
+    /// With room for the parts of so many tetrahedra.
+    pub fn of(tetrahedra: usize) -> Halves {
+        let (inside, outside) =
+            (Vec::with_capacity(3 * tetrahedra), Vec::with_capacity(3 * tetrahedra));
+        Halves { inside, outside, border: Vec::with_capacity(2 * tetrahedra) }
+    }
+
     /// Divides a tetrahedron along the zero level of the linear function with these values.
-    pub fn cut(&mut self, corners: [Corner; 4]) {
-        let negative = |corner: &&Corner| corner.1 < 0.0;
-        let within: Vec<Corner> = corners.iter().filter(negative).copied().collect();
-        let beyond: Vec<Corner> = corners.iter().filter(|c| !negative(c)).copied().collect();
-        match (&within[..], &beyond[..]) {
+    pub fn cut(&mut self, mut corners: [Corner; 4]) {
+        let negative = |corner: &Corner| corner.1 < 0.0;
+        corners.sort_by_key(|corner| !negative(corner));
+        match corners.split_at(corners.iter().filter(|corner| negative(corner)).count()) {
             ([], _) => self.outside.push(corners.map(|corner| corner.0)),
             (_, []) => self.inside.push(corners.map(|corner| corner.0)),
             ([a], [b, c, d]) => {

@@ -1,7 +1,7 @@
 //! Pieces of the boundary, and what of them a selection contains.
 #![allow(non_snake_case)]
 
-use super::level::level;
+use super::level::{Level, level};
 use super::simplex::{Triangle, vector_area};
 use crate::algebra::tensor::Vector3;
 use crate::geometry::Selector;
@@ -45,6 +45,8 @@ impl Facet {
 
 /// Edge of the smallest pieces at the rim of a selection, over the nodal spacing \[–\].
 const RIM: f64 = 1.0 / 64.0;
+/// Deviation of a level from a linear function over the edge of these \[–\]: a rim is straight.
+const STRAIGHT: f64 = 0.01;
 /// Area of a cell that is cut at an edge of the body, over the square of its edge, which may
 /// be wrong \[–\]: a chamfer takes the place of two faces.
 const CHAMFER: f64 = 0.6;
@@ -102,7 +104,7 @@ impl Search<'_> {
         X
     }
 
-    fn level(&self, X: &Vector3) -> super::level::Level {
+    fn level(&self, X: &Vector3) -> Level {
         level(self.selector, &self.at(*X), Some(&self.normal))
     }
 
@@ -115,7 +117,7 @@ impl Search<'_> {
         let reach = lengths.iter().copied().fold(0.0, f64::max);
         let decided = level.is_uniform(reach)
             || (level.selects() && corners.iter().all(|X| self.level(X).selects()));
-        if decided || reach <= self.smallest {
+        if decided || reach <= self.smallest || self.is_linear(&corners, level) {
             match decided || !level.metric {
                 true if level.selects() => part.add(self.at(centre), vector_area(&corners)),
                 true => {}
@@ -130,7 +132,19 @@ impl Search<'_> {
         self.visit([half, b, c], part);
     }
 
-    /// Adds what is selected of a small triangle in which the level is linear.
+    /// Whether a level with this value in the middle of a triangle is linear in it.
+    fn is_linear(&self, corners: &Triangle, middle: Level) -> bool {
+        let at = |X: &Vector3| self.level(X).value;
+        let values = corners.each_ref().map(at);
+        let off = |value: f64, mean: f64| (value - mean).abs() <= STRAIGHT * self.smallest;
+        let half = |n: usize| {
+            let m = (n + 1) % 3;
+            off(at(&(0.5 * (corners[n] + corners[m]))), 0.5 * (values[n] + values[m]))
+        };
+        middle.metric && off(middle.value, values.iter().sum::<f64>() / 3.0) && (0..3).all(half)
+    }
+
+    /// Adds what is selected of a triangle in which the level is linear.
     fn clip(&self, corners: Triangle, part: &mut PartOfSurface) {
         let levels = corners.map(|X| self.level(&X).value);
         let mut polygon: Vec<Vector3> = Vec::with_capacity(4);
