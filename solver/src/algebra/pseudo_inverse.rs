@@ -6,7 +6,7 @@ use nalgebra::{Const, DefaultAllocator, DimDiff, DimSub, SMatrix, U1};
 
 /// A⁺ of a symmetric matrix without negative eigenvalues, in which a direction with an eigenvalue
 /// of at most `empty` stays empty. By its eigenvectors: a singular value decomposition of such a
-/// matrix, with an empty direction and two alike, was seen to end 0.5 % beside it.
+/// matrix, with an empty direction and two alike, was seen to end up to 20 % beside it.
 pub(crate) fn pseudo_inverse<const N: usize>(
     A: SMatrix<f64, N, N>,
     empty: f64,
@@ -26,31 +26,30 @@ mod tests {
     use crate::algebra::random::Random;
     use nalgebra::{Matrix4, Vector4};
 
-    /// Σ p pᵀ over the corners of a flat or a full block, turned and displaced by a hair, whose
-    /// moments are alike or empty.
-    fn moments(random: &mut Random, flat: bool, hair: f64) -> Matrix4<f64> {
-        let axis = nalgebra::Unit::new_normalize(random.vector(3));
-        let turned = nalgebra::Rotation3::from_axis_angle(&axis, random.vector(3).x);
-        let mut sum = Matrix4::zeros();
-        for corner in 0..8usize {
-            let sign = |axis: usize| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
-            let thickness = if flat { 0.0 } else { 1.0 };
-            let X = nalgebra::Vector3::new(sign(0), sign(1), thickness * sign(2));
-            let X = turned * X + hair * random.vector(3);
-            let p = Vector4::new(1.0, X.x, X.y, X.z);
-            sum += p * p.transpose() / 8.0;
+    /// Moments of a flat body about its middle: two directions alike or nearly, one empty, and
+    /// round-off between them.
+    fn moments(random: &mut Random, turn: usize) -> Matrix4<f64> {
+        let extent = random.vector(1).x.abs();
+        let alike = [extent, extent * (1.0 + 1e-3 * random.vector(1).x)][turn % 2];
+        let sizes = [[1.0, extent, alike, 0.0], [1.0, extent, 0.0, alike], [1.0, 1.0, extent, 0.0]];
+        let mut A = Matrix4::from_diagonal(&Vector4::from(sizes[turn / 2 % 3]));
+        let round_off = [0.0, 1e-17, 1e-16, 1e-14][turn / 6 % 4];
+        for (i, j) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
+            A[(i, j)] = round_off * random.vector(1).x;
+            A[(j, i)] = A[(i, j)];
         }
-        sum
+        A
     }
 
     #[test]
     fn a_matrix_times_its_pseudo_inverse_times_itself_is_the_matrix() {
         let mut random = Random(11);
-        for turn in 0..4000 {
-            let hair = [0.0, 1e-16, 1e-12, 1e-9][turn % 4];
-            let A = moments(&mut random, turn % 8 < 4, hair);
-            let again = A * pseudo_inverse(A, 1e-12) * A;
-            assert!((again - A).amax() < 1e-9, "{turn}: {A} {again}");
+        for turn in 0..24_000 {
+            let A = moments(&mut random, turn) * [1.0, 0.00731][turn / 24 % 2];
+            let empty = 1e-12 * A[(0, 0)];
+            // Of nalgebra's own, by singular values, 32 of these are more than 1e-6 off, one 0.2.
+            let off = (A * pseudo_inverse(A, empty) * A - A).amax() / A[(0, 0)];
+            assert!(off < 1e-11, "{turn}: {A}");
         }
     }
 
