@@ -115,13 +115,15 @@ impl Search<'_> {
         let lengths: [f64; 3] =
             [0, 1, 2].map(|i| (self.at(corners[i]) - self.at(corners[(i + 1) % 3])).norm());
         let reach = lengths.iter().copied().fold(0.0, f64::max);
-        let decided = level.is_uniform(reach)
-            || (level.selects() && corners.iter().all(|X| self.level(X).selects()));
-        if decided || reach <= self.smallest || self.is_linear(&corners, level) {
+        let uniform = level.is_uniform(reach);
+        let levels = if uniform { [level; 3] } else { corners.map(|X| self.level(&X)) };
+        let decided = uniform || (level.selects() && levels.iter().all(Level::selects));
+        let values = levels.map(|level| level.value);
+        if decided || reach <= self.smallest || self.is_linear(&corners, level, &values) {
             match decided || !level.metric {
                 true if level.selects() => part.add(self.at(centre), vector_area(&corners)),
                 true => {}
-                false => self.clip(corners, part),
+                false => self.clip(corners, values, part),
             }
             return;
         }
@@ -132,10 +134,9 @@ impl Search<'_> {
         self.visit([half, b, c], part);
     }
 
-    /// Whether a level with this value in the middle of a triangle is linear in it.
-    fn is_linear(&self, corners: &Triangle, middle: Level) -> bool {
+    /// Whether a level with these values in the middle and at the corners of a triangle is linear in it.
+    fn is_linear(&self, corners: &Triangle, middle: Level, values: &[f64; 3]) -> bool {
         let at = |X: &Vector3| self.level(X).value;
-        let values = corners.each_ref().map(at);
         let off = |value: f64, mean: f64| (value - mean).abs() <= STRAIGHT * self.smallest;
         let half = |n: usize| {
             let m = (n + 1) % 3;
@@ -145,8 +146,7 @@ impl Search<'_> {
     }
 
     /// Adds what is selected of a triangle in which the level is linear.
-    fn clip(&self, corners: Triangle, part: &mut PartOfSurface) {
-        let levels = corners.map(|X| self.level(&X).value);
+    fn clip(&self, corners: Triangle, levels: [f64; 3], part: &mut PartOfSurface) {
         let mut polygon: Vec<Vector3> = Vec::with_capacity(4);
         for i in 0..3 {
             let (j, own) = ((i + 1) % 3, levels[i]);
