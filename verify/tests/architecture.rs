@@ -26,6 +26,8 @@ const CRATES: [&str; 7] = [
 ];
 const MOST_FILES: usize = 15;
 const MOST_LINES: usize = 400;
+/// Lines of a function.
+const LONGEST_FUNCTION: usize = 60;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -137,6 +139,31 @@ fn no_folder_has_more_than_15_files_and_no_file_more_than_400_lines() {
         let large = counts.iter().filter(|(_, count)| **count > MOST_FILES);
         found
             .extend(large.map(|(folder, count)| format!("{} has {count} files", folder.display())));
+    }
+    none(found);
+}
+
+#[test]
+fn every_function_fits_on_a_screen() {
+    let mut found = Vec::new();
+    for folder in CRATES {
+        for (name, text) in sources(folder) {
+            let lines: Vec<&str> = text.lines().collect();
+            for (start, line) in lines.iter().enumerate() {
+                let code = line.trim_start();
+                let after = ["pub ", "pub(crate) ", "pub(super) ", "const ", "unsafe "]
+                    .iter()
+                    .fold(code, |code, word| code.strip_prefix(word).unwrap_or(code));
+                if !after.starts_with("fn ") {
+                    continue;
+                }
+                let end = format!("{}}}", &line[..line.len() - code.len()]);
+                let length = lines[start..].iter().position(|line| *line == end).unwrap_or(0) + 1;
+                if length > LONGEST_FUNCTION {
+                    found.push(format!("{folder}/{name}:{}: {length} lines", start + 1));
+                }
+            }
+        }
     }
     none(found);
 }

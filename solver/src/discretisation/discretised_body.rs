@@ -9,17 +9,16 @@ use crate::discretisation::consistency::{
 use crate::discretisation::held_volume::{HeldShape, HeldVolume, selects};
 use crate::discretisation::mls::{Approximation, PoorSupport, Stiffness};
 use crate::discretisation::neighbours::Neighbours;
-use crate::discretisation::nodes::{HeldParts, NodeCloud, node_cloud, place_nodes_on_borders};
+use crate::discretisation::nodes::NodeCloud;
 use crate::discretisation::patch_pieces::part_at_gaps;
 use crate::discretisation::patches::sort_into_patches;
+use crate::discretisation::placed_nodes::{Placed, flatten, needs_surface};
 use crate::discretisation::quadrature::{Moves, NodalSpacing, Quadrature, quadrature_following};
 use crate::discretisation::rows::{Evaluated, Requested, Rows};
 use crate::discretisation::surface_rule::{SurfaceRule, is_held};
 use crate::error::{Error, condition_text};
-use crate::geometry::{CoveredPanel, Extent, GeometryError, Panel, Shape};
-use crate::problem::{
-    BackgroundGrid, Cloud, Dimension, Gradients, Loads, Problem, Recipe, Region, refuse,
-};
+use crate::geometry::{CoveredPanel, Panel, Shape};
+use crate::problem::{BackgroundGrid, Dimension, Problem, Recipe, Region, refuse};
 use rayon::prelude::*;
 
 /// The body, discretised.
@@ -52,9 +51,6 @@ pub struct Discretisation {
     pub held: Option<HeldVolume>,
 }
 
-/// Edge of the boundary panels over the smallest nodal spacing \[–\].
-pub(super) const PANEL: f64 = 0.5;
-
 impl Discretisation {
     /// Nodes and quadrature points of a problem with their supports. Points
     /// are sorted by region and patch, neighbours in space close in memory.
@@ -67,17 +63,7 @@ impl Discretisation {
         let held = HeldShape::of(problem, &whole);
         let body = held.as_ref().map_or(&whole, |held| &held.rest);
         let recipe = &problem.recipe;
-        let mut cloud = match &held {
-            Some(held) => node_cloud(&held.rest, &recipe.cloud, &dimension)?,
-            None => node_cloud(&problem.body, &recipe.cloud, &dimension)?,
-        };
-        let panels = panels_of(problem, body, &mut cloud)?;
-        let stiffness = Stiffness::at_sharp_borders(problem);
-        if let (Some(stiffness), false) = (&stiffness, matches!(recipe.cloud, Cloud::Given { .. }))
-        {
-            place_nodes_on_borders(&mut cloud, body, stiffness);
-        }
-        flatten(&mut cloud.positions, &dimension);
+        let Placed { mut cloud, panels, stiffness } = Placed::new(problem, body, held.is_some())?;
         let deforming = cloud.positions.len();
         let on_boundary =
             held.as_ref().map(|held| held.add_nodes(problem, &whole, &mut cloud)).transpose()?;
@@ -88,16 +74,7 @@ impl Discretisation {
         }
         let approximation = approximation.within(body, recipe.dilation);
         let spacing_at = |X: &Vector3| approximation.mean_radius(X) / recipe.dilation;
-        let regions = &problem.regions;
-        let mut quadrature = if recipe.gradients.is_second_order() {
-            let held = held_nodes(&prescribed, &cloud);
-            let stays = |X: &Vector3| is_within(&held, X, approximation.mean_radius(X));
-            let moves = Moves { stays: &stays };
-            quadrature_of(problem, regions, (body, &recipe.grid), &approximation, Some(&moves))?
-        } else {
-            quadrature_of(problem, regions, (body, &recipe.grid), &approximation, None)?
-        };
-        flatten(&mut quadrature.positions, &dimension);
+        let mut quadrature = points_of(problem, body, &cloud, &prescribed, &approximation)?;
         let spacing: Vec<f64> = quadrature.positions.par_iter().map(spacing_at).collect();
         let (thickness, components) = (dimension.thickness(), dimension.components());
         let patches = sort_into_patches(&mut quadrature, &spacing, thickness, components);
@@ -241,15 +218,6 @@ pub(super) fn close(
     (areas, volumes)
 }
 
-/// Puts places of a plane exactly there: to the correction of gradients a distance of
-/// round-off across it would be a third direction, along which next to nothing changes
-/// gradients as it likes.
-pub(super) fn flatten(positions: &mut [Vector3], dimension: &Dimension) {
-    if let Dimension::PlaneStrain { z, .. } = dimension {
-        positions.iter_mut().for_each(|X| X.z = *z);
-    }
-}
-
 /// Shape functions with influence radii of dilation × spacing (method book, eq. 5.3).
 fn approximation_of(
     cloud: &NodeCloud,
@@ -286,6 +254,24 @@ fn is_within(nodes: &Option<Neighbours>, X: &Vector3, reach: f64) -> bool {
     found
 }
 
+/// Quadrature points of what deforms, moved where gradients are of second order.
+fn points_of(
+    problem: &Problem,
+    body: &Shape,
+    cloud: &NodeCloud,
+    prescribed: &[[bool; 3]],
+    approximation: &Approximation,
+) -> Result<Quadrature, Error> {
+    let held = held_nodes(prescribed, cloud);
+    let stays = |X: &Vector3| is_within(&held, X, approximation.mean_radius(X));
+    let moves = Moves { stays: &stays };
+    let moves = problem.recipe.gradients.is_second_order().then_some(&moves);
+    let (regions, grid) = (&problem.regions, &problem.recipe.grid);
+    let mut quadrature = quadrature_of(problem, regions, (body, grid), approximation, moves)?;
+    flatten(&mut quadrature.positions, &problem.dimension);
+    Ok(quadrature)
+}
+
 /// Quadrature points of the body, a section in a plane, divided into regions, on a grid that
 /// may follow the nodes.
 pub(crate) fn quadrature_of(
@@ -302,33 +288,6 @@ pub(crate) fn quadrature_of(
     let beside_gap = |X: &Vector3| approximation.is_beside_gap(X);
     let spacing = NodalSpacing { within: &within, largest, beside_gap: &beside_gap };
     quadrature_following(body, regions, grid, &spacing, &problem.dimension, moves)
-}
-
-/// The boundary in panels, if consistent gradients, loads or held parts need it. Nodes
-/// of a cloud that is not given are put on the edges of held parts.
-fn panels_of(
-    problem: &Problem,
-    body: &Shape,
-    cloud: &mut NodeCloud,
-) -> Result<Option<(Vec<Panel>, f64)>, Error> {
-    let given = matches!(problem.recipe.cloud, Cloud::Given { .. });
-    let held = !given && problem.conditions.iter().any(|c| c.extent == Extent::Surface);
-    if !held && !needs_surface(problem) {
-        return Ok(None);
-    }
-    let size = PANEL * cloud.smallest_spacing();
-    let panels = body.boundary_panels(size, &problem.dimension)?;
-    // A solid without itself has no boundary.
-    if panels.is_empty() {
-        return Err(GeometryError::NoVolume.into());
-    }
-    held.then(|| HeldParts::new(body, &problem.conditions, &panels, size).place_nodes(cloud));
-    Ok(Some((panels, size)))
-}
-
-fn needs_surface(problem: &Problem) -> bool {
-    let Loads { tractions, pressures, .. } = &problem.loads;
-    problem.recipe.gradients != Gradients::Plain || !tractions.is_empty() || !pressures.is_empty()
 }
 
 /// The surface rule, if consistent gradients or loads need it.

@@ -4,8 +4,8 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::Discretisation;
-use crate::discretisation::discretised_body::PANEL;
 use crate::discretisation::nodes::{RequestedSizes, SizeField};
+use crate::discretisation::placed_nodes::PANEL;
 use crate::discretisation::quadrature::followed_edge;
 use crate::discretisation::shape_memory::ShapeMemory;
 use crate::geometry::{GeometryError, POINTS, Selector, Shape, merges_voxels};

@@ -2,8 +2,9 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::consistency::connected_bodies;
-use crate::discretisation::discretised_body::{Discretisation, close, flatten, quadrature_of};
+use crate::discretisation::discretised_body::{Discretisation, close, quadrature_of};
 use crate::discretisation::held_volume::{HeldShape, HeldVolume};
+use crate::discretisation::placed_nodes::flatten;
 use crate::discretisation::quadrature::Quadrature;
 use crate::discretisation::rows::Rows;
 use crate::discretisation::surface_rule::SurfaceRule;

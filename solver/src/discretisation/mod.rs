@@ -13,6 +13,7 @@ pub mod neighbours;
 pub mod nodes;
 mod patch_pieces;
 pub mod patches;
+mod placed_nodes;
 pub mod quadrature;
 pub mod rows;
 mod shape_memory;

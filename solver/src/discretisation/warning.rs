@@ -7,9 +7,14 @@ use crate::discretisation::discretised_body::Discretisation;
 use crate::error::show;
 
 /// A doubt that does not prevent a run. Positions are reference positions \[m\].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Warning {
     /// Zero-energy modes are likely.
+    #[error(
+        "{points} quadrature points for {nodes} nodes: every cloud measured with 0.92 points per node or \
+         fewer had motions of which less than 5 % of the strain energy is seen (hourglassing); use smaller \
+         cells: 1.26 per nodal spacing give two points per node"
+    )]
     FewerPointsThanNodes {
         /// Number of quadrature points.
         points: usize,
@@ -17,6 +22,13 @@ pub enum Warning {
         nodes: usize,
     },
     /// Points on one side of a gap have too few nodes there and share those of the other.
+    #[error(
+        "{points} of {of} quadrature points beside gaps of the body have too few nodes on their own side, so \
+         that both sides move as one there: at ({}) the gap is {width:.3e} m wide and the nodal spacing is \
+         {spacing:.3e} m; use a spacing of at most half the thickness of the material beside the gap, or \
+         fill the gap",
+        show(.position)
+    )]
     BridgedGap {
         /// Number of quadrature points.
         points: usize,
@@ -30,6 +42,10 @@ pub enum Warning {
         spacing: f64,
     },
     /// Some supports were poor with the influence radii of the recipe.
+    #[error(
+        "the influence radii had to be enlarged at {points} of {of} quadrature points; a larger dilation \
+         avoids that"
+    )]
     EnlargedSupports {
         /// Number of quadrature points where radii were enlarged.
         points: usize,
@@ -37,6 +53,10 @@ pub enum Warning {
         of: usize,
     },
     /// The correction of the gradients stopped above its tolerance.
+    #[error(
+        "the gradients are consistent to {residual:.1e} only, not to the requested {tolerance:.1e}, after \
+         {iterations} iterations; a larger tolerance, a larger dilation or a more even cloud avoids that"
+    )]
     InconsistentGradients {
         /// Defect over that of plain gradients \[–\].
         residual: f64,
@@ -46,6 +66,11 @@ pub enum Warning {
         iterations: usize,
     },
     /// Two conditions prescribe the same of more than an edge between two faces.
+    #[error(
+        "conditions \"{first}\" and \"{second}\" prescribe the same displacement {} of {nodes} nodes, whose \
+         force is counted with \"{first}\" alone",
+        .components.iter().map(char::to_string).collect::<Vec<_>>().join(", ")
+    )]
     SharedNodes {
         /// The condition that has the force.
         first: String,
@@ -57,16 +82,28 @@ pub enum Warning {
         nodes: usize,
     },
     /// A region of the problem has no effect.
+    #[error(
+        "region \"{name}\" has no quadrature point, so its material has no effect: it lies outside the body, \
+         between the points, or in an earlier region"
+    )]
     EmptyRegion {
         /// Its name.
         name: String,
     },
     /// A traction or a pressure acts on nodes only whose motion is prescribed.
+    #[error(
+        "load \"{name}\" acts on nodes only whose displacement is prescribed: it changes reactions and \
+         nothing else"
+    )]
     CarriedTraction {
         /// Its name.
         name: String,
     },
     /// The load of a static problem ends before an amplitude does.
+    #[error(
+        "the amplitude of \"{name}\" lasts {duration} s and the load ends at {end} s, where it is \
+         {factor:.4}: the solution is that of a part of the load"
+    )]
     UnfinishedLoad {
         /// What is loaded.
         name: String,
@@ -78,6 +115,11 @@ pub enum Warning {
         factor: f64,
     },
     /// Nodes are a little inside an obstacle before the first step.
+    #[error(
+        "{nodes} nodes are inside obstacle \"{name}\" at the start, node {node} at ({}) by {depth:.4e} m: \
+         the first step moves them out",
+        show(.position)
+    )]
     StartInsideObstacle {
         /// Name of the obstacle.
         name: String,
@@ -92,6 +134,11 @@ pub enum Warning {
     },
     /// Nodes that contact leaves alone, because a component is prescribed, have entered an
     /// obstacle.
+    #[error(
+        "{nodes} nodes have entered obstacle \"{name}\", node {node} of reference position ({}) by \
+         {depth:.4e} m: contact does not act on nodes of which a component is prescribed",
+        show(.position)
+    )]
     EndInsideObstacle {
         /// Name of the obstacle.
         name: String,
@@ -105,6 +152,11 @@ pub enum Warning {
         depth: f64,
     },
     /// The surface has entered an obstacle between nodes.
+    #[error(
+        "the surface has entered obstacle \"{name}\" between nodes, by {depth:.4e} m at reference position \
+         ({}): the obstacle has an edge or is narrow for the spacing of the nodes there; use a finer cloud",
+        show(.position)
+    )]
     SurfaceInObstacle {
         /// Name of the obstacle.
         name: String,
@@ -114,6 +166,12 @@ pub enum Warning {
         depth: f64,
     },
     /// An obstacle has passed through the surface between nodes.
+    #[error(
+        "obstacle \"{name}\" has passed into the body between nodes and lies about reference position ({}), \
+         where it exerts no force: it is narrow for the spacing of the nodes; use a finer cloud, or a larger \
+         obstacle",
+        show(.position)
+    )]
     ObstacleInBody {
         /// Name of the obstacle.
         name: String,
@@ -121,6 +179,12 @@ pub enum Warning {
         position: Vector3,
     },
     /// A linear law is strained by more than it is made for.
+    #[error(
+        "the linear law is strained by {strain:.3} at ({}), and holds for strains and rotations of a few \
+         hundredths: its stress there is that of no material; use another law, such as neo_hookean_log_j, or \
+         a smaller load",
+        show(.position)
+    )]
     LargeLinearStrain {
         /// Where it is strained most.
         position: Vector3,
@@ -128,99 +192,17 @@ pub enum Warning {
         strain: f64,
     },
     /// A compressible part has lost most of its volume.
+    #[error(
+        "J fell to {jacobian:.3} at ({}), in a part that may change its volume: hardly any tissue has been \
+         measured at such a compression, and J near 0 shows that the part is too soft for what is around it",
+        show(.position)
+    )]
     LostVolume {
         /// Where it has lost most.
         position: Vector3,
         /// J = det F there \[–\].
         jacobian: f64,
     },
-}
-
-impl std::fmt::Display for Warning {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Warning::FewerPointsThanNodes { points, nodes } => write!(
-                f,
-                "{points} quadrature points for {nodes} nodes: every cloud measured with 0.92 points per node \
-                 or fewer had motions of which less than 5 % of the strain energy is seen (hourglassing); \
-                 use smaller cells: 1.26 per nodal spacing give two points per node"
-            ),
-            Warning::BridgedGap { points, of, position, width, spacing } => write!(
-                f,
-                "{points} of {of} quadrature points beside gaps of the body have too few nodes on their own side, so that both \
-                 sides move as one there: at ({}) the gap is {width:.3e} m wide and the nodal spacing is {spacing:.3e} m; use a \
-                 spacing of at most half the thickness of the material beside the gap, or fill the gap",
-                show(position)
-            ),
-            Warning::EnlargedSupports { points, of } => write!(
-                f,
-                "the influence radii had to be enlarged at {points} of {of} quadrature points; \
-                 a larger dilation avoids that"
-            ),
-            Warning::InconsistentGradients { residual, tolerance, iterations } => write!(
-                f,
-                "the gradients are consistent to {residual:.1e} only, not to the requested {tolerance:.1e}, \
-                 after {iterations} iterations; a larger tolerance, a larger dilation or a more even \
-                 cloud avoids that"
-            ),
-            Warning::SharedNodes { first, second, components, nodes } => write!(
-                f,
-                "conditions \"{first}\" and \"{second}\" prescribe the same displacement {} of {nodes} nodes, whose force is \
-                 counted with \"{first}\" alone",
-                components.iter().map(char::to_string).collect::<Vec<_>>().join(", ")
-            ),
-            Warning::EmptyRegion { name } => write!(
-                f,
-                "region \"{name}\" has no quadrature point, so its material has no effect: it lies outside the body, between \
-                 the points, or in an earlier region"
-            ),
-            Warning::CarriedTraction { name } => write!(
-                f,
-                "load \"{name}\" acts on nodes only whose displacement is prescribed: it changes reactions and nothing else"
-            ),
-            Warning::UnfinishedLoad { name, duration, end, factor } => write!(
-                f,
-                "the amplitude of \"{name}\" lasts {duration} s and the load ends at {end} s, where it is {factor:.4}: the \
-                 solution is that of a part of the load"
-            ),
-            Warning::StartInsideObstacle { name, nodes, node, position, depth } => write!(
-                f,
-                "{nodes} nodes are inside obstacle \"{name}\" at the start, node {node} at ({}) by {depth:.4e} m: the first \
-                 step moves them out",
-                show(position)
-            ),
-            Warning::EndInsideObstacle { name, nodes, node, position, depth } => write!(
-                f,
-                "{nodes} nodes have entered obstacle \"{name}\", node {node} of reference position ({}) by {depth:.4e} m: contact \
-                 does not act on nodes of which a component is prescribed",
-                show(position)
-            ),
-            Warning::SurfaceInObstacle { name, position, depth } => write!(
-                f,
-                "the surface has entered obstacle \"{name}\" between nodes, by {depth:.4e} m at reference position ({}): the \
-                 obstacle has an edge or is narrow for the spacing of the nodes there; use a finer cloud",
-                show(position)
-            ),
-            Warning::ObstacleInBody { name, position } => write!(
-                f,
-                "obstacle \"{name}\" has passed into the body between nodes and lies about reference position ({}), where it \
-                 exerts no force: it is narrow for the spacing of the nodes; use a finer cloud, or a larger obstacle",
-                show(position)
-            ),
-            Warning::LargeLinearStrain { position, strain } => write!(
-                f,
-                "the linear law is strained by {strain:.3} at ({}), and holds for strains and rotations of a few hundredths: \
-                 its stress there is that of no material; use another law, such as neo_hookean_log_j, or a smaller load",
-                show(position)
-            ),
-            Warning::LostVolume { position, jacobian } => write!(
-                f,
-                "J fell to {jacobian:.3} at ({}), in a part that may change its volume: hardly any tissue has been measured at \
-                 such a compression, and J near 0 shows that the part is too soft for what is around it",
-                show(position)
-            ),
-        }
-    }
 }
 
 impl Discretisation {

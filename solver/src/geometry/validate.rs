@@ -4,17 +4,20 @@ use crate::algebra::tensor::Vector3;
 use crate::geometry::error::{GeometryError, positive};
 use crate::geometry::polygon::Outline;
 use crate::geometry::shape::Shape;
+use std::cmp::Ordering;
 
 impl Shape {
     /// Refuses shapes whose numbers describe no solid. A half-space passes;
     /// as a body it is refused where a bounded one is needed.
     pub fn validate(&self) -> Result<(), GeometryError> {
         match self {
-            Shape::Box { min, max } => (0..3).try_for_each(|axis| {
-                let (min, max) = (min[axis], max[axis]);
-                let valid = min < max && (max - min).is_finite();
-                if valid { Ok(()) } else { Err(GeometryError::EmptyBox { axis, min, max }) }
-            }),
+            Shape::Box { min, max } => {
+                let length = max - min;
+                match (0..3).find(|&axis| length[axis] == f64::INFINITY) {
+                    Some(axis) => Err(empty(axis, min, max)),
+                    None => open_box(min, max),
+                }
+            }
             Shape::Cylinder { base, axis, radius, height } => {
                 finite("the cylinder base", base)?;
                 unit("the cylinder axis", axis)?;
@@ -48,12 +51,9 @@ impl Shape {
             Shape::Union(members) => members.iter().try_for_each(Shape::validate),
             Shape::Intersection(members) => {
                 members.iter().try_for_each(Shape::validate)?;
-                match self.bounding_box() {
-                    Some((lower, upper)) if (0..3).any(|k| lower[k] >= upper[k]) => {
-                        Err(GeometryError::NothingInCommon)
-                    }
-                    _ => Ok(()),
-                }
+                self.bounding_box()
+                    .map_or(Ok(()), |(lower, upper)| open_box(&lower, &upper))
+                    .map_err(|_| GeometryError::NothingInCommon)
             }
             Shape::Difference(body, hole) => {
                 body.validate()?;
@@ -63,12 +63,7 @@ impl Shape {
                 let (lower, upper) = function.bounds();
                 finite("the lower corner of the distance function", &lower)?;
                 finite("the upper corner of the distance function", &upper)?;
-                match (0..3).find(|&k| lower[k] >= upper[k]) {
-                    Some(axis) => {
-                        Err(GeometryError::EmptyBox { axis, min: lower[axis], max: upper[axis] })
-                    }
-                    None => Ok(()),
-                }
+                open_box(&lower, &upper)
             }
             // Checked when they were made.
             Shape::Labels(_) | Shape::Surface(_) => Ok(()),
@@ -83,6 +78,18 @@ impl Shape {
             _ => Err(GeometryError::Unbounded { shape: self.name() }),
         }
     }
+}
+
+/// Refuses a box without volume.
+fn open_box(lower: &Vector3, upper: &Vector3) -> Result<(), GeometryError> {
+    match (0..3).find(|&axis| lower[axis].partial_cmp(&upper[axis]) != Some(Ordering::Less)) {
+        Some(axis) => Err(empty(axis, lower, upper)),
+        None => Ok(()),
+    }
+}
+
+fn empty(axis: usize, min: &Vector3, max: &Vector3) -> GeometryError {
+    GeometryError::EmptyBox { axis, min: min[axis], max: max[axis] }
 }
 
 fn finite(name: &'static str, vector: &Vector3) -> Result<(), GeometryError> {

@@ -276,12 +276,27 @@ pub fn summary_text(
     contacts: &[ContactResult],
     bars: Option<&Estimated>,
 ) -> String {
-    let (d, s) = (&solved.prepared.discretisation, &solved.summary);
-    let model = &solved.prepared.model;
     let mut lines = vec![format!("{}: {}", printable(&case.name), printable(&case.title))];
     lines.extend(case.overrides().iter().map(|set| printable(&format!("  with {set}"))));
     lines.extend(bars.and_then(no_bars_text));
-    lines.extend([
+    lines.extend(run_text(solved));
+    lines.extend(answers_text(case, record, bars));
+    lines.extend(contacts_text(case, contacts).into_iter().chain(left_out_text(case)));
+    lines.extend(bars.into_iter().flat_map(|bars| error_bars_text(case, bars)));
+    lines.push(work_text(solved));
+    lines.extend(memory_text(case, solved));
+    lines.push(format!(
+        "  set-up {:.2} s, run {:.2} s wall ({:.2} s CPU)",
+        solved.prepared.setup_seconds, solved.solve_seconds, solved.cpu_seconds
+    ));
+    lines.join("\n")
+}
+
+/// The cloud and how the run ended.
+fn run_text(solved: &Solved) -> Vec<String> {
+    let (d, s) = (&solved.prepared.discretisation, &solved.summary);
+    let model = &solved.prepared.model;
+    let mut lines = vec![
         format!(
             "  {} nodes, {} quadrature points, {:.1} nodes per support",
             d.cloud.positions.len(),
@@ -308,7 +323,7 @@ pub fn summary_text(
                 solved.smallest_jacobian_text()
             ),
         },
-    ]);
+    ];
     if model.added_mass > 0.0 {
         let fraction = model.added_mass / model.lumped_mass.iter().sum::<f64>();
         lines.push(format!("  mass scaling adds {} % of the mass", four_digits(100.0 * fraction)));
@@ -327,39 +342,46 @@ pub fn summary_text(
             four_digits(convergence.residual)
         ));
     }
-    if let Some(last) = record.samples.last() {
-        let probes = case.probes.iter().zip(&record.references).zip(&last.displacements);
-        let single: Vec<_> = probes.filter(|(_, u)| u.len() == 1).collect();
-        for ((probe, references), displacements) in single.iter().take(MOST_POINTS) {
-            let place = if matches!(probe.kind, ProbeKind::CentreOfMass { .. }) {
-                "centre of mass"
-            } else {
-                "point"
-            };
-            lines.push(format!(
-                "  {place} \"{}\" at ({}) m moved by ({}) m{}",
-                printable(&probe.name),
-                triple(&references[0]),
-                triple(&displacements[0]),
-                plus_minus(bars, &format!("displacement/{}", probe.name))
-            ));
-        }
-        if let Some(more) = single.len().checked_sub(MOST_POINTS).filter(|more| *more > 0) {
-            lines.push(format!("  {more} more points are in result.json and history.csv"));
-        }
-        for (condition, reaction) in case.problem.conditions.iter().zip(&last.reactions) {
-            lines.push(format!(
-                "  force of \"{}\": ({}) N{}",
-                printable(&condition.name),
-                triple(&reaction.force),
-                plus_minus(bars, &format!("force/{}", condition.name))
-            ));
-        }
+    lines
+}
+
+/// Points and supports at the end.
+fn answers_text(case: &Case, record: &Recording, bars: Option<&Estimated>) -> Vec<String> {
+    let Some(last) = record.samples.last() else { return Vec::new() };
+    let probes = case.probes.iter().zip(&record.references).zip(&last.displacements);
+    let mut lines = Vec::new();
+    let single: Vec<_> = probes.filter(|(_, u)| u.len() == 1).collect();
+    for ((probe, references), displacements) in single.iter().take(MOST_POINTS) {
+        let place = if matches!(probe.kind, ProbeKind::CentreOfMass { .. }) {
+            "centre of mass"
+        } else {
+            "point"
+        };
+        lines.push(format!(
+            "  {place} \"{}\" at ({}) m moved by ({}) m{}",
+            printable(&probe.name),
+            triple(&references[0]),
+            triple(&displacements[0]),
+            plus_minus(bars, &format!("displacement/{}", probe.name))
+        ));
     }
-    lines.extend(contacts_text(case, contacts).into_iter().chain(left_out_text(case)));
-    lines.extend(bars.into_iter().flat_map(|bars| error_bars_text(case, bars)));
+    if let Some(more) = single.len().checked_sub(MOST_POINTS).filter(|more| *more > 0) {
+        lines.push(format!("  {more} more points are in result.json and history.csv"));
+    }
+    for (condition, reaction) in case.problem.conditions.iter().zip(&last.reactions) {
+        lines.push(format!(
+            "  force of \"{}\": ({}) N{}",
+            printable(&condition.name),
+            triple(&reaction.force),
+            plus_minus(bars, &format!("force/{}", condition.name))
+        ));
+    }
+    lines
+}
+
+fn work_text(solved: &Solved) -> String {
     let work = Work::of(solved);
-    lines.push(format!(
+    format!(
         "  {} evaluations of the internal force ({} for the critical step), {:.2e} points and {:.2e} \
          neighbours visited, {} GB read; {} iterations for the gradients",
         work.force_evaluations,
@@ -368,13 +390,7 @@ pub fn summary_text(
         work.neighbour_visits as f64,
         four_digits(work.bytes_streamed as f64 / 1e9),
         work.correction_iterations
-    ));
-    lines.extend(memory_text(case, solved));
-    lines.push(format!(
-        "  set-up {:.2} s, run {:.2} s wall ({:.2} s CPU)",
-        solved.prepared.setup_seconds, solved.solve_seconds, solved.cpu_seconds
-    ));
-    lines.join("\n")
+    )
 }
 
 fn triple(v: &Vector3) -> String {

@@ -59,6 +59,24 @@ pub struct Row {
 }
 
 impl Row {
+    /// From the changes of the answers across two steps of the number, and their `values`.
+    fn new(number: Number, change: Vec<f64>, values: &[f64]) -> Row {
+        let slope = |change: f64| change / (2.0 * number.step());
+        let derivatives: Vec<f64> = change.into_iter().map(slope).collect();
+        let per_part = |(slope, value): (&f64, &f64)| slope * number.value / value;
+        let relative = derivatives.iter().zip(values).map(per_part).collect();
+        Row { number, derivatives, relative, by_solutions: None }
+    }
+
+    /// The largest sensitivity \[–\].
+    fn size(&self) -> f64 {
+        self.relative.iter().fold(0.0, |most, size| most.max(size.abs()))
+    }
+
+    fn has_effect(&self) -> bool {
+        !self.relative.iter().all(|size| size.abs() < NONE)
+    }
+
     /// The largest difference of the two over the sensitivity \[–\].
     pub fn difference(&self) -> Option<f64> {
         let by_solutions = self.by_solutions.as_ref()?;
@@ -107,8 +125,8 @@ pub fn measure(
     let mut case = source.case.clone();
     by_newton(&mut case)?;
     let of_solver = |error: Error| Unmeasured::Case(vec![located(&source.case, &error)]);
-    let cpu = cpu_seconds();
     notify("the case");
+    let cpu = cpu_seconds();
     let Solved { prepared, state, doubts } = solve(&case.problem).map_err(of_solver)?;
     let Prepared { discretisation, model, .. } = &prepared;
     let run_cpu_s = cpu_seconds() - cpu;
@@ -127,7 +145,7 @@ pub fn measure(
     let questions: Vec<Answer> = chosen.iter().map(|asked| asked.answer.clone()).collect();
     let mut adjoint = Adjoint::new(&case.problem, discretisation, model, &state, &questions)
         .map_err(of_solver)?;
-    let (mut rows, mut without_effect) = (Vec::new(), Vec::new());
+    let mut rows = Vec::new();
     for number in numbers(&case) {
         if interrupted() {
             return Err(Unmeasured::Stopped);
@@ -135,29 +153,20 @@ pub fn measure(
         notify(&number.key);
         let [below, above] = sides(source, &number)?;
         let change = adjoint.change(&below, &above).map_err(of_solver)?;
-        let slope = |change: f64| change / (2.0 * number.step());
-        let derivatives: Vec<f64> = change.into_iter().map(slope).collect();
-        let per_part = |(slope, value): (&f64, &f64)| slope * number.value / value;
-        let relative: Vec<f64> = derivatives.iter().zip(&values).map(per_part).collect();
-        match relative.iter().all(|size| size.abs() < NONE) {
-            true => without_effect.push(number.key),
-            false => rows.push(Row { number, derivatives, relative, by_solutions: None }),
-        }
+        rows.push(Row::new(number, change, &values));
     }
+    let (mut rows, without): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(Row::has_effect);
+    let without_effect = without.into_iter().map(|row| row.number.key).collect();
     let sensitivities_cpu_s = cpu_seconds() - cpu;
-    if checks {
-        for row in &mut rows {
-            notify(&format!("{}, by solutions on both sides", row.number.key));
-            row.by_solutions = Some(by_solutions(source, &questions, &values, row, &of_solver)?);
-        }
+    for row in rows.iter_mut().filter(|_| checks) {
+        notify(&format!("{}, by solutions on both sides", row.number.key));
+        row.by_solutions = Some(by_solutions(source, &questions, &values, row, &of_solver)?);
     }
-    let size = |row: &Row| row.relative.iter().fold(0.0f64, |most, size| most.max(size.abs()));
-    rows.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    let answers = chosen.iter().zip(values).map(|(own, value)| (own.name.clone(), own.unit, value));
-    let answers = answers.collect();
+    rows.sort_by(|a, b| b.size().total_cmp(&a.size()));
+    let answer = |(own, value): (Asked, f64)| (own.name, own.unit, value);
     Ok(Sensitivities {
         case,
-        answers,
+        answers: chosen.into_iter().zip(values).map(answer).collect(),
         rows,
         without_effect,
         nothing: nothing.into_iter().map(|asked| asked.name).collect(),

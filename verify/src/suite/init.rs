@@ -123,16 +123,10 @@ fn draft_case(
     let RunOutcome::Done { warnings, .. } = &own.outcome else {
         bail!("{}: it does not run: {}", source.name, own.failure().unwrap_or_default());
     };
-    let mut drafted = DraftCase {
-        format: CaseFormat {
-            file: file.to_path_buf(),
-            warnings: warnings.len(),
-            patch: patch.failure().is_none(),
-            ..CaseFormat::default()
-        },
-        reference: None,
-        notes: Vec::new(),
-    };
+    let (file, patched) = (file.to_path_buf(), patch.failure().is_none());
+    let format =
+        CaseFormat { file, warnings: warnings.len(), patch: patched, ..CaseFormat::default() };
+    let mut drafted = DraftCase { format, reference: None, notes: Vec::new() };
     let mut note = |text: String| drafted.notes.push(format!("{}: {text}", source.name));
     if let Some(reason) = patch.failure() {
         note(format!("no affine patch test: {reason}"));
@@ -140,11 +134,10 @@ fn draft_case(
     let refinement = match refinement(source, own, limits) {
         Ok(refinement) => refinement,
         Err(cpu_s) => {
+            let [least, most] = [cpu_s, limits.cpu_s].map(four_digits);
             note(format!(
-                "no reference: the coarsest that is of use takes about {} s of CPU time, more than \
-                 the {} s that are allowed (--truth-budget)",
-                four_digits(cpu_s),
-                four_digits(limits.cpu_s)
+                "no reference: the coarsest that is of use takes about {least} s of CPU time, more \
+                 than the {most} s that are allowed (--truth-budget)"
             ));
             return Ok(drafted);
         }
@@ -154,15 +147,15 @@ fn draft_case(
     let records = runner.records(&clouds)?;
     drafted.format.error = bounds(source, &reference, &records);
     drafted.format.reference = Some(format!("{REFERENCES}/{}.json", source.name).into());
-    for group in Group::ALL.into_iter().filter(|group| reference.has(&source.case, *group)) {
-        if !drafted.format.error.contains_key(&group) {
-            drafted.notes.push(format!(
-                "{}: the error of the {} is not judged: that of the reference is too large",
-                source.name,
-                group.label()
-            ));
-        }
-    }
+    let judged = |group: &Group| drafted.format.error.contains_key(group);
+    let given = Group::ALL.into_iter().filter(|group| reference.has(&source.case, *group));
+    let too_large = |group: Group| {
+        let (name, label) = (&source.name, group.label());
+        format!(
+            "{name}: the error of the {label} is not judged: that of the reference is too large"
+        )
+    };
+    drafted.notes.extend(given.filter(|group| !judged(group)).map(too_large));
     drafted.reference = Some(own_reference_text(&source.case, &reference));
     Ok(drafted)
 }

@@ -196,6 +196,12 @@ fn parts(case: &SuiteCase, quantity: &Quantity, values: &[f64]) -> Vec<(String, 
     }
 }
 
+/// A figure without unit that may not become larger than it was.
+fn beside_baseline(id: &str, label: &str, value: f64) -> Check {
+    let any = Bound::Baseline(Better::Lower);
+    Check::new(id, label, Kind::Regression, value, any, "1", BASELINE)
+}
+
 /// Inverted points, the patch test, warnings and work.
 fn soundness(study: &mut Study, suite: &Suite, case: &SuiteCase, runs: &CaseRuns) {
     if let Some(jacobian) = runs.solve.figure("smallest_jacobian") {
@@ -216,16 +222,7 @@ fn soundness(study: &mut Study, suite: &Suite, case: &SuiteCase, runs: &CaseRuns
     ] {
         let Some(error) = patch(figure) else { continue };
         let label = format!("affine patch test on this body: largest relative error of the {what}");
-        let any = Bound::Baseline(Better::Lower);
-        study.checks.push(Check::new(
-            &id(case, part),
-            &label,
-            Kind::Regression,
-            error,
-            any,
-            "1",
-            BASELINE,
-        ));
+        study.checks.push(beside_baseline(&id(case, part), &label, error));
     }
     if let RunOutcome::Done { warnings, .. } = &runs.solve.outcome {
         let accepted = format!("accepted by {}", suite.file.display());
@@ -242,15 +239,8 @@ fn soundness(study: &mut Study, suite: &Suite, case: &SuiteCase, runs: &CaseRuns
         study.notes.extend(warnings.iter().map(|warning| format!("Warning: {warning}")));
     }
     if let Some(work) = runs.solve.work() {
-        study.checks.push(Check::new(
-            &id(case, "work"),
-            "neighbours visited by all evaluations of the force",
-            Kind::Regression,
-            work.neighbour_visits as f64,
-            Bound::Baseline(Better::Lower),
-            "1",
-            BASELINE,
-        ));
+        let label = "neighbours visited by all evaluations of the force";
+        study.checks.push(beside_baseline(&id(case, "work"), label, work.neighbour_visits as f64));
         study.notes.push(format!(
             "{} nodes, {} evaluations of the force, {} CPU s on one thread.",
             four_digits(runs.solve.figure("nodes").unwrap_or(f64::NAN)),

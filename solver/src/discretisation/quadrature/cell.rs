@@ -2,6 +2,10 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 
+/// A grid that fits but for this fraction of a cell gets no other layer: a body may be that much
+/// larger by round-off, far from the origin or turned \[–\].
+const FITS: f64 = 1e-6;
+
 /// A square or cube of the grid.
 #[derive(Clone, Copy)]
 pub(super) struct Cell {
@@ -47,6 +51,41 @@ impl Cell {
     /// Second moments of the whole about its centre over its volume \[m²\].
     pub fn spread(&self, components: usize) -> Matrix3 {
         in_plane(Matrix3::from_diagonal_element(self.edge * self.edge / 12.0), components)
+    }
+}
+
+/// The largest cells of a grid, around the middle of a body.
+pub(super) struct Cells {
+    middle: Vector3,
+    edge: f64,
+    /// Along each axis; 1 across a plane.
+    pub counts: [f64; 3],
+}
+
+impl Cells {
+    /// In a plane the middle lies in it, at `z` \[m\].
+    pub fn over((min, max): (Vector3, Vector3), edge: f64, components: usize, z: f64) -> Cells {
+        let mut middle = (min + max) * 0.5;
+        if components == 2 {
+            middle.z = z;
+        }
+        let along = |k: usize| ((max[k] - min[k]) / edge - FITS).ceil().max(1.0);
+        let counts = [0, 1, 2].map(|k| if k < components { along(k) } else { 1.0 });
+        Cells { middle, edge, counts }
+    }
+
+    /// As `counts`.
+    pub fn size(&self) -> [usize; 3] {
+        self.counts.map(|count| count as usize)
+    }
+
+    /// The cell with these numbers along the axes.
+    pub fn at(&self, index: [usize; 3]) -> Cell {
+        let mut centre = self.middle;
+        for axis in 0..3 {
+            centre[axis] += self.edge * (index[axis] as f64 + 0.5 - 0.5 * self.counts[axis]);
+        }
+        Cell { centre, edge: self.edge }
     }
 }
 

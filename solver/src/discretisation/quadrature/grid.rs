@@ -3,7 +3,7 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::quadrature::borders::{Borders, owner};
-use crate::discretisation::quadrature::cell::{Cell, in_plane};
+use crate::discretisation::quadrature::cell::{Cell, Cells, in_plane};
 use crate::discretisation::quadrature::cut::{cut, spread};
 use crate::discretisation::quadrature::gauss::gauss_legendre;
 use crate::discretisation::quadrature::pieces::{Leaf, Moments, pieces};
@@ -19,9 +19,6 @@ use rayon::prelude::*;
 /// Halvings below a sub-cell when its inside volume is measured.
 const FRACTION_DEPTH: usize = 4;
 const FRACTION_DEPTH_PLANE: usize = 5;
-/// A grid that fits but for this fraction of a cell gets no other layer: a body may be that much
-/// larger by round-off, far from the origin or turned \[–\].
-const FITS: f64 = 1e-6;
 /// The boundary is flat in a cell where the signed distance differs by less than this
 /// fraction of its edge from that of a plane \[–\].
 const FLAT: f64 = 1e-9;
@@ -76,24 +73,9 @@ pub fn quadrature_following(
     let components = dimension.components();
     let subdivision = Subdivision { body, grid, spacing, components };
     subdivision.validate()?;
-    let edge = subdivision.largest_edge();
-    let counts = [0, 1, 2].map(|k| match k < components {
-        true => ((max[k] - min[k]) / edge - FITS).ceil().max(1.0),
-        false => 1.0,
-    });
-    let middle = (min + max) * 0.5;
-    let cell_at = |index: [usize; 3]| {
-        let mut centre = middle;
-        for axis in 0..3 {
-            centre[axis] += edge * (index[axis] as f64 + 0.5 - 0.5 * counts[axis]);
-        }
-        if components == 2 {
-            centre.z = z;
-        }
-        Cell { centre, edge }
-    };
-    let size = counts.map(|count| count as usize);
-    subdivision.refuse_too_many(counts, indices(size).map(cell_at))?;
+    let cells = Cells::over((min, max), subdivision.largest_edge(), components, z);
+    subdivision.refuse_too_many(cells.counts, indices(cells.size()).map(|i| cells.at(i)))?;
+    let size = cells.size();
     let row_of_cells = |row: usize| {
         let mut collector = PointCollector {
             body,
@@ -106,7 +88,7 @@ pub fn quadrature_following(
             pieces: moves.map(|_| Vec::new()),
         };
         for i in 0..size[0] {
-            collector.visit(cell_at([i, row % size[1], row / size[1]]))?;
+            collector.visit(cells.at([i, row % size[1], row / size[1]]))?;
         }
         Ok((collector.out, collector.pieces.unwrap_or_default()))
     };

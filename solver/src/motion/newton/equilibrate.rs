@@ -1,8 +1,9 @@
 //! Newton's method towards a static solution, the load in as few parts as it takes.
 
+use super::active_contacts::ActiveContacts;
 use super::branch::{AHEAD, Branch};
 use super::increment::{Load, Unsolved};
-use super::pressures::can_be_unknowns;
+use super::pressures::{Pressures, can_be_unknowns};
 use super::solver::{Equilibrium, Solver};
 use crate::algebra::packed::dot;
 use crate::error::{Error, Instability};
@@ -37,95 +38,152 @@ pub(crate) fn equilibrate(
     observer: &mut dyn Observer,
 ) -> Result<Summary, Error> {
     let mut buffers = Buffers::new(model, false);
-    let mut solver = Solver::new(model, settings, state, &mut buffers);
-    let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
-    let load_at = |fraction: f64| {
-        let passing = settings.tolerance.max(PASSING_TOLERANCE);
-        Load { fraction, tolerance: if fraction == 1.0 { settings.tolerance } else { passing } }
+    let solver = Solver::new(model, settings, state, &mut buffers);
+    let stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
+    let tolerance = settings.tolerance;
+    let branch = Branch::default();
+    let (reached, increment) = (0.0, 1.0);
+    let mut loading = Loading {
+        solver,
+        state,
+        buffers,
+        observer,
+        tolerance,
+        branch,
+        reached,
+        increment,
+        stopped,
     };
-    let mut branch = Branch::default();
-    let (mut reached, mut increment) = (0.0, 1.0f64);
-    while reached < 1.0 && !stopped {
-        // No tiny last increment.
-        let fraction = if reached + 1.5 * increment > 1.0 { 1.0 } else { reached + increment };
-        let load = load_at(fraction);
-        let kept = (solver.contacts.clone(), solver.pressures.clone());
-        match solver.solve(&state.displacement, load, &mut buffers, observer) {
-            Ok(equilibrium) => {
-                let found = branch.stable(&mut solver, equilibrium, load, &mut buffers, observer);
-                let equilibrium = match found {
-                    Ok(stable) => stable,
-                    Err(_) if fraction - reached > LARGEST_UNSTABLE => {
-                        // Nearer to where it lost its stability it has fewer ways to go.
-                        (solver.contacts, solver.pressures) = kept;
-                        increment = 0.5 * (fraction - reached);
-                        continue;
-                    }
-                    Err(unstable) => branch.stay_on(*unstable),
-                };
-                stopped = solver.reach(equilibrium, fraction, state, &mut buffers, observer);
-                reached = fraction;
-                increment *= 2.0;
-            }
-            Err(Unsolved::Stopped(here)) => {
-                let jacobian = here.exact().smallest_jacobian.jacobian;
-                solver.accept(*here, fraction, state, &mut buffers);
-                notify(model, state, jacobian, reached, observer);
-                stopped = true;
-            }
-            Err(Unsolved::Failed { residual, indefinite }) => {
-                if solver.counts.pressures == PatchPressures::OfDisplacements
-                    && can_be_unknowns(model)
-                {
-                    solver.free_pressures(&state.displacement, reached, &mut buffers);
-                    continue;
-                }
-                increment = 0.5 * (fraction - reached);
-                if increment < SMALLEST_WITH_PRESSURES && solver.pressures.is_some() {
-                    solver.give_up_pressures();
-                    increment = 1.0 - reached;
-                }
-                if increment < SMALLEST_INCREMENT {
-                    let load = load_at((reached + AHEAD).min(1.0));
-                    let beyond = branch.beyond(&mut solver, state, load, &mut buffers, observer);
-                    if let Some(equilibrium) = beyond {
-                        let fraction = load.fraction;
-                        stopped =
-                            solver.reach(equilibrium, fraction, state, &mut buffers, observer);
-                        (reached, increment) = (load.fraction, AHEAD);
-                        continue;
-                    }
-                    return Err(Error::NoEquilibrium {
-                        reached,
-                        iterations: solver.counts.iterations,
-                        evaluations: solver.counts.evaluations,
-                        residual,
-                        indefinite,
-                    });
-                }
-            }
-        }
+    while loading.reached < 1.0 && !loading.stopped {
+        loading.next_part()?;
     }
+    let Loading { solver, state, stopped, branch, .. } = loading;
     let Stability { found, products, .. } = branch.stability;
     Ok(solver.summary(state, stopped, found, products))
 }
 
-impl Solver<'_> {
-    /// Makes an equilibrium the state of the body and shows it; whether the observer ends the
-    /// run.
-    fn reach(
-        &mut self,
-        equilibrium: Equilibrium,
-        fraction: f64,
-        state: &mut State,
-        buffers: &mut Buffers,
-        observer: &mut dyn Observer,
-    ) -> bool {
-        let jacobian = equilibrium.exact().smallest_jacobian.jacobian;
-        self.accept(equilibrium, fraction, state, buffers);
-        notify(self.model, state, jacobian, fraction, observer) == Continue::Stop
+/// A body while its load grows.
+struct Loading<'a, 'm> {
+    solver: Solver<'m>,
+    state: &'a mut State,
+    buffers: Buffers,
+    observer: &'a mut dyn Observer,
+    /// Of the residual at the end \[–\].
+    tolerance: f64,
+    branch: Branch,
+    /// Fraction of the load that is in equilibrium \[–\].
+    reached: f64,
+    /// What is tried next \[–\].
+    increment: f64,
+    /// By the observer.
+    stopped: bool,
+}
+
+impl Loading<'_, '_> {
+    fn load_at(&self, fraction: f64) -> Load {
+        let passing = self.tolerance.max(PASSING_TOLERANCE);
+        Load { fraction, tolerance: if fraction == 1.0 { self.tolerance } else { passing } }
     }
 
+    /// Tries the next part of the load.
+    fn next_part(&mut self) -> Result<(), Error> {
+        // No tiny last increment.
+        let all = self.reached + 1.5 * self.increment > 1.0;
+        let fraction = if all { 1.0 } else { self.reached + self.increment };
+        let load = self.load_at(fraction);
+        let Loading { solver, state, buffers, observer, .. } = self;
+        let kept = (solver.contacts.clone(), solver.pressures.clone());
+        match solver.solve(&state.displacement, load, buffers, *observer) {
+            Ok(equilibrium) => self.settle(equilibrium, load, kept),
+            Err(Unsolved::Stopped(here)) => {
+                let jacobian = here.exact().smallest_jacobian.jacobian;
+                solver.accept(*here, fraction, state, buffers);
+                notify(solver.model, state, jacobian, self.reached, *observer);
+                self.stopped = true;
+            }
+            Err(Unsolved::Failed { residual, indefinite }) => {
+                self.try_otherwise(fraction, residual, indefinite)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes on from an equilibrium, or from a stable one that it leads to; without either, from
+    /// the contacts and pressures that were `kept`, with a smaller part of the load.
+    fn settle(
+        &mut self,
+        equilibrium: Equilibrium,
+        load: Load,
+        kept: (ActiveContacts, Option<Pressures>),
+    ) {
+        let Loading { solver, branch, buffers, observer, .. } = self;
+        let equilibrium = match branch.stable(solver, equilibrium, load, buffers, *observer) {
+            Ok(stable) => stable,
+            Err(_) if load.fraction - self.reached > LARGEST_UNSTABLE => {
+                // Nearer to where it lost its stability it has fewer ways to go.
+                (solver.contacts, solver.pressures) = kept;
+                self.increment = 0.5 * (load.fraction - self.reached);
+                return;
+            }
+            Err(unstable) => branch.stay_on(*unstable),
+        };
+        self.reach(equilibrium, load.fraction);
+        self.increment *= 2.0;
+    }
+
+    /// After a failure: pressures as unknowns, a smaller part of the load, or the way around a
+    /// limit point.
+    fn try_otherwise(
+        &mut self,
+        fraction: f64,
+        residual: f64,
+        indefinite: bool,
+    ) -> Result<(), Error> {
+        let reached = self.reached;
+        let Loading { solver, state, buffers, .. } = self;
+        if solver.counts.pressures == PatchPressures::OfDisplacements
+            && can_be_unknowns(solver.model)
+        {
+            solver.free_pressures(&state.displacement, reached, buffers);
+            return Ok(());
+        }
+        self.increment = 0.5 * (fraction - reached);
+        if self.increment < SMALLEST_WITH_PRESSURES && solver.pressures.is_some() {
+            solver.give_up_pressures();
+            self.increment = 1.0 - reached;
+        }
+        if self.increment >= SMALLEST_INCREMENT {
+            return Ok(());
+        }
+        let load = self.load_at((reached + AHEAD).min(1.0));
+        let Loading { solver, state, branch, buffers, observer, .. } = self;
+        match branch.beyond(solver, state, load, buffers, *observer) {
+            Some(equilibrium) => {
+                self.reach(equilibrium, load.fraction);
+                self.increment = AHEAD;
+                Ok(())
+            }
+            None => Err(Error::NoEquilibrium {
+                reached,
+                iterations: solver.counts.iterations,
+                evaluations: solver.counts.evaluations,
+                residual,
+                indefinite,
+            }),
+        }
+    }
+
+    /// Makes an equilibrium the state of the body and shows it.
+    fn reach(&mut self, equilibrium: Equilibrium, fraction: f64) {
+        let Loading { solver, state, buffers, observer, .. } = self;
+        let jacobian = equilibrium.exact().smallest_jacobian.jacobian;
+        solver.accept(equilibrium, fraction, state, buffers);
+        self.stopped = notify(solver.model, state, jacobian, fraction, *observer) == Continue::Stop;
+        self.reached = fraction;
+    }
+}
+
+impl Solver<'_> {
     /// Makes an equilibrium the state of the body, at rest.
     pub(super) fn accept(
         &mut self,

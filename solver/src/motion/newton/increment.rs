@@ -5,6 +5,7 @@ use super::linear::{Correction, System};
 use super::solver::{Equilibrium, SHIFTS, Solver};
 use super::taken::{Outcome, is_left};
 use crate::algebra::packed::largest;
+use crate::model::Model;
 use crate::model::contact::ContactForce;
 use crate::motion::balance::Imbalance;
 use crate::motion::observe::{Continue, Observer};
@@ -56,6 +57,68 @@ pub(super) enum Unsolved {
     Stopped(Box<Equilibrium>),
 }
 
+/// How far an increment has come.
+struct Course {
+    load: Load,
+    /// Largest component of the whole jump of what is prescribed \[m\].
+    asked: f64,
+    now: Equilibrium,
+    /// What the next correction adds to what is prescribed \[m\].
+    jump: Vec<f64>,
+    /// Whether the whole jump, which may take several corrections, is not made yet.
+    jumping: bool,
+    /// Of the next correction, at which conjugate gradients end \[–\].
+    forcing: f64,
+    /// Whether the last tangent was.
+    indefinite: bool,
+    /// Residual before the last correction \[–\].
+    before: f64,
+    /// One for each correction, and one for the end.
+    looks: std::ops::RangeInclusive<usize>,
+}
+
+/// What a correction came to.
+enum Advance {
+    /// Whether the body falls without touching anything.
+    Moved {
+        falling: bool,
+    },
+    AgainWithLargerShift,
+    Stopped,
+    Failed,
+}
+
+impl Course {
+    /// Whether a residual leaves reason for another correction.
+    fn may_go_on(&mut self, residual: f64) -> bool {
+        let falls = residual < STILL_FALLING.0 && residual < STILL_FALLING.1 * self.before;
+        self.before = residual;
+        !residual.is_nan() && (self.looks.next().is_some() || falls)
+    }
+
+    /// Whether all that is prescribed has been met, by a tangent that resists.
+    fn is_whole(&self) -> bool {
+        !self.jumping && !self.indefinite
+    }
+
+    /// How well the next correction is solved, after one before which the imbalance was `norm`
+    /// (Eisenstat and Walker 1996, choice 2).
+    fn force_next(&mut self, model: &Model, jumped: bool, norm: f64) {
+        self.forcing = match jumped {
+            true if self.jumping => FIRST_FORCING,
+            true => FORCING.1,
+            false => {
+                let now = &self.now;
+                let fallen = now.imbalance.norm(model) / norm;
+                // Not much beyond the tolerance (Kelley 1995, eq. 6.20).
+                let relative = now.imbalance.relative(model).max(now.exact().relative(model));
+                let enough = ENOUGH * self.load.tolerance / relative;
+                (0.9 * fallen * fallen).max(enough).clamp(FORCING.0, FORCING.1)
+            }
+        };
+    }
+}
+
 impl Solver<'_> {
     /// Newton's method at a fraction of the load from displacements `start` \[m\].
     pub fn solve(
@@ -87,88 +150,111 @@ impl Solver<'_> {
     fn iterate(
         &mut self,
         start: &[f64],
-        Load { fraction, tolerance }: Load,
+        load: Load,
         buffers: &mut Buffers,
         observer: &mut dyn Observer,
     ) -> Result<Equilibrium, Unsolved> {
         let model = self.model;
+        let mut course = self.begin(start, load, buffers);
+        loop {
+            let changes = self.settle(start, &mut course.now);
+            let residual = course.now.exact().relative(model);
+            let failed = Unsolved::Failed { residual, indefinite: course.indefinite };
+            if !course.may_go_on(residual) {
+                return Err(failed);
+            }
+            let open = self.free.contacts.iter().fold(0.0f64, |a, row| a.max(row.way.abs()));
+            let settled = changes == 0 && open <= CLOSED.max(load.tolerance) * model.contact.skin;
+            if settled && course.is_whole() && self.is_balanced(&course.now, load.tolerance) {
+                return Ok(course.now);
+            }
+            match self.advance(&mut course, settled, residual, buffers, observer) {
+                Advance::Moved { falling } if self.floating => self.adapt_shift(changes, falling),
+                Advance::Moved { .. } | Advance::AgainWithLargerShift => {}
+                Advance::Stopped => return Err(Unsolved::Stopped(Box::new(course.now))),
+                Advance::Failed => return Err(failed),
+            }
+        }
+    }
+
+    /// At the start of an increment, nothing corrected yet.
+    fn begin(&mut self, start: &[f64], load: Load, buffers: &mut Buffers) -> Course {
+        let fraction = load.fraction;
         self.free.t = self.path.time(fraction);
         self.contacts.begin();
-        let mut jump = self.jump(start, fraction);
-        let asked = largest(&jump);
+        let jump = self.jump(start, fraction);
         let imbalance = self.imbalance(start, fraction, buffers);
         self.see_pressures(buffers);
         self.shift = if self.floating { self.first_shift(&imbalance) } else { 0.0 };
-        let mut now = Equilibrium { u: start.to_vec(), imbalance, exact: None };
-        // The jump of what is prescribed may take several corrections.
-        let (mut forcing, mut indefinite, mut jumping) = (FIRST_FORCING, false, true);
-        let most = match model.contact.obstacles.is_empty() {
+        let most = match self.model.contact.obstacles.is_empty() {
             true if self.pressures.is_some() => MOST_ITERATIONS_WITH_PRESSURES,
             true => MOST_ITERATIONS,
             false => MOST_ITERATIONS_IN_CONTACT,
         };
-        let (mut before, mut corrections) = (f64::INFINITY, 0..=most);
-        loop {
-            let changes = self.settle(start, &mut now);
-            let residual = now.exact().relative(model);
-            let failed = Unsolved::Failed { residual, indefinite };
-            let falls = residual < STILL_FALLING.0 && residual < STILL_FALLING.1 * before;
-            if residual.is_nan() || corrections.next().is_none() && !falls {
-                return Err(failed);
-            }
-            before = residual;
-            let open = self.free.contacts.iter().fold(0.0f64, |a, row| a.max(row.way.abs()));
-            let settled = changes == 0 && open <= CLOSED.max(tolerance) * model.contact.skin;
-            if !jumping && settled && !indefinite && self.is_balanced(&now, tolerance) {
-                return Ok(now);
-            }
-            let (mut change, whole) = self.part_of(std::mem::take(&mut jump));
-            self.free.close_contacts(&mut change);
-            let (progress, count) = (progress(residual, tolerance), self.counts.iterations);
-            let mut go_on = || observer.iterate(fraction * progress, count) == Continue::Yes;
-            let correction =
-                self.correction(&now, change, forcing, indefinite, buffers, &mut go_on);
-            if correction.stopped {
-                return Err(Unsolved::Stopped(Box::new(now)));
-            }
-            indefinite = correction.indefinite;
-            // Nothing balances a falling body before it touches something.
-            let falling = self.floating && self.free.contacts.is_empty();
-            let searched = !jumping && settled && !falling;
-            let norm = now.imbalance.norm(model);
-            let cut = match self.take(&now, &correction, fraction, searched, buffers) {
-                Outcome::Taken(next, length) => {
-                    now = self.with_exact(next, fraction, buffers);
-                    jumping && !(whole && length == 1.0)
-                }
-                Outcome::TooFar if self.floating && self.shift < SHIFTS.1 => {
-                    self.shift = (TOO_FAR * self.shift).min(SHIFTS.1);
-                    jump = self.jump(&now.u, fraction);
-                    continue;
-                }
-                _ => return Err(failed),
-            };
-            if self.floating {
-                let changed = changes as f64 / (self.free.contacts.len() as f64).max(10.0);
-                let factor = if falling { FALLING } else { shift_factor(changed) };
-                self.shift = (factor * self.shift).clamp(SHIFTS.0, SHIFTS.1);
-            }
-            let left = if cut { self.left_of_jump(&now.u, fraction, asked) } else { None };
-            // Eisenstat and Walker 1996, choice 2.
-            let fallen = now.imbalance.norm(model) / norm;
-            forcing = match jumping {
-                true if left.is_some() => FIRST_FORCING,
-                true => FORCING.1,
-                false => {
-                    // Not much beyond the tolerance (Kelley 1995, eq. 6.20).
-                    let relative = now.imbalance.relative(model).max(now.exact().relative(model));
-                    let enough = ENOUGH * tolerance / relative;
-                    (0.9 * fallen * fallen).max(enough).clamp(FORCING.0, FORCING.1)
-                }
-            };
-            jumping = left.is_some();
-            jump = left.unwrap_or_else(|| vec![0.0; start.len()]);
+        Course {
+            load,
+            asked: largest(&jump),
+            now: Equilibrium { u: start.to_vec(), imbalance, exact: None },
+            jump,
+            jumping: true,
+            forcing: FIRST_FORCING,
+            indefinite: false,
+            before: f64::INFINITY,
+            looks: 0..=most,
         }
+    }
+
+    /// One correction.
+    fn advance(
+        &mut self,
+        course: &mut Course,
+        settled: bool,
+        residual: f64,
+        buffers: &mut Buffers,
+        observer: &mut dyn Observer,
+    ) -> Advance {
+        let (model, Load { fraction, tolerance }) = (self.model, course.load);
+        let (mut change, whole) = self.part_of(std::mem::take(&mut course.jump));
+        self.free.close_contacts(&mut change);
+        let (progress, count) = (progress(residual, tolerance), self.counts.iterations);
+        let mut go_on = || observer.iterate(fraction * progress, count) == Continue::Yes;
+        let Course { now, forcing, indefinite, .. } = &*course;
+        let correction = self.correction(now, change, *forcing, *indefinite, buffers, &mut go_on);
+        if correction.stopped {
+            return Advance::Stopped;
+        }
+        course.indefinite = correction.indefinite;
+        // Nothing balances a falling body before it touches something.
+        let falling = self.floating && self.free.contacts.is_empty();
+        let jumping = course.jumping;
+        let searched = !jumping && settled && !falling;
+        let norm = course.now.imbalance.norm(model);
+        let length = match self.take(&course.now, &correction, fraction, searched, buffers) {
+            Outcome::Taken(next, length) => {
+                course.now = self.with_exact(next, fraction, buffers);
+                length
+            }
+            Outcome::TooFar if self.floating && self.shift < SHIFTS.1 => {
+                self.shift = (TOO_FAR * self.shift).min(SHIFTS.1);
+                course.jump = self.jump(&course.now.u, fraction);
+                return Advance::AgainWithLargerShift;
+            }
+            _ => return Advance::Failed,
+        };
+        let cut = jumping && !(whole && length == 1.0);
+        let (now, asked) = (&course.now, course.asked);
+        let left = if cut { self.left_of_jump(&now.u, fraction, asked) } else { None };
+        course.jumping = left.is_some();
+        course.jump = left.unwrap_or_else(|| vec![0.0; model.size()]);
+        course.force_next(model, jumping, norm);
+        Advance::Moved { falling }
+    }
+
+    /// Less of a shift the closer a floating body is to lying still.
+    fn adapt_shift(&mut self, changes: usize, falling: bool) {
+        let changed = changes as f64 / (self.free.contacts.len() as f64).max(10.0);
+        let factor = if falling { FALLING } else { shift_factor(changed) };
+        self.shift = (factor * self.shift).clamp(SHIFTS.0, SHIFTS.1);
     }
 
     fn is_balanced(&self, now: &Equilibrium, tolerance: f64) -> bool {

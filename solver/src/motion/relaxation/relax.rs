@@ -33,69 +33,111 @@ pub(crate) fn relax(
     let mut damping = Damping::new(model, settings);
     let mut stability = Stability::default();
     let mut decay = Decay::default();
-    let mut convergence = Convergence { estimated_error: f64::INFINITY, residual: f64::INFINITY };
+    let mut error = Assessment::default();
     notify(model, state, 1.0, 0.0, observer);
-    // At a turning point a single increment says nothing: take the largest
-    // since the last assessment.
-    let (mut increment, mut increment_before) = (0.0f64, f64::INFINITY);
-    let mut residuals = 0;
     let unobstructed = model.contact.obstacles.is_empty();
     for count in 1.. {
         if control.reevaluate(model, state, &mut buffers) {
             damping.reset();
         }
-        let load_time =
-            |count: usize| settings.load_end * (count as f64 / settings.load_steps as f64).min(1.0);
+        let (from, to) = (load_time(settings, count - 1), load_time(settings, count));
         let scheme = Scheme::relaxation(control.time_step, damping.c);
-        let report =
-            step(model, &scheme, load_time(count - 1), load_time(count), state, &mut buffers);
+        let report = step(model, &scheme, from, to, state, &mut buffers);
         control.record(model, state, &mut buffers, &report);
         let loaded = count > settings.load_steps;
         check_divergence(model, state, &report)
             .map_err(|error| stability.explain(slid_away(model, state, error)))?;
-        increment = increment.max(report.largest_increment);
         let curvature = damping.update(model, state, &buffers);
-        let still = || model.constraints.hold_still(load_time(count - 1), load_time(count));
+        let still = || model.constraints.hold_still(from, to);
         if let Some(curvature) = curvature.filter(|_| unobstructed && still()) {
             stability.observe(model, state, &damping.change, curvature);
         }
         // The last assessment says how far it came, should it not converge.
         let last = count >= settings.max_steps;
-        if loaded && count.is_multiple_of(ASSESS_EVERY) || last {
-            let rate = rate(damping.c, increment / increment_before);
-            // One window may lie at a turning point, two do not.
-            let moved = if loaded { increment.max(increment_before) } else { increment };
-            residuals += 1;
-            convergence = assess(model, state, &mut buffers, rate, moved);
+        error.largest = error.largest.max(report.largest_increment);
+        let look = count.is_multiple_of(ASSESS_EVERY);
+        if loaded && look || last {
+            error.assess(model, state, &mut buffers, damping.c, loaded);
         }
-        if count.is_multiple_of(ASSESS_EVERY) {
-            increment_before = std::mem::take(&mut increment);
+        if look {
+            error.before = std::mem::take(&mut error.largest);
         }
         let size = largest(&state.displacement).max(1e-12 * model.extent);
-        let converged = loaded
-            && convergence.estimated_error <= settings.tolerance * size
-            && convergence.residual <= 10.0 * settings.tolerance;
-        let progress = if converged { 1.0 } else { progress(count, settings, &convergence, size) };
+        let converged = loaded && error.is_within(settings.tolerance, size);
+        let progress = if converged { 1.0 } else { progress(count, settings, &error.now, size) };
         let jacobian = report.smallest_jacobian.jacobian;
         let stop = notify(model, state, jacobian, progress, observer) == Continue::Stop;
+        if converged {
+            stability.search(model, Here::of(state), &mut buffers.workspace);
+        }
         if converged || stop {
-            if converged {
-                stability.search(model, Here::of(state), &mut buffers.workspace);
-            }
-            let summary = control.summary(state, residuals, stop && !converged);
-            // Stopped early, it may never have been assessed.
-            let relaxation = convergence.residual.is_finite().then_some(convergence);
-            let Stability { found: instability, products: stability_products, .. } = stability;
-            return Ok(Summary { relaxation, instability, stability_products, ..summary });
+            let summary = control.summary(state, error.assessments, stop && !converged);
+            return Ok(error.in_summary(summary, stability));
         }
         if last || decay.has_stalled(count, report.largest_increment) && loaded {
             // For the records: the state that is kept.
             notify(model, state, jacobian, 1.0, observer);
-            let error = not_converged(model, settings, state, &convergence, count);
-            return Err(stability.explain(error));
+            return Err(stability.explain(not_converged(model, settings, state, &error.now, count)));
         }
     }
     unreachable!("the loop returns")
+}
+
+/// The time of the loads in a step \[s\].
+fn load_time(settings: &Relaxation, count: usize) -> f64 {
+    settings.load_end * (count as f64 / settings.load_steps as f64).min(1.0)
+}
+
+/// How far the body is from rest, looked at now and then.
+struct Assessment {
+    /// Largest increment since the last look, as a single one at a turning point says nothing \[m\].
+    largest: f64,
+    /// The same before it \[m\].
+    before: f64,
+    /// What the last look found.
+    now: Convergence,
+    assessments: usize,
+}
+
+impl Default for Assessment {
+    fn default() -> Assessment {
+        let unknown = Convergence { estimated_error: f64::INFINITY, residual: f64::INFINITY };
+        Assessment { largest: 0.0, before: f64::INFINITY, now: unknown, assessments: 0 }
+    }
+}
+
+impl Assessment {
+    /// Error estimate max|Δu| c'/(1 − c'), and the residual of the static equations.
+    fn assess(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        buffers: &mut Buffers,
+        c: f64,
+        loaded: bool,
+    ) {
+        let rate = rate(c, self.largest / self.before);
+        // One window may lie at a turning point, two do not.
+        let moved = if loaded { self.largest.max(self.before) } else { self.largest };
+        self.now = Convergence {
+            estimated_error: moved * rate / (1.0 - rate),
+            residual: residual(model, state, buffers),
+        };
+        self.assessments += 1;
+    }
+
+    /// Whether the error is within a part of the largest displacement `size` \[m\], and the
+    /// residual confirms it.
+    fn is_within(&self, tolerance: f64, size: f64) -> bool {
+        self.now.estimated_error <= tolerance * size && self.now.residual <= 10.0 * tolerance
+    }
+
+    /// Adds what was found, nothing before the first look, to the summary of a run.
+    fn in_summary(&self, summary: Summary, stability: Stability) -> Summary {
+        let relaxation = self.now.residual.is_finite().then_some(self.now);
+        let Stability { found: instability, products: stability_products, .. } = stability;
+        Summary { relaxation, instability, stability_products, ..summary }
+    }
 }
 
 /// A body that slides away along obstacles, with what does not hold it.
@@ -162,21 +204,6 @@ impl Decay {
 fn rate(c: f64, fallen: f64) -> f64 {
     let observed = fallen.powf(1.0 / ASSESS_EVERY as f64).min(SLOWEST_RATE);
     (c + 0.2 * (1.0 - c)).max(observed)
-}
-
-/// Error estimate max|Δu| c'/(1 − c'), and the residual of the static
-/// equations.
-fn assess(
-    model: &Model,
-    state: &mut State,
-    buffers: &mut Buffers,
-    rate: f64,
-    increment: f64,
-) -> Convergence {
-    Convergence {
-        estimated_error: increment * rate / (1.0 - rate),
-        residual: residual(model, state, buffers),
-    }
 }
 
 /// Relative residual of the static equations without constraint forces and nodes

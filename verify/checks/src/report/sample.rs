@@ -124,15 +124,6 @@ fn convergence() -> Study {
         ],
         slopes: vec![2.0, 1.0],
     };
-    let row = |basis: &str, h: f64, nodes: f64, e: f64, p: f64| {
-        vec![
-            Cell::Text(basis.into()),
-            Cell::Number(h),
-            Cell::Number(nodes),
-            Cell::Number(e),
-            Cell::Number(p),
-        ]
-    };
     Study {
         id: "convergence".into(),
         title: "Observed order on a manufactured solution".into(),
@@ -164,24 +155,38 @@ fn convergence() -> Study {
                 "1",
             ),
         ],
-        tables: vec![Table {
-            title: "Refinement".into(),
-            columns: vec![
-                text("basis"),
-                number("spacing", "m"),
-                number("nodes", "1"),
-                number("error", "1"),
-                number("order", "1"),
-            ],
-            rows: vec![
-                row("linear", 0.1, 1331.0, 1.26e-2, f64::NAN),
-                row("linear", 0.05, 9261.0, 3.37e-3, 1.9),
-                row("linear", 0.025, 68_921.0, 9.03e-4, 1.9),
-            ],
-        }],
+        tables: vec![refinement()],
         figures: vec![Figure::Plot(figure)],
         wall_seconds: 41.2,
         ..Study::default()
+    }
+}
+
+/// Errors on three clouds.
+fn refinement() -> Table {
+    let row = |basis: &str, h: f64, nodes: f64, e: f64, p: f64| {
+        vec![
+            Cell::Text(basis.into()),
+            Cell::Number(h),
+            Cell::Number(nodes),
+            Cell::Number(e),
+            Cell::Number(p),
+        ]
+    };
+    Table {
+        title: "Refinement".into(),
+        columns: vec![
+            text("basis"),
+            number("spacing", "m"),
+            number("nodes", "1"),
+            number("error", "1"),
+            number("order", "1"),
+        ],
+        rows: vec![
+            row("linear", 0.1, 1331.0, 1.26e-2, f64::NAN),
+            row("linear", 0.05, 9261.0, 3.37e-3, 1.9),
+            row("linear", 0.025, 68_921.0, 9.03e-4, 1.9),
+        ],
     }
 }
 
@@ -348,32 +353,7 @@ fn brain() -> Study {
         title: "Indentation of a brain slice".into(),
         claim: "Centres of mass move as in a finite-element solution.".into(),
         command: "mtled verify brain".into(),
-        checks: vec![
-            check(
-                "brain/tumour/shift",
-                "difference of the tumour's shift",
-                Kind::Reference,
-                0.0312,
-                Bound::AtMost(0.02),
-                "mm",
-            ),
-            check(
-                "brain/ventricle/shift",
-                "difference of the ventricles' shift",
-                Kind::Reference,
-                0.0101,
-                Bound::AtMost(0.02),
-                "mm",
-            ),
-            check(
-                "brain/step",
-                "critical time step",
-                Kind::Regression,
-                1.234e-5,
-                Bound::AtLeast(1.2e-5),
-                "s",
-            ),
-        ],
+        checks: shifts(),
         figures: vec![
             Figure::Plot(ratios()),
             Figure::Panels(costs()),
@@ -386,4 +366,33 @@ fn brain() -> Study {
         wall_seconds: 37.0,
         ..Study::default()
     }
+}
+
+fn shifts() -> Vec<Check> {
+    vec![
+        check(
+            "brain/tumour/shift",
+            "difference of the tumour's shift",
+            Kind::Reference,
+            0.0312,
+            Bound::AtMost(0.02),
+            "mm",
+        ),
+        check(
+            "brain/ventricle/shift",
+            "difference of the ventricles' shift",
+            Kind::Reference,
+            0.0101,
+            Bound::AtMost(0.02),
+            "mm",
+        ),
+        check(
+            "brain/step",
+            "critical time step",
+            Kind::Regression,
+            1.234e-5,
+            Bound::AtLeast(1.2e-5),
+            "s",
+        ),
+    ]
 }

@@ -255,22 +255,26 @@ pub fn to_json(inspection: &Inspection) -> Value {
         "bytes_per_step": model.bytes_per_step(),
         "estimated_memory_bytes": estimate(inspection).round(),
         "peak_memory_bytes": inspection.peak,
-        "zero_energy_modes": inspection.modes.as_ref().map(|modes| json!({
-            "count": modes.count,
-            "at_least": modes.at_least(),
-            "threshold": ZERO_ENERGY_FRACTION,
-            "free_rigid_motions": modes.rigid,
-            "finer_points": modes.finer_points,
-            "softest": modes.least_captured.iter().map(|motion| json!({
-                "share": motion.fraction,
-                "node": motion.node,
-                "position_m": array(&motion.position),
-            })).collect::<Vec<_>>(),
-        })),
+        "zero_energy_modes": inspection.modes.as_ref().map(modes_json),
         "warnings": (inspection.case.notes.iter().cloned())
             .chain(warnings(inspection).map(|warning| warning.to_string()))
             .collect::<Vec<_>>(),
         "advice": advice(inspection),
+    })
+}
+
+fn modes_json(modes: &ZeroEnergyModes) -> Value {
+    json!({
+        "count": modes.count,
+        "at_least": modes.at_least(),
+        "threshold": ZERO_ENERGY_FRACTION,
+        "free_rigid_motions": modes.rigid,
+        "finer_points": modes.finer_points,
+        "softest": modes.least_captured.iter().map(|motion| json!({
+            "share": motion.fraction,
+            "node": motion.node,
+            "position_m": array(&motion.position),
+        })).collect::<Vec<_>>(),
     })
 }
 

@@ -54,7 +54,10 @@ struct PointsArray {
 fn points_array(xml: &[u8], name: Option<&str>) -> Result<PointsArray, Mistake> {
     let section: &[u8] = if name.is_some() { b"PointData" } else { b"Points" };
     let mut known = Vec::new();
-    let mut wanted = |tag: &BytesStart| {
+    let mut is_asked = |tag: &BytesStart| {
+        if tag.name().as_ref() != b"DataArray" {
+            return false;
+        }
         let Some(name) = name else { return true };
         let found = attributes(tag).remove("Name").unwrap_or_default();
         let same = found == name;
@@ -74,21 +77,11 @@ fn points_array(xml: &[u8], name: Option<&str>) -> Result<PointsArray, Mistake> 
                 pieces.push(attributes(&tag));
             }
             Event::Start(tag) if tag.name().as_ref() == section => in_points = true,
-            Event::Start(tag)
-                if in_points
-                    && tag.name().as_ref() == b"DataArray"
-                    && array.is_none()
-                    && wanted(&tag) =>
-            {
+            Event::Start(tag) if in_points && array.is_none() && is_asked(&tag) => {
                 array = Some(attributes(&tag));
                 open = Some(0);
             }
-            Event::Empty(tag)
-                if in_points
-                    && tag.name().as_ref() == b"DataArray"
-                    && array.is_none()
-                    && wanted(&tag) =>
-            {
+            Event::Empty(tag) if in_points && array.is_none() && is_asked(&tag) => {
                 array = Some(attributes(&tag));
             }
             Event::Start(_) => open = open.map(|inside| inside + 1),

@@ -8,7 +8,7 @@ use crate::studies::workbench::{Workbench, exact};
 use anyhow::{Context, Result, anyhow};
 use mtled_checks::measure::log_log_fit;
 use mtled_checks::study::{
-    Bound, Cell, Figure, Plot, Series, SeriesStyle, Study, Table, axis, number, text,
+    Bound, Cell, Column, Figure, Plot, Series, SeriesStyle, Study, Table, axis, number, text,
 };
 
 /// A quantity, its error on one cloud, and the theoretical order of a linear basis.
@@ -261,23 +261,27 @@ pub fn table(all: &[(Scenario, Vec<Level>)]) -> Table {
     }
     Table {
         title: format!("Relative errors and orders, mean and deviation over {CLOUDS} clouds"),
-        columns: vec![
-            text("law"),
-            number("Poisson's ratio", "1"),
-            text("size"),
-            number("displacement", "1"),
-            number("±", "1"),
-            number("gradient", "1"),
-            number("±", "1"),
-            number("pressure", "1"),
-            number("±", "1"),
-            number("pressure less its mean", "1"),
-            number("±", "1"),
-            number("interpolated displacement", "1"),
-            number("gain of volume", "1"),
-        ],
+        columns: columns(),
         rows,
     }
+}
+
+fn columns() -> Vec<Column> {
+    vec![
+        text("law"),
+        number("Poisson's ratio", "1"),
+        text("size"),
+        number("displacement", "1"),
+        number("±", "1"),
+        number("gradient", "1"),
+        number("±", "1"),
+        number("pressure", "1"),
+        number("±", "1"),
+        number("pressure less its mean", "1"),
+        number("±", "1"),
+        number("interpolated displacement", "1"),
+        number("gain of volume", "1"),
+    ]
 }
 
 /// Errors against the spacing for one Poisson's ratio.

@@ -112,14 +112,8 @@ impl Solver {
         }
         let (forcing, shift) = (system.forcing, system.shift);
         let mut change = std::mem::take(&mut system.change);
-        let mut residual = std::mem::take(&mut system.residual);
         self.prepare(free, shift);
-        let mut products = 0;
-        if largest(&change) > 0.0 {
-            products += 1;
-            let product = system.stiffness_times(model, &self.at_rest.diagonal, &change);
-            axpy(&mut residual, -1.0, &product);
-        }
+        let (mut residual, mut products) = self.beside(model, &mut system, &change);
         let mut descent = self.preconditioned(model, free, &mut residual);
         let mut direction = descent.clone();
         let mut square = dot(&residual, &descent);
@@ -163,6 +157,18 @@ impl Solver {
         self.until = self.until.map(|left| if self.corrected { left } else { OF_ALL });
         self.corrected = true;
         Correction { change, pressures: Vec::new(), indefinite, products, stopped }
+    }
+
+    /// What a change \[m\] that is made at once leaves of the residual \[N\], and the products that
+    /// took.
+    fn beside(&self, model: &Model, system: &mut System, change: &[f64]) -> (Vec<f64>, usize) {
+        let mut residual = std::mem::take(&mut system.residual);
+        if largest(change) == 0.0 {
+            return (residual, 0);
+        }
+        let product = system.stiffness_times(model, &self.at_rest.diagonal, change);
+        axpy(&mut residual, -1.0, &product);
+        (residual, 1)
     }
 
     /// z = Π B r; r becomes M Π M⁻¹ r, without the forces of what is held, whose round-off
