@@ -63,8 +63,8 @@ pub fn folders_with(file: &str, root: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Folders of the benchmarks under a folder that have a note of this name and were measured: a
-/// smoke test writes notes without measurements.
+/// Folders of the benchmarks under a folder that have a note of this name and were measured: those
+/// that a filter left out have notes only.
 pub fn measured(note: &str, root: &Path) -> Result<Vec<PathBuf>> {
     let mut found = folders_with(note, root)?;
     found.retain(|benchmark| is_measured(benchmark));
