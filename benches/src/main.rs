@@ -1,48 +1,51 @@
-//! Fills the tables of the README and of the guide from the output of the commands, so that no figure in it is
-//! typed by hand.
+//! Fills the tables of the README and of the guide from what was measured, so that no figure in
+//! them is typed by hand.
 
 mod bench;
+mod estimates;
 mod markers;
+mod pairs;
 mod verify;
 
 use anyhow::Context;
-use clap::Parser;
+use clap::{Args, Parser};
 use std::path::{Path, PathBuf};
 
-/// Fill the tables of the README and of the guide from the output of `mtled verify`, `mtled bench`
-/// and `mtled study race`, or print the table of `cargo bench`.
+/// Fill the tables of the README and of the guide from the output of `mtled verify`, `cargo bench`
+/// or `mtled study race`.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
-    /// Criterion's folder, whose table is printed.
-    #[arg(long, default_value = "target/criterion")]
-    criterion: PathBuf,
-    /// Fill the table of `mtled verify` from its results.json.
-    #[arg(long, value_name = "RESULTS", conflicts_with_all = ["bench", "race"])]
-    verify: Option<PathBuf>,
-    /// Fill the tables of `mtled bench` from its output.
-    #[arg(long, value_name = "TABLES", conflicts_with = "race")]
-    bench: Option<PathBuf>,
-    /// Fill the table of `mtled study race` from its race.md.
-    #[arg(long, value_name = "RACE")]
-    race: Option<PathBuf>,
+    #[command(flatten)]
+    source: Source,
     /// The files with the markers between which the tables stand.
     #[arg(long, default_values = ["README.md", "verify/guide/src/results.md"])]
     page: Vec<PathBuf>,
 }
 
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct Source {
+    /// Fill the table of `mtled verify` from its results.json.
+    #[arg(long, value_name = "RESULTS")]
+    verify: Option<PathBuf>,
+    /// Fill the tables of `cargo bench` from Criterion's folder.
+    #[arg(long, value_name = "FOLDER", num_args = 0..=1, default_missing_value = "target/criterion")]
+    bench: Option<PathBuf>,
+    /// Fill the table of `mtled study race` from its race.md.
+    #[arg(long, value_name = "RACE")]
+    race: Option<PathBuf>,
+}
+
 fn main() -> anyhow::Result<()> {
-    let arguments = Arguments::parse();
-    let (name, table) = match &arguments {
-        Arguments { verify: Some(results), .. } => ("verify", verify::table(results)?),
-        Arguments { bench: Some(tables), .. } => ("bench", without_title(&read(tables)?)),
-        Arguments { race: Some(page), .. } => ("race", markers::first_table(&read(page)?)?),
-        _ => {
-            print!("{}", bench::table(&arguments.criterion)?);
-            return Ok(());
-        }
+    let Arguments { source, page } = Arguments::parse();
+    let (name, table) = match &source {
+        Source { verify: Some(results), .. } => ("verify", verify::table(results)?),
+        Source { bench: Some(criterion), .. } => ("bench", bench::tables(criterion)?),
+        Source { race: Some(page), .. } => ("race", markers::first_table(&read(page)?)?),
+        _ => anyhow::bail!("nothing to fill a table from"),
     };
-    fill(&arguments.page, name, &table)?;
+    fill(&page, name, &table)?;
     print!("{table}");
     Ok(())
 }
@@ -64,11 +67,4 @@ fn fill(pages: &[PathBuf], name: &str, table: &str) -> anyhow::Result<()> {
 
 fn read(path: &Path) -> anyhow::Result<String> {
     std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))
-}
-
-/// The pages have titles of their own.
-fn without_title(page: &str) -> String {
-    page.lines()
-        .filter(|line| !line.starts_with('#'))
-        .fold(String::new(), |text, line| text + line + "\n")
 }

@@ -47,29 +47,6 @@ pub fn load_average() -> Option<f64> {
     (load.one + load.five + load.fifteen > 0.0).then_some(load.one)
 }
 
-/// Sizes of the second cache of a core and of the last cache \[bytes\]; those
-/// of a common processor where they are not known.
-pub fn caches() -> (usize, usize) {
-    let second = cache(2).unwrap_or(1 << 20);
-    (second, cache(3).unwrap_or(32 << 20).max(second))
-}
-
-/// Size \[bytes\] of the first processor's data cache of a level.
-fn cache(level: u8) -> Option<usize> {
-    let folder = std::path::Path::new("/sys/devices/system/cpu/cpu0/cache");
-    let read = |index: usize, name: &str| {
-        let file = folder.join(format!("index{index}")).join(name);
-        std::fs::read_to_string(file).ok().map(|text| text.trim().to_string())
-    };
-    let holds_data = |index: &usize| {
-        read(*index, "level").as_deref() == Some(&level.to_string())
-            && read(*index, "type").is_some_and(|kind| kind != "Instruction")
-    };
-    let size = read((0..8).find(holds_data)?, "size")?;
-    let number: usize = size.trim_end_matches(['K', 'M']).parse().ok()?;
-    Some(number << if size.ends_with('M') { 20 } else { 10 })
-}
-
 fn processor_field(key: &str) -> Option<String> {
     let info = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = info.lines().find(|line| line.starts_with(key))?;

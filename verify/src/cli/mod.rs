@@ -1,6 +1,5 @@
 //! The command line: parse, dispatch, exit code.
 
-mod bench;
 mod case;
 mod common;
 mod explore;
@@ -63,7 +62,6 @@ const EXAMPLES: &str = "Examples:
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the bundled cases
   mtled runs export -o runs.csv                 the results of stored runs as a table
-  mtled bench --quick                           how fast is the solver here?
   mtled study solvers --solver 'mine=python3 mine.py {job} {answer}'
                                                 how accurate and fast is my own solver?
   mtled reference check                         do the finite-element references agree?";
@@ -109,8 +107,6 @@ enum Command {
     /// Jobs and answers of the solver protocol, by which `mtled study solvers` measures any program.
     #[command(subcommand)]
     Protocol(protocol::ProtocolCommand),
-    /// Measure the speed of the solver and the limits of this machine, as Markdown tables.
-    Bench(bench::BenchArgs),
     /// Print a completion script for a shell.
     Completions { shell: clap_complete::Shell },
     /// Print the manual page of the program, or write a page for every command.
@@ -203,7 +199,6 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Case(command) => case::case(command, &cli.common),
         Command::Reference(command) => reference::reference(command, &cli.common),
         Command::Protocol(command) => protocol::protocol(command, &cli.common),
-        Command::Bench(arguments) => bench::bench(arguments, &cli.common),
         Command::Completions { shell } => manual::completions(*shell, Cli::command()),
         Command::Man(arguments) => manual::man(arguments, Cli::command()),
     }

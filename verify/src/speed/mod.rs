@@ -1,5 +1,4 @@
-//! How fast the solver is, beside the limits of the machine and other codes.
+//! How fast and accurate the solver is, beside other codes.
 
-pub mod bench;
 pub mod race;
 pub mod solvers;

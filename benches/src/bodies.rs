@@ -1,15 +1,18 @@
-//! The body that is measured: a cube of brain tissue of any size and support.
+//! The body that is measured, a cube of brain tissue of any size and support, and its variants.
 
-use crate::machine::caches;
-use crate::specimens::simple::{SIZE, block_shape, free_body, recipe};
+use crate::limits::caches;
+use anyhow::ensure;
+use mtled::algebra::random::Random;
 use mtled::discretisation::Discretisation;
+use mtled::discretisation::nodes::node_cloud;
 use mtled::material::{Law, Material, MooneyRivlin};
 use mtled::model::Model;
 use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::{
-    BackgroundGrid, Dimension, GradientStorage, Gradients, Motion, Problem, StepControl,
+    BackgroundGrid, Cloud, Dimension, GradientStorage, Gradients, Motion, Problem, StepControl,
     VolumetricProjection, defaults,
 };
+use mtled_verify::specimens::simple::{SIZE, block_shape, free_body, recipe};
 
 /// Cells per nodal spacing, which gives two points per node \[–\].
 const CELLS_PER_SPACING: f64 = 1.26;
@@ -80,6 +83,32 @@ pub fn recommended(mut problem: Problem) -> Problem {
 /// The same problem with J at each point instead of its projection.
 pub fn pointwise(mut problem: Problem) -> Problem {
     problem.recipe.volumetric_projection = VolumetricProjection::None;
+    problem
+}
+
+/// The same problem with gradients stored in single precision.
+pub fn in_single_precision(mut problem: Problem) -> Problem {
+    problem.recipe.gradient_storage = GradientStorage::Single;
+    problem
+}
+
+/// The same problem with its nodes given one by one, in their order.
+pub fn with_given_nodes(mut problem: Problem) -> anyhow::Result<Problem> {
+    let (body, recipe) = (&problem.body, &mut problem.recipe);
+    let nodes = node_cloud(body, &recipe.cloud, &problem.dimension)?.positions;
+    recipe.cloud = Cloud::Given { nodes };
+    Ok(problem)
+}
+
+/// The same problem with given nodes in random order.
+pub fn shuffled(mut problem: Problem) -> Problem {
+    if let Cloud::Given { nodes } = &mut problem.recipe.cloud {
+        let mut random = Random(7);
+        for i in (1..nodes.len()).rev() {
+            let other = (0.5 * (random.symmetric() + 1.0) * (i + 1) as f64) as usize;
+            nodes.swap(i, other.min(i));
+        }
+    }
     problem
 }
 
@@ -165,9 +194,51 @@ impl DeformedModel {
     }
 }
 
+/// The components of a force by size, so that forces at nodes in another order can be compared.
+pub fn in_order(f: &[f64]) -> Vec<f64> {
+    let mut components = f.to_vec();
+    components.sort_by(f64::total_cmp);
+    components
+}
+
+/// Refuses a comparison of forces that differ by more than a fraction of the largest.
+pub fn same_force(f: &[f64], other: &[f64], tolerance: f64) -> anyhow::Result<()> {
+    let largest = other.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+    let difference = f.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let finite = f.iter().chain(other).all(|x| x.is_finite());
+    ensure!(
+        finite && f.len() == other.len() && largest > 0.0 && difference <= tolerance * largest,
+        "two forces that are compared differ by {difference:.1e} of {largest:.1e} N"
+    );
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn different_forces_are_not_compared() {
+        assert!(same_force(&[1.0, 2.0], &[1.0, 2.0 + 1e-12], 1e-9).is_ok());
+        assert!(same_force(&[1.0, 2.0], &[1.0, 2.1], 1e-9).is_err());
+        assert!(same_force(&[f64::NAN, 2.0], &[1.0, 2.0], 1e-9).is_err());
+        assert!(same_force(&[0.0], &[0.0], 1e-9).is_err(), "nothing was evaluated");
+        assert!(same_force(&[2.0], &[2.0, 2.0], 1e-9).is_err());
+    }
+
+    #[test]
+    fn shuffled_nodes_are_the_same_nodes_in_another_order() {
+        let sorted = with_given_nodes(cube(6, 30.0)).unwrap();
+        let evaluated = |problem: &Problem| {
+            let discretisation = Discretisation::new(problem).unwrap();
+            let mut model = DeformedModel::new(problem, &discretisation).unwrap();
+            model.evaluate();
+            model
+        };
+        let (first, second) = (evaluated(&shuffled(sorted.clone())), evaluated(&sorted));
+        assert_ne!(first.u, second.u);
+        same_force(&in_order(&first.f), &in_order(&second.f), 1e-9).unwrap();
+    }
 
     #[test]
     fn supports_have_the_requested_size() {

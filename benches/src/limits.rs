@@ -1,8 +1,6 @@
-//! Limits of the machine: memory bandwidth and multiply-adds.
+//! Limits of the machine: memory bandwidth, multiply-adds, sizes of the caches.
 
-use super::alternation::{Clock, seconds_of};
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
-use mtled_checks::measure::median;
 use rayon::prelude::*;
 use std::hint::black_box;
 
@@ -84,24 +82,27 @@ pub fn operations(rounds: usize, lanes: usize) -> f64 {
     (2 * CHAINS * rounds * lanes) as f64
 }
 
-/// Largest rate of multiply-adds of one thread \[flop/s\] in several trials, and the numbers
-/// per SIMD vector.
-pub fn multiply_add_rate() -> (f64, usize) {
-    const ROUNDS: usize = 1_000_000;
-    let lanes = multiply_adds(ROUNDS);
-    let trials = (0..7).map(|_| {
-        seconds_of(Clock::Processor, || {
-            multiply_adds(ROUNDS);
-        })
-    });
-    (operations(ROUNDS, lanes) / trials.fold(f64::INFINITY, f64::min), lanes)
+/// Sizes of the second cache of a core and of the last cache \[bytes\]; those
+/// of a common processor where they are not known.
+pub fn caches() -> (usize, usize) {
+    let second = cache(2).unwrap_or(1 << 20);
+    (second, cache(3).unwrap_or(32 << 20).max(second))
 }
 
-/// Median rate of the triad \[B/s\] over some passes.
-pub fn triad_rate(triad: &mut Triad, clock: Clock, passes: usize, pass: fn(&mut Triad)) -> f64 {
-    pass(triad);
-    let seconds: Vec<f64> = (0..passes).map(|_| seconds_of(clock, || pass(triad))).collect();
-    median(&seconds).map_or(f64::NAN, |seconds| triad.bytes() as f64 / seconds)
+/// Size \[bytes\] of the first processor's data cache of a level.
+fn cache(level: u8) -> Option<usize> {
+    let folder = std::path::Path::new("/sys/devices/system/cpu/cpu0/cache");
+    let read = |index: usize, name: &str| {
+        let file = folder.join(format!("index{index}")).join(name);
+        std::fs::read_to_string(file).ok().map(|text| text.trim().to_string())
+    };
+    let holds_data = |index: &usize| {
+        read(*index, "level").as_deref() == Some(&level.to_string())
+            && read(*index, "type").is_some_and(|kind| kind != "Instruction")
+    };
+    let size = read((0..8).find(holds_data)?, "size")?;
+    let number: usize = size.trim_end_matches(['K', 'M']).parse().ok()?;
+    Some(number << if size.ends_with('M') { 20 } else { 10 })
 }
 
 #[cfg(test)]

@@ -111,3 +111,21 @@ impl<'a> PlainLoop<'a> {
         (0..values.len()).map(value).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bodies::{DeformedModel, cube, pointwise, same_force};
+
+    #[test]
+    fn its_force_is_that_of_the_solver() {
+        for problem in [cube(6, 30.0), pointwise(cube(6, 30.0))] {
+            let discretisation = Discretisation::new(&problem).unwrap();
+            let mut model = DeformedModel::new(&problem, &discretisation).unwrap();
+            let (u, mut f) = (model.u.clone(), model.f.clone());
+            model.evaluate();
+            PlainLoop::new(&problem, &discretisation).internal_force(&u, &mut f);
+            same_force(&model.f, &f, 1e-9).unwrap();
+        }
+    }
+}
