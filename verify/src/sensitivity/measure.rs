@@ -139,9 +139,10 @@ pub fn measure(
         let derivatives: Vec<f64> = change.into_iter().map(slope).collect();
         let per_part = |(slope, value): (&f64, &f64)| slope * number.value / value;
         let relative: Vec<f64> = derivatives.iter().zip(&values).map(per_part).collect();
-        match relative.iter().all(|size| size.abs() < NONE) {
-            true => without_effect.push(number.key),
-            false => rows.push(Row { number, derivatives, relative, by_solutions: None }),
+        if relative.iter().all(|size| size.abs() < NONE) {
+            without_effect.push(number.key)
+        } else {
+            rows.push(Row { number, derivatives, relative, by_solutions: None })
         }
     }
     let sensitivities_cpu_s = cpu_seconds() - cpu;

@@ -77,9 +77,8 @@ pub fn quadrature_following(
     let subdivision = Subdivision { body, grid, spacing, components };
     subdivision.validate()?;
     let edge = subdivision.largest_edge();
-    let counts = [0, 1, 2].map(|k| match k < components {
-        true => ((max[k] - min[k]) / edge - FITS).ceil().max(1.0),
-        false => 1.0,
+    let counts = [0, 1, 2].map(|k| {
+        if k < components { ((max[k] - min[k]) / edge - FITS).ceil().max(1.0) } else { 1.0 }
     });
     let middle = (min + max) * 0.5;
     let cell_at = |index: [usize; 3]| {
