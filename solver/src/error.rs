@@ -287,9 +287,10 @@ fn not_held(free: usize) -> String {
 
 /// The condition of a matrix for a message.
 pub(crate) fn condition_text(condition: f64) -> String {
-    match condition.is_finite() {
-        true => format!("condition {condition:.1e}"),
-        false => "no inverse".to_string(),
+    if condition.is_finite() {
+        format!("condition {condition:.1e}")
+    } else {
+        "no inverse".to_string()
     }
 }
 

@@ -1,12 +1,14 @@
 //! The program from the outside: exit codes, output streams and files.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::{interrupt, mtled, program};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
-
-const PROGRAM: &str = env!("CARGO_BIN_EXE_mtled");
 
 /// A block that is pulled: a few hundred points, a fraction of a second.
 const CASE: &str = concat!(
@@ -26,19 +28,6 @@ history = 5
 "#
 );
 
-fn mtled(arguments: &[&str]) -> Command {
-    let mut command = Command::new(PROGRAM);
-    command.args(arguments).timeout(Duration::from_secs(120));
-    command
-}
-
-/// Exit code, standard output and standard error.
-fn run(arguments: &[&str]) -> (i32, String, String) {
-    let output = mtled(arguments).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-}
-
 /// A folder with `case.toml` in it, one part of the text replaced.
 fn case_with(from: &str, to: &str) -> (TempDir, PathBuf) {
     assert!(from.is_empty() || CASE.contains(from), "{from} is not in the case");
@@ -51,7 +40,7 @@ fn case_with(from: &str, to: &str) -> (TempDir, PathBuf) {
 fn solve(case: &Path, out: &Path, more: &[&str]) -> (i32, String, String) {
     let mut arguments = vec!["solve", case.to_str().unwrap(), "--out", out.to_str().unwrap()];
     arguments.extend(more);
-    run(&arguments)
+    mtled(".", &arguments)
 }
 
 fn result(out: &Path) -> Value {
@@ -67,11 +56,11 @@ fn help_and_version_are_data() {
         &["verify", "--help"],
         &["inspect", "--help"],
     ] {
-        let (code, out, err) = run(arguments);
+        let (code, out, err) = mtled(".", arguments);
         assert_eq!((code, err.as_str()), (0, ""), "{arguments:?}");
         assert!(!out.is_empty(), "{arguments:?}");
     }
-    assert_eq!(run(&["--version"]).1, format!("mtled {}\n", env!("CARGO_PKG_VERSION")));
+    assert_eq!(mtled(".", &["--version"]).1, format!("mtled {}\n", env!("CARGO_PKG_VERSION")));
 }
 
 #[test]
@@ -89,24 +78,24 @@ fn wrong_usage_ends_with_code_2_and_a_message_on_standard_error() {
         &["verify", "--only", "no_such_study"],
     ];
     for arguments in wrong {
-        let (code, out, err) = run(arguments);
+        let (code, out, err) = mtled(".", arguments);
         assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}: {err}");
         assert!(!err.is_empty(), "{arguments:?}");
     }
-    assert!(run(&["solve", "no_such_case.toml"]).2.contains("no_such_case.toml"));
-    assert_eq!(run(&["--threads", "0", "case", "list"]).0, 2);
+    assert!(mtled(".", &["solve", "no_such_case.toml"]).2.contains("no_such_case.toml"));
+    assert_eq!(mtled(".", &["--threads", "0", "case", "list"]).0, 2);
 }
 
 #[test]
 fn the_schema_is_json_and_bundled_cases_can_be_shown_and_checked() {
-    let schema: Value = serde_json::from_str(&run(&["case", "schema"]).1).unwrap();
+    let schema: Value = serde_json::from_str(&mtled(".", &["case", "schema"]).1).unwrap();
     assert_eq!(schema["type"], "object");
-    let (code, list, _) = run(&["case", "list"]);
+    let (code, list, _) = mtled(".", &["case", "list"]);
     assert!(code == 0 && list.lines().any(|name| name == "cube_compression"), "{list}");
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("shown.toml");
-    std::fs::write(&path, run(&["case", "show", "cube_compression"]).1).unwrap();
-    let (code, out, err) = run(&["case", "check", path.to_str().unwrap()]);
+    std::fs::write(&path, mtled(".", &["case", "show", "cube_compression"]).1).unwrap();
+    let (code, out, err) = mtled(".", &["case", "check", path.to_str().unwrap()]);
     assert_eq!((code, err.as_str()), (0, ""));
     assert!(out.ends_with("no mistakes\n"), "{out}");
 }
@@ -157,7 +146,7 @@ fn the_result_does_not_depend_on_the_number_of_threads() {
 fn a_wrong_key_is_located() {
     let (dir, case) = case_with("density = 1000.0", "densty = 1000.0");
     for arguments in [&["solve"][..], &["case", "check"]] {
-        let (code, out, err) = run(&[arguments, &[case.to_str().unwrap()]].concat());
+        let (code, out, err) = mtled(".", &[arguments, &[case.to_str().unwrap()]].concat());
         assert_eq!((code, out.as_str()), (2, ""));
         assert!(err.contains("case.toml:9") && err.contains("did you mean `density`?"), "{err}");
     }
@@ -170,10 +159,8 @@ fn a_condition_that_selects_nothing_is_located() {
         case_with("plane = { point = [0.0, 0.0, 0.0]", "plane = { point = [0.0, 0.0, 0.5]");
     let line = 1 + CASE.lines().position(|line| line.starts_with("where")).unwrap();
     for arguments in [&["solve"][..], &["case", "check"]] {
-        let mut command = mtled(&[arguments, &[case.to_str().unwrap()]].concat());
-        let output = command.current_dir(dir.path()).output().unwrap();
-        let err = String::from_utf8(output.stderr).unwrap();
-        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{err}");
+        let (code, out, err) = mtled(&dir, &[arguments, &[case.to_str().unwrap()]].concat());
+        assert_eq!((code, out.as_str()), (2, ""), "{err}");
         assert!(err.contains(&format!("case.toml:{line}")), "{err}");
         assert!(err.contains("prescribe[0].where") || err.contains("prescribe.bottom"), "{err}");
         assert!(
@@ -204,14 +191,14 @@ fn a_recipe_with_zero_energy_modes_is_refused_before_the_first_step() {
         assert_eq!((code, out.as_str()), (2, ""));
         assert!(err.contains("discretisation.grid") && err.contains("case.toml:"), "{err}");
         assert!(err.contains(words) && err.contains("1.26"), "{err}");
-        assert_eq!(run(&["case", "check", case.to_str().unwrap()]).0, 2);
+        assert_eq!(mtled(".", &["case", "check", case.to_str().unwrap()]).0, 2);
     }
 }
 
 fn inspected(from: &str, to: &str, more: &[&str]) -> Value {
     let (_dir, case) = case_with(from, to);
     let arguments = [&["inspect", case.to_str().unwrap(), "--format", "json"], more].concat();
-    let (code, out, err) = run(&arguments);
+    let (code, out, err) = mtled(".", &arguments);
     assert_eq!((code, err.as_str()), (0, ""), "{arguments:?}");
     serde_json::from_str(&out).unwrap()
 }
@@ -229,7 +216,7 @@ fn an_inspection_of_a_valid_case_reports_its_size_and_its_critical_step() {
         serde_json::json!(["No reason against running this case was found."])
     );
     let (_dir, case) = case_with("", "");
-    let (code, out, err) = run(&["inspect", case.to_str().unwrap()]);
+    let (code, out, err) = mtled(".", &["inspect", case.to_str().unwrap()]);
     assert_eq!((code, err.as_str()), (0, ""));
     for words in ["points per node", "zero-energy modes   0", "critical step", "worst conditions"] {
         let found = out.contains(words) || words == "points per node" && out.contains("per node");
@@ -262,23 +249,18 @@ fn the_case_in_the_readme_is_valid_and_its_message_is_that_of_the_program() {
     let case = block("```toml\n");
     let check = |text: &str| {
         std::fs::write(dir.path().join("block.toml"), text).unwrap();
-        let mut command = mtled(&["case", "check", "block.toml"]);
-        let output = command.current_dir(dir.path()).output().unwrap();
-        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+        let (code, _, err) = mtled(&dir, &["case", "check", "block.toml"]);
+        (code, err)
     };
-    assert_eq!(check(case), (Some(0), String::new()));
+    assert_eq!(check(case), (0, String::new()));
     let (code, message) = check(&case.replace("density", "densty"));
-    assert_eq!((code, message.trim_end()), (Some(2), block("```text\n").trim_end()));
+    assert_eq!((code, message.trim_end()), (2, block("```text\n").trim_end()));
 }
 
 #[test]
 fn a_reader_that_ends_early_is_no_error() {
-    let mut schema = std::process::Command::new(PROGRAM)
-        .args(["case", "schema"])
-        .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut schema = program(".", &["case", "schema"]);
+    let mut schema = schema.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(schema.stdout.take());
     let output = schema.wait_with_output().unwrap();
     let err = String::from_utf8(output.stderr).unwrap();
@@ -298,22 +280,17 @@ fn the_summary_counts_positions_of_a_lattice_that_lie_outside_the_body() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_leaves_complete_files() {
-    let (dir, case) = case_with("end = 0.2", "end = 1e6");
+    let (dir, _) = case_with("end = 0.2", "end = 1e6");
     let out = dir.path().join("out");
-    let mut child = std::process::Command::new(PROGRAM)
-        .args(["solve", case.to_str().unwrap(), "--out", out.to_str().unwrap()])
-        .stderr(std::process::Stdio::null())
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut solve = program(&dir, &["solve", "case.toml", "--out", "out"]);
+    let mut child = solve.stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
     // The folder is created when the case has been read, before the first step.
     let start = Instant::now();
     while !out.exists() && start.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(20));
     }
     std::thread::sleep(Duration::from_millis(700));
-    let sent = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(sent.unwrap().success());
+    interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let result = result(&out);
     assert_eq!(result["motion"]["complete"], false);

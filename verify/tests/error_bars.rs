@@ -1,8 +1,11 @@
 //! Error bars as users meet them: beside every answer, or words why there is none.
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::mtled;
 use serde_json::Value;
 use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// A block that is pushed between bonded faces, in a moment.
@@ -52,13 +55,12 @@ frames = 2
 
 const TOP: &str = "{ plane = { point = [0.0, 0.0, 0.1], normal = [0.0, 0.0, 1.0] } }";
 
-fn solved_in(dir: &Path, text: &str, more: &[&str]) -> Output {
+/// What is printed of a solution in a folder.
+fn solved_in(dir: &Path, text: &str, more: &[&str]) -> String {
     std::fs::write(dir.join("case.toml"), text).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    command.current_dir(dir).args(["solve", "case.toml", "--out", "out"]).args(more);
-    let output = command.output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    output
+    let (code, out, err) = mtled(dir, &[&["solve", "case.toml", "--out", "out"], more].concat());
+    assert_eq!(code, 0, "{err}");
+    out
 }
 
 fn result(dir: &Path) -> Value {
@@ -67,8 +69,8 @@ fn result(dir: &Path) -> Value {
 
 fn solved(text: &str, more: &[&str]) -> (Value, String) {
     let dir = TempDir::new().unwrap();
-    let output = solved_in(dir.path(), text, more);
-    (result(dir.path()), String::from_utf8(output.stdout).unwrap())
+    let printed = solved_in(dir.path(), text, more);
+    (result(dir.path()), printed)
 }
 
 #[test]

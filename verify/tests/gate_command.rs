@@ -1,8 +1,11 @@
 //! `mtled verify --baseline` and `mtled report` from the outside, with the one study that
 //! takes no time.
 
-use assert_cmd::Command;
-use std::path::{Path, PathBuf};
+#[path = "common/program.rs"]
+mod program;
+
+use program::{ended, mtled, program};
+use std::path::PathBuf;
 use tempfile::TempDir;
 
 struct Folder {
@@ -20,19 +23,7 @@ impl Folder {
 
     /// Exit code, standard output and standard error.
     fn mtled(&self, arguments: &[&str]) -> (i32, String, String) {
-        self.mtled_with(arguments, &[])
-    }
-
-    fn mtled_with(&self, arguments: &[&str], more: &[(&str, &Path)]) -> (i32, String, String) {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-        command.args(arguments).current_dir(self.folder.path());
-        command.env_remove("GITHUB_ACTIONS").env_remove("GITHUB_STEP_SUMMARY");
-        for (name, value) in more {
-            command.env(name, value);
-        }
-        let output = command.timeout(std::time::Duration::from_secs(120)).output().unwrap();
-        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-        (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+        mtled(&self.folder, arguments)
     }
 
     fn verify(&self, more: &[&str]) -> (i32, String, String) {
@@ -82,10 +73,11 @@ fn a_value_beyond_its_band_fails_the_run_and_is_named_in_every_report() {
     let folder = Folder::new();
     folder.baseline(|baseline| moved(baseline, ORDER, 1.9, 1.8999, 1.9001));
     let summary = folder.path("step.md");
-    let github = [("GITHUB_ACTIONS", Path::new("true")), ("GITHUB_STEP_SUMMARY", &summary)];
     std::fs::write(&summary, "earlier step\n").unwrap();
     let arguments = ["verify", "--only", "references", "--out", "out", "--baseline", "base.json"];
-    let (code, out, err) = folder.mtled_with(&arguments, &github);
+    let mut command = program(&folder.folder, &arguments);
+    command.env("GITHUB_ACTIONS", "true").env("GITHUB_STEP_SUMMARY", &summary);
+    let (code, out, err) = ended(command);
     assert_eq!(code, 1, "{err}");
     assert!(out.contains(&format!("worse    {ORDER}: 1.900 → 1.786")), "{out}");
     assert!(err.contains(&format!("::error title={ORDER} got worse::1.900 → 1.786")), "{err}");

@@ -1,17 +1,11 @@
 //! Questions that cannot be decided end with exit code 3 and what would decide them.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::printed;
 use std::path::Path;
 use tempfile::TempDir;
-
-/// Exit code and standard output.
-fn mtled(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    command.args(arguments).current_dir(folder);
-    let output = command.timeout(std::time::Duration::from_secs(300)).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (output.status.code().unwrap(), text(&output.stdout) + &text(&output.stderr))
-}
 
 fn outcome(folder: &Path) -> serde_json::Value {
     let text = std::fs::read_to_string(folder.join("out/results.json")).unwrap();
@@ -23,7 +17,7 @@ fn a_goal_below_the_error_of_the_reference_is_refused_before_anything_is_tried()
     let folder = TempDir::new().unwrap();
     let search = ["tune", "uniaxial_bar", "--reference", "own", "--truth-budget", "1ms"];
     let goal = ["--target-error", "0.0001%", "--out", "out"];
-    let (code, said) = mtled(folder.path(), &[&search[..], &goal].concat());
+    let (code, said) = printed(&folder, &[&search[..], &goal].concat());
     assert_eq!(code, 3, "{said}");
     assert!(said.contains("inconclusive: the error of the reference itself"), "{said}");
     assert!(said.contains("0 trials"), "{said}");
@@ -35,7 +29,7 @@ fn a_study_whose_errors_are_below_that_of_the_reference_shows_no_order() {
     let folder = TempDir::new().unwrap();
     let study = ["study", "convergence", "uniaxial_bar", "--reference", "own", "--clouds", "1"];
     let range = ["--spacing", "x1.2,x1", "--out", "out"];
-    let (code, said) = mtled(folder.path(), &[&study[..], &range].concat());
+    let (code, said) = printed(&folder, &[&study[..], &range].concat());
     assert_eq!(code, 3, "{said}");
     assert!(said.contains("**Inconclusive:** uniaxial_bar"), "{said}");
     assert_eq!(outcome(folder.path()), "inconclusive");
@@ -60,7 +54,7 @@ fn a_reference_that_disagrees_with_itself_decides_nothing() {
     std::fs::write(folder.path().join("mine.json"), file.to_string()).unwrap();
     let study = ["study", "convergence", "uniaxial_bar", "--reference", "mine.json"];
     let range = ["--spacing", "x1.4,x1.2,x1", "--clouds", "2", "--out", "out"];
-    let (code, said) = mtled(folder.path(), &[&study[..], &range].concat());
+    let (code, said) = printed(&folder, &[&study[..], &range].concat());
     assert_eq!(code, 3, "{said}");
     assert!(said.contains("times their error bars") && said.contains("decide nothing"), "{said}");
 }

@@ -4,9 +4,11 @@
 
 #[path = "interrupted/folder.rs"]
 mod folder;
+#[path = "common/program.rs"]
+mod program;
 
-use assert_cmd::cargo::cargo_bin_cmd;
 use folder::{Calm, assert_whole};
+use program::{ended, mtled, program};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
@@ -36,23 +38,17 @@ fn case(load: f64, frames: usize) -> String {
     )
 }
 
-fn program(folder: &Path) -> Command {
-    let mut command = Command::new(cargo_bin_cmd!("mtled").get_program());
-    command.current_dir(folder).stdout(Stdio::null()).stderr(Stdio::null());
-    command
-}
-
 fn quiet(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = program(folder);
-    command.args(arguments).args(["--threads", "1"]);
+    let mut command = program(folder, arguments);
+    command.args(["--threads", "1"]).stdout(Stdio::null()).stderr(Stdio::null());
     command
 }
 
-fn succeeds(mut command: Command) {
-    let output = command.stderr(Stdio::piped()).output().unwrap();
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+fn succeeds(command: Command) {
+    let shown = format!("{command:?}");
+    let (code, _, err) = ended(command);
     // Studies of two spacings show no order, which is inconclusive.
-    assert!(matches!(output.status.code(), Some(0 | 3)), "{command:?}: {message}");
+    assert!([0, 3].contains(&code), "{shown}: {code}: {err}");
 }
 
 /// Numbers from 0 to 1 that follow from the first one.
@@ -134,11 +130,9 @@ fn a_killed_solve_leaves_files_of_one_run_and_no_half_result() {
 
 /// Every record of a store without its times; a corrupt one would end with another code.
 fn records(folder: &Path, store: &str) -> Vec<Value> {
-    let mut command = program(folder);
-    command.args(["runs", "list", "--format", "json", "--store", store]);
-    let output = command.stdout(Stdio::piped()).stderr(Stdio::piped()).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let mut all: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
+    let (code, out, err) = mtled(folder, &["runs", "list", "--format", "json", "--store", store]);
+    assert_eq!(code, 0, "{err}");
+    let mut all: Vec<Value> = serde_json::from_str(&out).unwrap();
     all.iter_mut().for_each(|record| record["timings"] = Value::Null);
     all
 }
@@ -200,7 +194,7 @@ fn two_studies_on_one_store_at_once_both_succeed() {
 fn with_little_space(folder: &Path, blocks: u32, arguments: &[&str]) -> Output {
     let mut shell = Command::new("sh");
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
-    shell.args(["-c", &script]).arg(cargo_bin_cmd!("mtled").get_program()).args(arguments);
+    shell.args(["-c", &script]).arg(program(folder, &[]).get_program()).args(arguments);
     shell.args(["--threads", "1"]).current_dir(folder).output().unwrap()
 }
 

@@ -1,10 +1,12 @@
 //! Memory as users meet it: estimated before a run, and refused where there is
 //! too little.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::mtled;
 use serde_json::Value;
 use std::f64::consts::PI;
-use std::time::Duration;
 use tempfile::TempDir;
 
 /// A block with a fixed and a free face; its spacing is a placeholder.
@@ -21,15 +23,10 @@ fn solve(discretisation: &str) -> (i32, String, String) {
 }
 
 fn solve_in(dir: &TempDir, text: &str) -> (i32, String, String) {
-    let case = dir.path().join("case.toml");
-    std::fs::write(&case, text).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
+    std::fs::write(dir.path().join("case.toml"), text).unwrap();
     // The estimate does not count the coarser clouds of error bars.
-    command.args(["solve", "--no-error-bar", "--format", "json", "--quiet", "--out"]);
-    command.arg(dir.path().join("out"));
-    let output = command.arg(&case).timeout(Duration::from_secs(120)).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+    let more = ["--out", "out", "--no-error-bar", "--format", "json", "--quiet"];
+    mtled(dir, &[&["solve", "case.toml"], &more[..]].concat())
 }
 
 #[test]

@@ -1,9 +1,13 @@
 //! How runs end, in words, exit codes and `result.json`, on bodies made for the occasion.
 
+#[path = "common/program.rs"]
+mod program;
+
+use program::{interrupt, printed, program};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Stdio;
 use std::time::Duration;
 use tempfile::TempDir;
 
@@ -128,33 +132,27 @@ method = "static"
 load_end = 1.0
 "#;
 
+const SOLVE: [&str; 4] = ["solve", "case.toml", "--out", "out"];
+
 struct Run {
     folder: TempDir,
-    output: Output,
+    code: i32,
+    said: String,
 }
 
 impl Run {
     fn of(case: &str) -> Run {
         let folder = prepared(case);
-        let output = command(folder.path()).output().unwrap();
-        Run { folder, output }
-    }
-
-    fn code(&self) -> i32 {
-        self.output.status.code().unwrap()
+        let (code, said) = printed(&folder, &SOLVE);
+        Run { folder, code, said }
     }
 
     /// result.json of a run that ended like this.
     fn ended(&self, code: i32, outcome: &str) -> Value {
-        assert_eq!(self.code(), code, "{}", self.said());
+        assert_eq!(self.code, code, "{}", self.said);
         let result = self.result();
         assert_eq!(result["motion"]["outcome"], outcome);
         result
-    }
-
-    fn said(&self) -> String {
-        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        text(&self.output.stdout) + &text(&self.output.stderr)
     }
 
     fn result(&self) -> Value {
@@ -168,12 +166,6 @@ fn prepared(case: &str) -> TempDir {
     head(&folder.path().join("head.nrrd"));
     std::fs::write(folder.path().join("case.toml"), case).unwrap();
     folder
-}
-
-fn command(folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    command.current_dir(folder).args(["solve", "case.toml", "--out", "out"]);
-    command
 }
 
 fn number(value: &Value) -> f64 {
@@ -196,7 +188,7 @@ fn a_graded_head_in_a_frictionless_skull_is_solved_by_newton_where_no_solver_is_
     let relaxed = far(&Run::of(&relaxed("")).result());
     // Newton's method meets the skull with the values of nodes, relaxation with their parameters.
     assert!((far(&result) - relaxed).abs() < 0.08 * relaxed.abs(), "{} {relaxed}", far(&result));
-    assert!(result["error_bars"]["probes"][0]["displacement_m"].is_number(), "{}", run.said());
+    assert!(result["error_bars"]["probes"][0]["displacement_m"].is_number(), "{}", run.said);
 }
 
 #[test]
@@ -217,8 +209,8 @@ fn refined_nodes_whose_cells_are_refined_elsewhere_are_refused_with_their_place(
                      max = [0.0, 0.0, 0.04] } }, cell = 0.004 }]\n\n[[prescribe]]";
     let finer = HEAD.replace("spacing = 0.007", "spacing = 0.0055");
     let run = Run::of(&finer.replacen("[[prescribe]]", elsewhere, 1));
-    assert_eq!(run.code(), 2, "{}", run.said());
-    let said = run.said();
+    assert_eq!(run.code, 2, "{}", run.said);
+    let said = &run.said;
     assert!(said.contains("case.toml:34:1: discretisation.grid: "), "{said}");
     assert!(said.contains("points per spacing squared or cubed"), "{said}");
 }
@@ -230,7 +222,7 @@ fn a_run_that_does_not_converge_keeps_its_last_state_and_never_says_converged() 
     assert_eq!(result["motion"]["complete"], false);
     assert_eq!(result["motion"]["steps"], 600);
     assert!(number(&result["probes"][0]["displacement_m"][0][1]) < -0.001);
-    let said = run.said();
+    let said = &run.said;
     assert!(said.contains("has not converged after 600 steps"), "{said}");
     assert!(said.contains("still moves most"), "{said}");
     assert!(!said.contains("converged:"), "{said}");
@@ -248,23 +240,23 @@ fn a_run_that_the_user_stops_says_so_everywhere() {
 #[cfg(unix)]
 fn stop(case: &str, after_ms: u64) {
     let folder = prepared(case);
-    let mut solve = command(folder.path());
+    let mut solve = program(&folder, &SOLVE);
     let child = solve.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(Duration::from_millis(after_ms));
-    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(kill.success());
+    interrupt(&child);
     let output = child.wait_with_output().unwrap();
-    let run = Run { folder, output };
-    assert_eq!(run.code(), 130, "{}", run.said());
+    let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+    let run = Run { folder, code: output.status.code().unwrap(), said };
+    assert_eq!(run.code, 130, "{}", run.said);
     assert_eq!(run.result()["motion"]["outcome"], "stopped");
     assert_eq!(run.result()["motion"]["complete"], false);
-    assert!(!run.said().contains("converged:"), "{}", run.said());
+    assert!(!run.said.contains("converged:"), "{}", run.said);
 }
 
 #[test]
 fn a_ball_that_topples_is_called_unstable_and_its_mode_is_drawn() {
     let run = Run::of(HEAVY_BALL);
-    assert!(run.said().contains("unstable: "), "{}", run.said());
+    assert!(run.said.contains("unstable: "), "{}", run.said);
     let out = run.folder.path().join("out");
     let drawn = |path: &Path| {
         String::from_utf8_lossy(&std::fs::read(path).unwrap()).contains("unstable_mode")

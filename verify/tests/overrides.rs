@@ -1,6 +1,9 @@
 //! `--set KEY=VALUE`: what it changes, where its mistakes are shown, what results say of it.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::mtled;
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -34,17 +37,9 @@ fn folder() -> TempDir {
     folder
 }
 
-/// Exit code, standard output and standard error in a folder.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    let output = command.current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-}
-
 fn solve(folder: &Path, case: &str, out: &str, more: &[&str]) -> Value {
     let arguments = [&["solve", case, "--out", out, "--no-error-bar", "-q"], more].concat();
-    let (code, _, err) = run(folder, &arguments);
+    let (code, _, err) = mtled(folder, &arguments);
     assert_eq!(code, 0, "{err}");
     let text = std::fs::read_to_string(folder.join(out).join("result.json")).unwrap();
     serde_json::from_str(&text).unwrap()
@@ -78,7 +73,7 @@ fn the_field_of_a_run_with_overrides_is_used_with_them_and_refused_where_the_fil
     solve(folder.path(), "case.toml", "run", &SOFTER);
     std::fs::write(folder.path().join("marks.csv"), "name,x,y,z\ntop,50,50,90\n").unwrap();
     let warp = ["warp", "run", "--points", "marks.csv", "--unit", "mm", "--format", "json"];
-    let (code, out, err) = run(folder.path(), &warp);
+    let (code, out, err) = mtled(&folder, &warp);
     assert_eq!(code, 0, "{err}");
     let summary: Value = serde_json::from_str(&out).unwrap();
     let moved = summary["landmarks"][0]["moved_mm"][2].as_f64().unwrap() - 90.0;
@@ -86,7 +81,7 @@ fn the_field_of_a_run_with_overrides_is_used_with_them_and_refused_where_the_fil
     let other = CASE.replace("density = 1000.0", "density = 1001.0");
     assert_ne!(other, CASE);
     std::fs::write(folder.path().join("case.toml"), other).unwrap();
-    let (code, _, err) = run(folder.path(), &warp);
+    let (code, _, err) = mtled(&folder, &warp);
     assert!(code == 2 && err.contains("was changed since"), "{err}");
 }
 
@@ -135,16 +130,16 @@ fn a_mistake_in_an_override_is_shown_on_the_command_line() {
             &["tune"],
         ] {
             let set = ["case.toml", "--set", "title=x", "--set", given];
-            let (code, _, err) = run(folder.path(), &[command, &set].concat());
+            let (code, _, err) = mtled(&folder, &[command, &set].concat());
             assert_eq!(code, 2, "{command:?} {given}: {err}");
             assert!(err.contains(&format!("command line:2:{shown}")), "{command:?} {given}: {err}");
             assert!(err.contains(&format!("\n2 | --set {given}\n")), "{command:?} {given}: {err}");
         }
     }
-    let (code, _, err) = run(folder.path(), &["solve", "case.toml", "--set", "spacing"]);
+    let (code, _, err) = mtled(&folder, &["solve", "case.toml", "--set", "spacing"]);
     assert!(code == 2 && err.contains("`spacing` is not a key with its value"), "{err}");
-    let (_, _, err) = run(
-        folder.path(),
+    let (_, _, err) = mtled(
+        &folder,
         &["solve", "case.toml", "--set", "discretisation.spacing=9", "--format", "json"],
     );
     let message: Value = serde_json::from_str(err.lines().next().unwrap()).unwrap();
@@ -161,16 +156,16 @@ fn other_mistakes_stay_where_they_are_in_the_file_although_overrides_add_lines()
     let line = wrong.lines().position(|line| line.contains("poison_ratio")).unwrap() + 1;
     std::fs::write(folder.path().join("case.toml"), &wrong).unwrap();
     let set = ["--set", "material.tissue.volumetric=x", "--set", "discretisation.dilation=1.9"];
-    let (code, _, err) = run(folder.path(), &[&["case", "check", "case.toml"], &set[2..]].concat());
+    let (code, _, err) = mtled(&folder, &[&["case", "check", "case.toml"], &set[2..]].concat());
     assert!(code == 2 && err.contains(&format!("case.toml:{line}:1: ")), "{err}");
-    let (code, _, err) = run(folder.path(), &[&["case", "check", "case.toml"], &set[..]].concat());
+    let (code, _, err) = mtled(&folder, &[&["case", "check", "case.toml"], &set[..]].concat());
     assert_eq!(code, 2, "{err}");
     let empty = CASE.replace("name = \"top\"\n", "name = \"top\"\nrelease = -2\n");
     let line = empty.lines().position(|line| line == "release = -2").unwrap() + 1;
     std::fs::write(folder.path().join("case.toml"), &empty).unwrap();
     let before =
         ["case", "check", "case.toml", "--set", "title=x", "--set", "material.tissue.density=5"];
-    let (_, _, err) = run(folder.path(), &before);
+    let (_, _, err) = mtled(&folder, &before);
     assert!(err.contains(&format!("case.toml:{line}:11: prescribe[1].release")), "{err}");
 }
 
@@ -179,18 +174,18 @@ fn records_of_runs_with_overrides_name_them_and_are_runs_of_their_own() {
     let folder = folder();
     let study = |more: &[&str]| {
         let arguments = ["study", "consistency", "case.toml", "--dilation", "1.8", "--store", "s"];
-        let (code, _, err) = run(folder.path(), &[&arguments[..], more].concat());
+        let (code, _, err) = mtled(&folder, &[&arguments[..], more].concat());
         assert_eq!(code, 0, "{err}");
     };
     let spacing = ["--set", "discretisation.spacing=0.025"];
     study(&[]);
     study(&spacing);
     study(&spacing);
-    let (_, list, _) = run(folder.path(), &["runs", "list", "--store", "s"]);
+    let (_, list, _) = mtled(&folder, &["runs", "list", "--store", "s"]);
     assert!(list.contains("2 records"), "{list}");
     assert!(list.contains("discretisation.spacing=0.025, dilation 1.8"), "{list}");
     let filter = ["runs", "export", "--store", "s", "--where", "discretisation.spacing=0.0250"];
-    let (_, table, _) = run(folder.path(), &filter);
+    let (_, table, _) = mtled(&folder, &filter);
     let mut lines = table.lines().skip(1).peekable();
     assert!(lines.peek().is_some());
     assert!(lines.all(|line| line.contains(",discretisation.spacing=0.025,done,")), "{table}");

@@ -1,20 +1,13 @@
 //! A gate on cases that nobody here wrote: an egg from an STL file and a bean from a label map,
 //! both made on the spot, from `mtled init` to a red gate.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::mtled;
 use std::fmt::Write;
 use std::path::Path;
 use tempfile::TempDir;
-
-/// Exit code, standard output and standard error.
-fn mtled(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    command.args(arguments).current_dir(folder);
-    command.env_remove("GITHUB_ACTIONS").env_remove("GITHUB_STEP_SUMMARY");
-    let output = command.timeout(std::time::Duration::from_secs(300)).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-}
 
 fn replace(file: &Path, from: &str, to: &str) {
     let text = std::fs::read_to_string(file).unwrap();
@@ -139,7 +132,7 @@ fn folder() -> TempDir {
 fn from_two_cases_to_a_gate_that_names_the_figure_that_a_fault_breaks() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
-    let (code, out, err) = mtled(folder.path(), &["init"]);
+    let (code, out, err) = mtled(&folder, &["init"]);
     assert_eq!(code, 0, "{err}");
     assert!(out.contains("egg.toml: errors at most displacement"), "{out}\n{err}");
     for file in
@@ -149,23 +142,23 @@ fn from_two_cases_to_a_gate_that_names_the_figure_that_a_fault_breaks() {
     }
     // A run is stored under all that decides it: the gate is green at once.
     let gate = ["verify", "--suite", "suite.toml", "--out", "out"];
-    let (code, out, err) = mtled(folder.path(), &gate);
+    let (code, out, err) = mtled(&folder, &gate);
     assert_eq!(code, 0, "{out}\n{err}");
-    let (code, out, _) = mtled(folder.path(), &[&gate[..], &["--only", "egg"]].concat());
+    let (code, out, _) = mtled(&folder, &[&gate[..], &["--only", "egg"]].concat());
     assert!(code == 0 && !out.contains("A bean that is bent"), "{out}");
     // The stiffness of a faulty solver, in all but the number of the problem.
     replace(&at("egg.toml"), "poisson_ratio = 0.45", "poisson_ratio = 0.3");
-    let (code, _, err) = mtled(folder.path(), &gate);
+    let (code, _, err) = mtled(&folder, &gate);
     assert_eq!(code, 2, "another problem has another reference: {err}");
     assert!(err.contains("suite.toml:") && err.contains("made for another problem"), "{err}");
     replace(&at("egg.toml"), "poisson_ratio = 0.3", "poisson_ratio = 0.45");
     replace(&at("egg.toml"), "spacing = 0.012", "spacing = 0.012\ngradients = \"plain\"");
-    let (code, out, err) = mtled(folder.path(), &gate);
+    let (code, out, err) = mtled(&folder, &gate);
     assert_eq!(code, 1, "{out}\n{err}");
     assert!(out.contains("worse") && out.contains("egg/patch/displacement"), "{out}");
     assert!(at("out/junit.xml").is_file() && at("out/index.html").is_file());
     // A second start writes over nothing.
-    let (code, _, err) = mtled(folder.path(), &["init"]);
+    let (code, _, err) = mtled(&folder, &["init"]);
     assert!(code == 2 && err.contains("suite.toml is there already"), "{err}");
     // What a start that was killed has left out is finished, and nothing else is touched.
     let (suite, baseline) = (at("suite.toml"), at("baseline.json"));
@@ -174,7 +167,7 @@ fn from_two_cases_to_a_gate_that_names_the_figure_that_a_fault_breaks() {
     std::fs::remove_file(&baseline).unwrap();
     std::fs::remove_file(at(".github/workflows/accuracy.yml")).unwrap();
     replace(&at("egg.toml"), "\ngradients = \"plain\"", "");
-    let (code, out, err) = mtled(folder.path(), &["init"]);
+    let (code, out, err) = mtled(&folder, &["init"]);
     assert!(code == 0 && out.starts_with("written: baseline.json"), "{out}\n{err}");
     assert!(at(".github/workflows/accuracy.yml").is_file());
     assert_eq!(std::fs::read(&suite).unwrap(), kept);
@@ -183,9 +176,9 @@ fn from_two_cases_to_a_gate_that_names_the_figure_that_a_fault_breaks() {
     replace(&at("egg.toml"), "spacing = 0.012", "spacing = 0.012\ngradients = \"plain\"");
     // On purpose: a baseline with the reason for it. Its bounds may be undecided now.
     let update = ["--update-baseline", "--reason", "plain gradients are enough"];
-    let (code, out, err) = mtled(folder.path(), &[&gate[..], &update].concat());
+    let (code, out, err) = mtled(&folder, &[&gate[..], &update].concat());
     assert!([0, 3].contains(&code), "{out}\n{err}");
-    let (again, out, _) = mtled(folder.path(), &gate);
+    let (again, out, _) = mtled(&folder, &gate);
     assert_eq!(again, code, "{out}");
     assert!(out.contains("37 the same") || out.contains("38 the same"), "{out}");
 }
@@ -194,14 +187,14 @@ fn from_two_cases_to_a_gate_that_names_the_figure_that_a_fault_breaks() {
 fn a_bound_that_the_reference_cannot_decide_is_inconclusive() {
     let folder = folder();
     std::fs::remove_file(folder.path().join("bean.toml")).unwrap();
-    let (code, _, err) = mtled(folder.path(), &["init", "--refine", "1.3"]);
+    let (code, _, err) = mtled(&folder, &["init", "--refine", "1.3"]);
     assert_eq!(code, 0, "{err}");
     let gate = ["verify", "--suite", "suite.toml", "--out", "out"];
     let results = |folder: &Path| -> serde_json::Value {
         let text = std::fs::read_to_string(folder.join("out/results.json")).unwrap();
         serde_json::from_str(&text).unwrap()
     };
-    assert_eq!(mtled(folder.path(), &gate).0, 0);
+    assert_eq!(mtled(&folder, &gate).0, 0);
     let checks = results(folder.path());
     let check = checks["checks"].as_array().unwrap().iter();
     let error = check.clone().find(|check| check["id"] == "egg/error/strain_energy").unwrap();
@@ -212,7 +205,7 @@ fn a_bound_that_the_reference_cannot_decide_is_inconclusive() {
     let text = std::fs::read_to_string(&suite).unwrap();
     let line = text.lines().find(|line| line.starts_with("strain_energy = ")).unwrap();
     replace(&suite, line, &format!("strain_energy = {}", value + 0.5 * bar));
-    let (code, out, err) = mtled(folder.path(), &gate);
+    let (code, out, err) = mtled(&folder, &gate);
     assert_eq!(code, 3, "{out}\n{err}");
     assert!(out.contains("INCONCLUSIVE egg") && out.contains("mtled init --references"), "{out}");
     assert_eq!(results(folder.path())["outcome"], "inconclusive");
@@ -244,10 +237,10 @@ fn mistakes_in_a_suite_are_located() {
     ];
     for (text, place, reason) in cases {
         std::fs::write(&suite, text).unwrap();
-        let (code, _, err) = mtled(folder.path(), &["verify", "--suite", "suite.toml"]);
+        let (code, _, err) = mtled(&folder, &["verify", "--suite", "suite.toml"]);
         assert_eq!(code, 2, "{text}: {err}");
         assert!(err.contains(place) && err.contains(reason), "{text}: {err}");
     }
-    let (code, _, err) = mtled(folder.path(), &["verify", "--suite", "quik"]);
+    let (code, _, err) = mtled(&folder, &["verify", "--suite", "quik"]);
     assert!(code == 2 && err.contains("quick, full"), "{err}");
 }

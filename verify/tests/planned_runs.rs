@@ -1,25 +1,19 @@
 //! Runs that are planned as files and performed by other processes.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::printed;
 use std::collections::BTreeMap;
 use std::path::Path;
 use tempfile::TempDir;
-
-/// Exit code and what was said.
-fn mtled(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    command.args(arguments).current_dir(folder);
-    let output = command.timeout(std::time::Duration::from_secs(300)).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (output.status.code().unwrap(), text(&output.stdout) + &text(&output.stderr))
-}
 
 const STUDY: [&str; 7] =
     ["study", "convergence", "mine.toml", "--spacing", "x1.6,x1.4,x1.2", "--clouds", "2"];
 
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
-    let (code, text) = mtled(folder.path(), &["case", "show", "uniaxial_bar"]);
+    let (code, text) = printed(&folder, &["case", "show", "uniaxial_bar"]);
     assert_eq!(code, 0);
     // Another problem than the bundled one, so that its reference is to be run too.
     let text = text.replace("poisson_ratio = 0.3", "poisson_ratio = 0.4");
@@ -50,7 +44,7 @@ fn planned_parts_make_the_records_of_one_process_and_the_command_goes_on_from_th
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     let plan = ["--plan-jobs", "jobs", "--parts", "3", "--store", "planned"];
-    let (code, said) = mtled(folder.path(), &[&STUDY[..], &plan].concat());
+    let (code, said) = printed(&folder, &[&STUDY[..], &plan].concat());
     assert_eq!(code, 0, "{said}");
     assert!(said.contains("8 runs are planned in 3 parts"), "{said}");
     for file in ["jobs/Snakefile", "jobs/slurm/config.yaml", "jobs/array.sbatch"] {
@@ -58,26 +52,26 @@ fn planned_parts_make_the_records_of_one_process_and_the_command_goes_on_from_th
     }
     assert!(!at("reports/convergence/index.html").exists());
     for part in ["jobs/part-0001.json", "jobs/part-0002.json", "jobs/part-0003.json"] {
-        let (code, said) = mtled(folder.path(), &["runs", "perform", part, "--store", "planned"]);
+        let (code, said) = printed(&folder, &["runs", "perform", part, "--store", "planned"]);
         assert!(code == 0 && said.contains("runs are stored"), "{said}");
     }
-    let (code, said) = mtled(folder.path(), &[&STUDY[..], &plan].concat());
+    let (code, said) = printed(&folder, &[&STUDY[..], &plan].concat());
     assert!([0, 3].contains(&code) && at("reports/convergence/index.html").exists(), "{said}");
     assert!(!at("jobs/part-0001.json").exists(), "parts that are done are removed");
-    mtled(folder.path(), &[&STUDY[..], &["--store", "single"]].concat());
+    printed(&folder, &[&STUDY[..], &["--store", "single"]].concat());
     assert_eq!(records(&at("planned")), records(&at("single")));
 }
 
 #[test]
 fn a_part_whose_case_has_changed_since_is_refused() {
     let folder = folder();
-    mtled(folder.path(), &[&STUDY[..], &["--plan-jobs", "jobs"]].concat());
+    printed(&folder, &[&STUDY[..], &["--plan-jobs", "jobs"]].concat());
     let file = folder.path().join("mine.toml");
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, text.replace("poisson_ratio = 0.4", "poisson_ratio = 0.41")).unwrap();
-    let (code, said) = mtled(folder.path(), &["runs", "perform", "jobs/part-0001.json"]);
+    let (code, said) = printed(&folder, &["runs", "perform", "jobs/part-0001.json"]);
     assert!(code == 2 && said.contains("is not what was planned"), "{said}");
     std::fs::write(folder.path().join("jobs/part-0001.json"), "{}").unwrap();
-    let (code, said) = mtled(folder.path(), &["runs", "perform", "jobs/part-0001.json"]);
+    let (code, said) = printed(&folder, &["runs", "perform", "jobs/part-0001.json"]);
     assert!(code == 2 && said.contains("part-0001.json is not a part"), "{said}");
 }

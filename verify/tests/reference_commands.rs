@@ -1,12 +1,13 @@
 //! `mtled reference` from the outside, with a made-up reference and a made-up Python.
 
 mod common;
+#[path = "common/program.rs"]
+mod program;
 
-use assert_cmd::Command;
 use common::{BLOCK, block, json, synthetic};
 use mtled_verify::reference::Values;
+use program::{interrupt, mtled, program};
 use serde_json::Value;
-use std::path::Path;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -24,20 +25,12 @@ fn checkout() -> TempDir {
     dir
 }
 
-fn mtled(dir: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    let output =
-        command.current_dir(dir).args(arguments).timeout(Duration::from_secs(60)).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-}
-
 const FROM_DISK: [&str; 4] = ["--cases", "reference/cases", "--data", "reference/data"];
 
 #[test]
 fn a_changed_digit_makes_the_check_fail_and_names_the_case() {
     let dir = checkout();
-    let check = || mtled(dir.path(), &[&["reference", "check"][..], &FROM_DISK].concat());
+    let check = || mtled(&dir, &[&["reference", "check"][..], &FROM_DISK].concat());
     let (code, out, err) = check();
     assert_eq!((code, err.as_str()), (0, ""));
     assert!(out.contains("block") && out.contains("agree"), "{out}");
@@ -55,30 +48,30 @@ fn a_changed_digit_makes_the_check_fail_and_names_the_case() {
 fn values_can_be_shown_and_read_by_programs() {
     let dir = checkout();
     let show = [&["reference", "show", "block"][..], &FROM_DISK].concat();
-    let (code, out, _) = mtled(dir.path(), &show);
+    let (code, out, _) = mtled(&dir, &show);
     assert_eq!(code, 0);
     for text in ["displacement/top", "force/bottom", "strain_energy", "scikit-fem", "2.00"] {
         assert!(out.contains(text), "{text} in {out}");
     }
-    let (code, out, _) = mtled(dir.path(), &[&show[..], &["--format", "json"]].concat());
+    let (code, out, _) = mtled(&dir, &[&show[..], &["--format", "json"]].concat());
     let value: Value = serde_json::from_str(&out).unwrap();
     assert_eq!(code, 0);
     assert_eq!(value["cases"][0]["sound"], true);
     assert_eq!(value["cases"][0]["quantities"].as_array().unwrap().len(), 6);
-    let (code, _, err) = mtled(dir.path(), &["reference", "show", "blok"]);
+    let (code, _, err) = mtled(&dir, &["reference", "show", "blok"]);
     assert!(code == 2 && err.contains("blok"), "{err}");
 }
 
 #[test]
 fn solving_needs_a_checkout_and_known_names() {
     let dir = TempDir::new().unwrap();
-    let (code, out, err) = mtled(dir.path(), &["reference", "solve"]);
+    let (code, out, err) = mtled(&dir, &["reference", "solve"]);
     assert!(code == 2 && out.is_empty() && err.contains("--reference"), "{err}");
     let dir = checkout();
-    let (code, _, err) = mtled(dir.path(), &["reference", "solve", "blok"]);
+    let (code, _, err) = mtled(&dir, &["reference", "solve", "blok"]);
     assert!(code == 2 && err.contains("blok"), "{err}");
     let some = ["reference", "solve", "--mesh", "0", "--code", "scikit-fem"];
-    let (code, _, err) = mtled(dir.path(), &some);
+    let (code, _, err) = mtled(&dir, &some);
     assert!(code == 2 && err.contains("--compare"), "{err}");
 }
 
@@ -107,7 +100,7 @@ fn a_coarse_mesh_is_solved_again_and_compared() {
     );
     let compare = || {
         let arguments = ["reference", "solve", "block", "--code", "scikit-fem", "--compare"];
-        mtled(dir.path(), &arguments)
+        mtled(&dir, &arguments)
     };
     let again = dir.path().join("reference/.venv/bin/again.json");
     let mut file = synthetic(&block());
@@ -130,7 +123,7 @@ fn a_coarse_mesh_is_solved_again_and_compared() {
 fn the_message_of_a_python_that_fails_is_passed_on() {
     let dir = with_python("echo 'Newton did not converge' >&2; exit 2");
     let arguments = ["reference", "solve", "block", "--code", "scikit-fem"];
-    let (code, _, err) = mtled(dir.path(), &arguments);
+    let (code, _, err) = mtled(&dir, &arguments);
     assert_eq!(code, 2);
     assert!(err.contains("block with scikit-fem") && err.contains("did not converge"), "{err}");
 }
@@ -142,11 +135,8 @@ fn ctrl_c_ends_python_and_its_children() {
     let dir = with_python(
         "beat=\"$(dirname \"$0\")/beat\"\n(while :; do echo x >> \"$beat\"; sleep 0.02; done) &\nwait",
     );
-    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_mtled"))
-        .current_dir(dir.path())
-        .args(["reference", "solve", "block", "--code", "scikit-fem", "--quiet"])
-        .spawn()
-        .unwrap();
+    let solve = ["reference", "solve", "block", "--code", "scikit-fem", "--quiet"];
+    let mut child = program(&dir, &solve).spawn().unwrap();
     let beats =
         || std::fs::read(dir.path().join("reference/.venv/bin/beat")).map_or(0, |b| b.len());
     let start = Instant::now();
@@ -154,9 +144,7 @@ fn ctrl_c_ends_python_and_its_children() {
         assert!(start.elapsed() < Duration::from_secs(30), "Python was not started");
         std::thread::sleep(Duration::from_millis(20));
     }
-    let id = child.id().to_string();
-    let killed = std::process::Command::new("kill").args(["-INT", &id]).status().unwrap();
-    assert!(killed.success());
+    interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     std::thread::sleep(Duration::from_millis(200));
     let before = beats();

@@ -1,6 +1,9 @@
 //! Studies with stored runs: killed, split, merged.
 
-use assert_cmd::cargo::cargo_bin_cmd;
+#[path = "common/program.rs"]
+mod program;
+
+use program::{mtled, program};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -19,13 +22,9 @@ const STUDY: [&str; 10] = [
     "--quiet",
 ];
 
-fn program() -> Command {
-    Command::new(cargo_bin_cmd!("mtled").get_program())
-}
-
 fn study(folder: &Path, store: &str, out: &str, more: &[&str]) -> Command {
-    let mut command = program();
-    command.current_dir(folder).args(STUDY).args(["--store", store, "--out", out]).args(more);
+    let arguments = [&STUDY[..], &["--store", store, "--out", out], more].concat();
+    let mut command = program(folder, &arguments);
     command.stdout(Stdio::null()).stderr(Stdio::null());
     command
 }
@@ -47,9 +46,8 @@ fn reproducible(folder: &Path, out: &str) -> Value {
 
 /// Records with their timings.
 fn listed(folder: &Path, store: &str) -> Vec<Value> {
-    let mut command = program();
-    command.current_dir(folder).args(["runs", "list", "--format", "json", "--store", store]);
-    serde_json::from_slice(&command.output().unwrap().stdout).unwrap()
+    let (_, out, _) = mtled(folder, &["runs", "list", "--format", "json", "--store", store]);
+    serde_json::from_str(&out).unwrap()
 }
 
 /// Records without their timings.
@@ -88,8 +86,7 @@ fn four_merged_parts_are_the_whole_study_and_no_run_is_repeated() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     ends(study(folder, "whole", "whole_report", &[]));
-    let mut merge = program();
-    merge.current_dir(folder).args(["merge", "--into", "merged"]);
+    let mut merge = program(folder, &["merge", "--into", "merged"]);
     for part in 1..=4 {
         let store = format!("part{part}");
         let shard = ["--shard", &format!("{part}/4")];
@@ -109,14 +106,8 @@ fn four_merged_parts_are_the_whole_study_and_no_run_is_repeated() {
 fn records_of_other_versions_and_temporary_files_are_pruned() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let mut consistency = program();
-    consistency.current_dir(folder).args(["study", "consistency", "cube_compression", "--quiet"]);
-    consistency.args(["--dilation", "1.8", "--cells-per-spacing", "1.26", "--store", "runs"]);
-    assert!(consistency.stdout(Stdio::null()).status().unwrap().success());
+    let (text, file) = store_of_one(folder, "runs");
     let record = &records(folder, "runs")[0];
-    let key = record["key"].as_str().unwrap();
-    let file = folder.join("runs").join(&key[..2]).join(format!("{key}.json"));
-    let text = std::fs::read_to_string(&file).unwrap();
     let solver = record["solver"].as_str().unwrap();
     std::fs::write(&file, sealed(&text.replace(solver, "0.0.0+other"))).unwrap();
     let (old, young) = (file.with_file_name(".abc.tmp"), file.with_file_name(".1-abc.tmp"));
@@ -124,8 +115,7 @@ fn records_of_other_versions_and_temporary_files_are_pruned() {
     let days_ago = std::time::SystemTime::now() - Duration::from_secs(200_000);
     std::fs::OpenOptions::new().write(true).open(&old).unwrap().set_modified(days_ago).unwrap();
     std::fs::write(&young, "half").unwrap();
-    let prune = program().current_dir(folder).args(["runs", "prune", "--store", "runs"]).output();
-    let output = String::from_utf8(prune.unwrap().stdout).unwrap();
+    let (_, output, _) = mtled(folder, &["runs", "prune", "--store", "runs"]);
     assert!(output.contains("1 records removed, 1 temporary files"), "{output}");
     assert!(records(folder, "runs").is_empty());
     assert!(young.exists() && !old.exists(), "somebody may be writing what is young");
@@ -145,40 +135,42 @@ fn a_changed_digit_and_a_record_without_a_checksum_are_named_and_not_used() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let (text, file) = store_of_one(folder, "runs");
-    let again = ["study", "consistency", "cube_compression", "--quiet", "--dilation", "1.8"];
-    let again = [&again[..], &["--cells-per-spacing", "1.26", "--store", "runs"]].concat();
-    assert_eq!(run(folder, &again).0, 0);
+    let again = [&ONE[..], &["--store", "runs"]].concat();
+    assert_eq!(mtled(folder, &again).0, 0);
     let at = text.find("\"figures\"").unwrap();
     let digit = at + text[at..].find(|c: char| c.is_ascii_digit()).unwrap();
     let other = if text[digit..].starts_with('1') { "2" } else { "1" };
     let mut changed = text.clone();
     changed.replace_range(digit..digit + 1, other);
     std::fs::write(&file, &changed).unwrap();
-    let (code, _, err) = run(folder, &again);
+    let (code, _, err) = mtled(folder, &again);
     assert!(code == 2 && err.contains("checksum") && err.contains("prune --corrupt"), "{err}");
     let (_, content) = text.split_once("\",").unwrap();
     std::fs::write(&file, format!("{{{content}")).unwrap();
-    let (code, _, err) = run(folder, &again);
+    let (code, _, err) = mtled(folder, &again);
     assert!(code == 2 && err.contains("has no checksum"), "{err}");
-    let (code, out, _) = run(folder, &["runs", "prune", "--store", "runs"]);
+    let (code, out, _) = mtled(folder, &["runs", "prune", "--store", "runs"]);
     assert!(code == 0 && out.contains("1 records removed") && !file.exists(), "{out}");
 }
 
+/// Arguments of a study of one short run.
+const ONE: [&str; 8] = [
+    "study",
+    "consistency",
+    "cube_compression",
+    "--quiet",
+    "--dilation",
+    "1.8",
+    "--cells-per-spacing",
+    "1.26",
+];
+
 /// A store with one record, the text of the record and its file.
 fn store_of_one(folder: &Path, store: &str) -> (String, std::path::PathBuf) {
-    let mut consistency = program();
-    consistency.current_dir(folder).args(["study", "consistency", "cube_compression", "--quiet"]);
-    consistency.args(["--dilation", "1.8", "--cells-per-spacing", "1.26", "--store", store]);
-    assert!(consistency.stdout(Stdio::null()).status().unwrap().success());
+    assert_eq!(mtled(folder, &[&ONE[..], &["--store", store]].concat()).0, 0);
     let key = records(folder, store)[0]["key"].as_str().unwrap().to_string();
     let file = folder.join(store).join(&key[..2]).join(format!("{key}.json"));
     (std::fs::read_to_string(&file).unwrap(), file)
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = program().current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
 }
 
 #[test]
@@ -206,14 +198,14 @@ fn records_that_are_not_what_their_names_say_are_named_and_lead_nowhere() {
         out
     };
     let list = ["runs", "list", "--store", "runs"];
-    let out = check(run(folder, &list), 4);
+    let out = check(mtled(folder, &list), 4);
     assert!(out.contains(&key[..12]) && out.contains("1 records in runs"), "{out}");
-    let out = check(run(folder, &["merge", "runs", "--into", "into/deep"]), 4);
+    let out = check(mtled(folder, &["merge", "runs", "--into", "into/deep"]), 4);
     assert!(out.starts_with("1 records added"), "{out}");
-    check(run(folder, &["runs", "prune", "--store", "runs"]), 4);
-    check(run(folder, &["runs", "prune", "--corrupt", "--store", "runs"]), 1);
+    check(mtled(folder, &["runs", "prune", "--store", "runs"]), 4);
+    check(mtled(folder, &["runs", "prune", "--corrupt", "--store", "runs"]), 1);
     assert!(good.exists() && bad.join("notes.json").exists());
-    check(run(folder, &["runs", "prune", "--all", "--store", "runs"]), 1);
+    check(mtled(folder, &["runs", "prune", "--all", "--store", "runs"]), 1);
     assert!(!good.exists() && bad.join("notes.json").exists());
     assert_eq!(std::fs::read_to_string(folder.join("outside.json")).unwrap(), "mine");
     assert_eq!(std::fs::read_dir(folder.join("into")).unwrap().count(), 1);
@@ -231,10 +223,8 @@ fn a_range_that_cannot_be_read_and_a_case_that_is_not_there_end_with_code_2() {
     ] {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("plan.toml"), "cases = []\n").unwrap();
-        let output = program().current_dir(folder.path()).args(&arguments).output().unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        let output = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.contains(words), "{arguments:?}: {output}");
+        let (code, _, err) = mtled(&folder, &arguments);
+        assert!(code == 2 && err.contains(words), "{arguments:?}: {err}");
     }
 }
 
@@ -245,8 +235,8 @@ fn an_exported_table_has_every_number_of_the_records_bit_for_bit() {
     let arguments = ["convergence", "uniaxial_bar", "--spacing", "x2,x1.6", "--clouds", "1"];
     let files = ["--store", "runs", "--out", "report", "--quiet"];
     // One cloud shows no order, which is inconclusive.
-    assert_eq!(run(folder, &[&["study"], &arguments[..], &files[..]].concat()).0, 3);
-    let (code, table, _) = run(folder, &["runs", "export", "--store", "runs"]);
+    assert_eq!(mtled(folder, &[&["study"], &arguments[..], &files[..]].concat()).0, 3);
+    let (code, table, _) = mtled(folder, &["runs", "export", "--store", "runs"]);
     assert_eq!(code, 0);
     let mut reader = csv::Reader::from_reader(table.as_bytes());
     let names = reader.headers().unwrap().clone();
@@ -281,7 +271,7 @@ fn list_and_export_take_the_same_filters_and_say_what_does_not_fit() {
     let folder = folder.path();
     store_of_one(folder, "runs");
     let filtered = |command: &str, more: &[&str]| {
-        run(folder, &[&["runs", command, "--store", "runs"], more].concat())
+        mtled(folder, &[&["runs", command, "--store", "runs"], more].concat())
     };
     for fitting in [
         &["--case", "cube_compression.toml", "--run", "consistency"][..],

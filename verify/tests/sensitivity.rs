@@ -1,23 +1,16 @@
 //! `mtled sensitivity`: which numbers of a case matter, against solutions on both sides of them.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::mtled;
 use serde_json::Value;
-use std::time::Duration;
 
 /// The bound of the study of sensitivities; the error of the two solutions is a part of it \[–\].
 const AGREEMENT: f64 = 1e-4;
 
-/// Exit code, standard output and standard error.
 fn sensitivity(arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    let output = command
-        .arg("sensitivity")
-        .args(arguments)
-        .timeout(Duration::from_secs(300))
-        .output()
-        .unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+    mtled(".", &[&["sensitivity"], arguments].concat())
 }
 
 fn found(arguments: &[&str]) -> Value {

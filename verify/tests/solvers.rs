@@ -5,15 +5,17 @@
 mod common;
 #[path = "solvers/fake.rs"]
 mod fake;
+#[path = "common/program.rs"]
+mod program;
 
-use fake::{Arena, mtled};
+use fake::Arena;
 use mtled_verify::bundled::CASES;
 use mtled_verify::explore::store::Source;
 use mtled_verify::protocol::{Job, Resolution, parse_job};
 use mtled_verify::speed::solvers::absolute;
+use program::{interrupt, mtled, program};
 use serde_json::Value;
 use std::path::Path;
-use std::process::Command;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -231,17 +233,16 @@ fn ctrl_c_ends_the_study_and_the_solver_that_runs() {
     let arena = Arena::new();
     let pid = arena.path("pid");
     let fake = arena.fake("slow", &format!("echo $$ >'{}'; sleep 300", pid.display()));
-    let mut study = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    study.current_dir(arena.dir.path()).args(["study", "solvers", "block.toml", "--quiet"]);
-    study.args(["--without-mtled", "--reference", "reference.json", "--solver", &fake]);
-    let mut study = study.spawn().unwrap();
+    let mut arguments = vec!["study", "solvers", "block.toml", "--quiet", "--without-mtled"];
+    arguments.extend(["--reference", "reference.json", "--solver", &fake]);
+    let mut study = program(&arena.dir, &arguments).spawn().unwrap();
     let written = || std::fs::read_to_string(&pid).is_ok_and(|text| text.ends_with('\n'));
     let start = Instant::now();
     while !written() {
         assert!(start.elapsed() < Duration::from_secs(60), "the solver was not started");
         std::thread::sleep(Duration::from_millis(10));
     }
-    Command::new("kill").args(["-INT", &study.id().to_string()]).status().unwrap();
+    interrupt(&study);
     assert_eq!(study.wait().unwrap().code(), Some(130));
     assert!(is_dead(&pid));
 }
@@ -266,7 +267,7 @@ fn a_mistake_on_the_command_line_runs_and_writes_nothing() {
     let arena = Arena::new();
     let said = |more: &[&str]| {
         let (code, out, err) =
-            mtled(arena.dir.path(), &[&["study", "solvers", "--out", "out"], more].concat());
+            mtled(&arena.dir, &[&["study", "solvers", "--out", "out"], more].concat());
         assert!(code == 2 && out.is_empty() && !arena.path("out").exists(), "{code} {out}");
         err
     };
@@ -290,7 +291,7 @@ fn a_mistake_on_the_command_line_runs_and_writes_nothing() {
 fn mtled_takes_part_through_the_same_door() {
     let dir = TempDir::new().unwrap();
     let arguments = ["study", "solvers", "uniaxial_bar", "--spacing", "x2,x1", "--out", "out"];
-    let (code, out, err) = mtled(dir.path(), &arguments);
+    let (code, out, err) = mtled(&dir, &arguments);
     assert_eq!(code, 0, "{err}");
     assert!(out.contains("| mtled | mtled 0.1.0 | 2 | 2 | 0 | 0 | 0 | 0 |"), "{out}");
 }
@@ -298,7 +299,7 @@ fn mtled_takes_part_through_the_same_door() {
 #[test]
 fn a_job_can_be_written_solved_and_checked_by_hand() {
     let dir = TempDir::new().unwrap();
-    let run = |arguments: &[&str]| mtled(dir.path(), arguments);
+    let run = |arguments: &[&str]| mtled(&dir, arguments);
     let (code, _, err) = run(&["protocol", "job", "brain_slice", "try", "--spacing", "x2"]);
     assert_eq!(code, 0, "{err}");
     let (code, _, err) = run(&["protocol", "job", "uniaxial_bar", "try"]);

@@ -1,8 +1,9 @@
 //! Bodies from surface files of every format, and those that a run cannot be made of, from the outside.
 
-use assert_cmd::Command;
-use std::path::Path;
-use std::time::Duration;
+#[path = "common/program.rs"]
+mod program;
+
+use program::printed;
 use tempfile::TempDir;
 
 const CASE: &str = r#"
@@ -30,15 +31,6 @@ displacement = { x = 0.0, y = 0.0, z = 0.001 }
 [time]
 method = "static"
 "#;
-
-/// Exit code and what is printed of `mtled` in a folder.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    command.current_dir(folder).args(arguments).timeout(Duration::from_secs(120));
-    let output = command.output().unwrap();
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap(), String::from_utf8(text).unwrap())
-}
 
 /// A solid of text: a cube of edge `high` - `low` along the diagonal \[mm\].
 fn cube(low: f64, high: f64) -> String {
@@ -77,7 +69,7 @@ fn result_in(folder: &TempDir) -> serde_json::Value {
 fn a_run_has_the_mass_of_all_solids_of_a_file() {
     let folder = case_of(&(cube(0.0, 40.0) + &cube(60.0, 100.0)));
     let arguments = ["solve", "case.toml", "--out", "run", "--no-error-bar", "-q"];
-    let (code, text) = run(folder.path(), &arguments);
+    let (code, text) = printed(&folder, &arguments);
     assert_eq!(code, 0, "{text}");
     let mass = result_in(&folder)["discretisation"]["mass_kg"].as_f64().unwrap();
     assert!((mass / 0.128 - 1.0).abs() < 0.01, "{mass}");
@@ -92,7 +84,7 @@ fn solids_that_lie_in_each_other_count_once_and_the_run_says_so() {
     for (surface, right, which, what) in shells {
         let folder = case_of(&surface);
         let arguments = ["solve", "case.toml", "--out", "run", "--no-error-bar"];
-        let (code, text) = run(folder.path(), &arguments);
+        let (code, text) = printed(&folder, &arguments);
         assert_eq!(code, 0, "{text}");
         assert!(text.contains(which) && text.contains(what), "{text}");
         let mass = result_in(&folder)["discretisation"]["mass_kg"].as_f64().unwrap();
@@ -107,7 +99,7 @@ fn a_centre_of_mass_of_a_region_without_points_is_refused_with_its_name() {
                    0.02, 0.02], radius = 1e-7 } }\n\n[[region]]\nname = \"rest\"\nmaterial = \"tissue\"\nwhere = \
                    \"all\"\n\n[[probe]]\nname = \"centre\"\ncentre_of_mass = \"speck\"\n";
     std::fs::write(folder.path().join("case.toml"), CASE.to_string() + regions).unwrap();
-    let (code, text) = run(folder.path(), &["solve", "case.toml", "--out", "run"]);
+    let (code, text) = printed(&folder, &["solve", "case.toml", "--out", "run"]);
     assert_eq!(code, 2, "{text}");
     assert!(text.contains("region \"speck\" has no quadrature point"), "{text}");
 }
@@ -120,7 +112,7 @@ fn a_body_without_volume_is_refused() {
     let case = CASE.replace("{ stl = { file = \"body.stl\", unit = \"mm\" } }", &nothing);
     std::fs::write(folder.path().join("case.toml"), case).unwrap();
     for command in ["inspect", "solve"] {
-        let (code, text) = run(folder.path(), &[command, "case.toml"]);
+        let (code, text) = printed(&folder, &[command, "case.toml"]);
         assert!(code == 2 && text.contains("the body encloses no volume"), "{code} {text}");
     }
 }
@@ -221,7 +213,7 @@ fn a_body_gives_the_same_bits_from_every_format() {
     let answer = |name: &str, content: &[u8]| {
         let folder = case_with(name, content, &under_its_weight());
         let arguments = ["solve", "case.toml", "--out", "run", "--no-error-bar", "-q"];
-        let (code, text) = run(folder.path(), &arguments);
+        let (code, text) = printed(&folder, &arguments);
         assert_eq!(code, 0, "{name}: {text}");
         let result = result_in(&folder);
         let parts = ["nodes", "mass_kg"].map(|key| result["discretisation"][key].clone());
@@ -238,7 +230,7 @@ fn a_body_gives_the_same_bits_from_every_format() {
 #[test]
 fn a_surface_of_another_format_than_its_name_says_is_refused_at_its_key() {
     let folder = case_of(&obj());
-    let (code, text) = run(folder.path(), &["case", "check", "case.toml"]);
+    let (code, text) = printed(&folder, &["case", "check", "case.toml"]);
     assert_eq!(code, 2, "{text}");
     assert!(text.contains("case.toml:5") && text.contains("that of a .obj file"), "{text}");
 }
@@ -246,7 +238,7 @@ fn a_surface_of_another_format_than_its_name_says_is_refused_at_its_key() {
 #[test]
 fn a_face_with_a_point_that_is_missing_is_refused_with_its_line() {
     let folder = case_with("body.obj", obj().replace("f 1 3 4", "f 1 3 44").as_bytes(), CASE);
-    let (code, text) = run(folder.path(), &["case", "check", "case.toml"]);
+    let (code, text) = printed(&folder, &["case", "check", "case.toml"]);
     assert_eq!(code, 2, "{text}");
     assert!(text.contains("line 9 is `f 1 3 44`, which uses point 44"), "{text}");
 }
@@ -254,6 +246,6 @@ fn a_face_with_a_point_that_is_missing_is_refused_with_its_line() {
 #[test]
 fn lines_in_a_surface_are_left_out_with_a_warning() {
     let folder = case_with("body.obj", (obj() + "l 1 2\n").as_bytes(), CASE);
-    let (code, text) = run(folder.path(), &["case", "check", "case.toml"]);
+    let (code, text) = printed(&folder, &["case", "check", "case.toml"]);
     assert!(code == 0 && text.contains("1 lines or points are left out"), "{code} {text}");
 }

@@ -1,24 +1,19 @@
 //! What the program writes before anything is solved: commented cases, manual pages.
 
-use assert_cmd::Command;
-use mtled_verify::bundled::TEMPLATES;
-use tempfile::TempDir;
+#[path = "common/program.rs"]
+mod program;
 
-/// Exit code, standard output and standard error in a folder.
-fn run(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    let output = command.args(arguments).current_dir(folder.path()).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-}
+use mtled_verify::bundled::TEMPLATES;
+use program::mtled;
+use tempfile::TempDir;
 
 #[test]
 fn templates_have_no_mistakes_but_the_files_that_the_user_has() {
     let folder = TempDir::new().unwrap();
     for template in &TEMPLATES {
         let file = format!("{}.toml", template.name);
-        assert_eq!(run(&folder, &["case", "new", template.name, "-o", &file]).0, 0);
-        let (code, _, messages) = run(&folder, &["case", "check", &file]);
+        assert_eq!(mtled(&folder, &["case", "new", template.name, "-o", &file]).0, 0);
+        let (code, _, messages) = mtled(&folder, &["case", "check", &file]);
         let own = template.text.contains("file = ");
         assert_eq!(code, if own { 2 } else { 0 }, "{messages}");
         let mistakes = messages.lines().filter(|line| line.starts_with(&file));
@@ -33,7 +28,7 @@ fn templates_have_no_mistakes_but_the_files_that_the_user_has() {
 fn a_template_is_not_written_over_a_file() {
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("mine.toml"), "precious").unwrap();
-    let (code, _, message) = run(&folder, &["case", "new", "block", "--out", "mine.toml"]);
+    let (code, _, message) = mtled(&folder, &["case", "new", "block", "--out", "mine.toml"]);
     assert_eq!(code, 2);
     assert!(message.contains("mine.toml is there already"), "{message}");
     assert_eq!(std::fs::read_to_string(folder.path().join("mine.toml")).unwrap(), "precious");
@@ -42,9 +37,9 @@ fn a_template_is_not_written_over_a_file() {
 #[test]
 fn without_a_template_all_are_listed_and_an_unknown_one_is_answered_with_their_names() {
     let folder = TempDir::new().unwrap();
-    let (code, listed, _) = run(&folder, &["case", "new"]);
+    let (code, listed, _) = mtled(&folder, &["case", "new"]);
     assert_eq!((code, listed.lines().count()), (0, TEMPLATES.len()));
-    let (code, _, message) = run(&folder, &["case", "new", "blok"]);
+    let (code, _, message) = mtled(&folder, &["case", "new", "blok"]);
     assert_eq!(code, 2);
     assert!(TEMPLATES.iter().all(|template| message.contains(template.name)), "{message}");
 }
@@ -52,9 +47,9 @@ fn without_a_template_all_are_listed_and_an_unknown_one_is_answered_with_their_n
 #[test]
 fn the_manual_has_a_page_of_the_program_and_one_of_every_command() {
     let folder = TempDir::new().unwrap();
-    let (code, page, _) = run(&folder, &["man"]);
+    let (code, page, _) = mtled(&folder, &["man"]);
     assert!(code == 0 && page.contains(".TH mtled 1"), "{page}");
-    assert_eq!(run(&folder, &["man", "--out", "pages"]).0, 0);
+    assert_eq!(mtled(&folder, &["man", "--out", "pages"]).0, 0);
     for name in ["mtled.1", "mtled-solve.1", "mtled-case-new.1"] {
         assert!(folder.path().join("pages").join(name).is_file(), "{name}");
     }

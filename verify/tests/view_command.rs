@@ -1,26 +1,20 @@
 //! `mtled view` and the page of a run from the outside.
 
-use assert_cmd::Command;
-use std::path::Path;
+#[path = "common/program.rs"]
+mod program;
+
+use program::mtled;
 use tempfile::TempDir;
 
 const BLOCK: &str = concat!("\n", include_str!("common/pulled_block.toml"));
 const STATIC: &str = "[time]\nmethod = \"static\"\nload_end = 1.0\n";
-
-/// Exit code, standard output and standard error in a folder.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    let output = command.current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-}
 
 /// A folder with a solved case in `out`.
 fn solved(output: &str) -> TempDir {
     let folder = TempDir::new().unwrap();
     let case = [BLOCK, STATIC, output].concat();
     std::fs::write(folder.path().join("case.toml"), case).unwrap();
-    let (code, _, err) = run(folder.path(), &["solve", "case.toml", "--out", "out", "-q"]);
+    let (code, _, err) = mtled(&folder, &["solve", "case.toml", "--out", "out", "-q"]);
     assert_eq!(code, 0, "{err}");
     folder
 }
@@ -28,14 +22,14 @@ fn solved(output: &str) -> TempDir {
 #[test]
 fn the_body_of_a_run_is_drawn_with_the_chosen_field_direction_and_panels() {
     let folder = solved("");
-    let (code, out, err) = run(folder.path(), &["view", "out"]);
+    let (code, out, err) = mtled(&folder, &["view", "out"]);
     assert_eq!((code, out.as_str(), err.as_str()), (0, "out/picture.svg\n", ""));
     let picture = std::fs::read_to_string(folder.path().join("out/picture.svg")).unwrap();
     assert_eq!(picture.matches("<image ").count(), 3);
     assert!(picture.contains("displacement [mm]"));
     let other = ["view", "out", "-o", "p.svg", "--field", "von_mises_stress"];
     let turned = ["--from", "-1,0.5,2", "--show", "after", "--frame", "0", "--format", "json"];
-    let (code, out, err) = run(folder.path(), &[&other[..], &turned].concat());
+    let (code, out, err) = mtled(&folder, &[&other[..], &turned].concat());
     assert_eq!(code, 0, "{err}");
     let printed: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert_eq!(printed["frame"], "out/body_0000.vtu");
@@ -58,7 +52,7 @@ fn what_cannot_be_drawn_is_refused_with_its_reason_and_nothing_is_written() {
         (&["view", "out", "-o", "p.svg", "--from", "0,0,0"], "three numbers that are not all zero"),
     ];
     for (arguments, reason) in refusals {
-        let (code, out, err) = run(folder.path(), arguments);
+        let (code, out, err) = mtled(&folder, arguments);
         assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}");
         assert!(err.contains(reason), "{arguments:?}: {err}");
     }
@@ -66,7 +60,7 @@ fn what_cannot_be_drawn_is_refused_with_its_reason_and_nothing_is_written() {
     let bytes = std::fs::read(&frame).unwrap();
     std::fs::write(&frame, &bytes[..bytes.len() / 2]).unwrap();
     let last = ["view", "out", "-o", "p.svg", "--frame", "1"];
-    let (code, _, err) = run(folder.path(), &last);
+    let (code, _, err) = mtled(&folder, &last);
     assert!(code == 2 && err.contains("body_0001.vtu"), "{err}");
     assert!(!folder.path().join("p.svg").exists() && !folder.path().join("p.png").exists());
 }
@@ -89,6 +83,6 @@ fn a_run_without_frames_has_a_page_without_pictures() {
     let folder = solved("[output]\nframes = 0\n");
     let page = std::fs::read_to_string(folder.path().join("out/index.html")).unwrap();
     assert!(page.contains("There is no picture") && !page.contains("<image "));
-    let (code, _, err) = run(folder.path(), &["view", "out"]);
+    let (code, _, err) = mtled(&folder, &["view", "out"]);
     assert!(code == 2 && err.contains("whose case has frames"), "{err}");
 }

@@ -4,10 +4,13 @@
 #[path = "warp/image.rs"]
 mod image;
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
 use image::{Kind, around, nifti};
 use mtled::algebra::tensor::Vector3;
 use mtled_verify::files::{LengthUnit, surface};
+use program::mtled;
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -20,14 +23,6 @@ const CASE: &str = concat!(
 const POINTS: &str = "name,x_mm,y_mm,z_mm,x2_mm,y2_mm,z2_mm\ntop,50,50,90,50,50,94\n\
                       free,20,30,40,,,\noutside,50,50,130,,,\n";
 
-/// Exit code, standard output and standard error in a folder.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    let output = command.current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-}
-
 /// A solved block in `run`, an image of it, one of another space, and landmarks.
 fn solved() -> TempDir {
     let folder = TempDir::new().unwrap();
@@ -39,7 +34,7 @@ fn solved() -> TempDir {
     write("marks.csv", POINTS.as_bytes());
     write("plain.csv", b"name,x,y,z\ntop,50,50,90\n");
     let (code, _, err) =
-        run(folder.path(), &["solve", "case.toml", "--out", "run", "--no-error-bar", "-q"]);
+        mtled(&folder, &["solve", "case.toml", "--out", "run", "--no-error-bar", "-q"]);
     assert_eq!(code, 0, "{err}");
     folder
 }
@@ -77,7 +72,7 @@ fn an_image_its_fields_and_landmarks_are_written_and_told() {
         "--format",
         "json",
     ];
-    let (code, out, err) = run(folder.path(), &arguments);
+    let (code, out, err) = mtled(&folder, &arguments);
     assert_eq!(code, 0, "{err}");
     assert!(err.contains("1 of 3 landmarks lie outside of the body"), "{err}");
     let summary: Value = serde_json::from_str(&out).unwrap();
@@ -103,9 +98,9 @@ fn a_landmark_moves_as_a_probe_in_its_place() {
     std::fs::write(folder.path().join("case.toml"), format!("{CASE}{probe}")).unwrap();
     std::fs::write(folder.path().join("plain.csv"), "name,x,y,z\ntop,0.05,0.05,0.09\n").unwrap();
     let solve = ["solve", "case.toml", "--out", "run", "--no-error-bar", "-q"];
-    assert_eq!(run(folder.path(), &solve).0, 0);
+    assert_eq!(mtled(&folder, &solve).0, 0);
     let warp = ["warp", "run", "--points", "plain.csv", "--unit", "m", "--format", "json"];
-    let (code, out, err) = run(folder.path(), &warp);
+    let (code, out, err) = mtled(&folder, &warp);
     assert_eq!(code, 0, "{err}");
     let summary: Value = serde_json::from_str(&out).unwrap();
     let history = std::fs::read_to_string(folder.path().join("run/history.csv")).unwrap();
@@ -126,7 +121,7 @@ fn what_cannot_be_warped_is_refused_with_code_2_and_nothing_is_written() {
     let folder = solved();
     let before = listing(folder.path());
     let refused = |arguments: &[&str], expected: &[&str]| {
-        let (code, out, err) = run(folder.path(), &[&["warp"], arguments].concat());
+        let (code, out, err) = mtled(&folder, &[&["warp"], arguments].concat());
         assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}: {err}");
         for part in expected {
             assert!(err.contains(part), "{arguments:?}: {part} is not in {err}");
@@ -154,12 +149,12 @@ fn what_cannot_be_warped_is_refused_with_code_2_and_nothing_is_written() {
     std::fs::remove_file(folder.path().join("case.toml")).unwrap();
     let before: Vec<String> =
         before.iter().filter(|name| !name.ends_with("case.toml")).cloned().collect();
-    let (code, _, err) = run(folder.path(), &["warp", "run", "--image", "t1.nii"]);
+    let (code, _, err) = mtled(&folder, &["warp", "run", "--image", "t1.nii"]);
     assert!(code == 2 && err.contains("name it with --case"), "{err}");
     assert_eq!(listing(folder.path()), before);
     std::fs::write(folder.path().join("moved.toml"), CASE).unwrap();
     let (code, _, err) =
-        run(folder.path(), &[&["warp"], &image[..], &["--case", "moved.toml"]].concat());
+        mtled(&folder, &[&["warp"], &image[..], &["--case", "moved.toml"]].concat());
     assert_eq!(code, 0, "{err}");
 }
 
@@ -173,7 +168,7 @@ fn a_damaged_field_is_refused() {
     let layouts = [text[..text.len() / 2].to_string(), field.to_string()];
     for (damaged, expected) in layouts.into_iter().zip(["cannot be read", "the file is damaged"]) {
         std::fs::write(&file, damaged).unwrap();
-        let (code, _, err) = run(folder.path(), &["warp", "run", "--image", "t1.nii"]);
+        let (code, _, err) = mtled(&folder, &["warp", "run", "--image", "t1.nii"]);
         assert!(code == 2 && err.contains("displacement_field.json"), "{err}");
         assert!(err.contains(expected), "{err}");
     }
@@ -200,9 +195,9 @@ fn surfaces_of_the_body_and_its_regions_are_closed_and_move_with_it() {
     let case = CASE.replacen("[[prescribe]]", regions, 1);
     std::fs::write(folder.path().join("case.toml"), &case).unwrap();
     let (code, _, err) =
-        run(folder.path(), &["solve", "case.toml", "--out", "run", "--no-error-bar", "-q"]);
+        mtled(&folder, &["solve", "case.toml", "--out", "run", "--no-error-bar", "-q"]);
     assert_eq!(code, 0, "{err}");
-    let (code, out, err) = run(folder.path(), &["warp", "run", "--surfaces", "stl", "-q"]);
+    let (code, out, err) = mtled(&folder, &["warp", "run", "--surfaces", "stl", "-q"]);
     assert_eq!(code, 0, "{out}{err}");
     let names: Vec<String> = listing(&folder.path().join("stl"));
     assert_eq!(names.len(), 6, "{names:?}");

@@ -1,12 +1,14 @@
 //! What the program writes: streams that fail, folders that cannot be written, files of
 //! earlier runs, texts that would steer a terminal or a spreadsheet, and JSON.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::{mtled, program};
 use serde_json::Value;
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
-use std::time::Duration;
 use tempfile::TempDir;
 
 /// A block that is pulled: a few hundred points, a fraction of a second.
@@ -14,19 +16,6 @@ const BLOCK: &str = include_str!("common/pulled_block.toml");
 const DYNAMIC: &str = "[time]\nmethod = \"dynamic\"\nend = 0.2\n";
 const STATIC: &str = "[time]\nmethod = \"static\"\n";
 const PROBE: &str = "[[probe]]\nname = \"top\"\npoint = [0.05, 0.05, 0.1]\n";
-
-fn mtled(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    command.args(arguments).timeout(Duration::from_secs(120));
-    command
-}
-
-/// Exit code, standard output and standard error.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = mtled(arguments).current_dir(folder).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-}
 
 /// A folder with `case.toml` in it.
 fn folder_with(parts: &[&str]) -> (TempDir, PathBuf) {
@@ -50,8 +39,7 @@ fn frames(out: &Path) -> usize {
 
 #[cfg(target_os = "linux")]
 fn with_streams(folder: &Path, arguments: &[&str], out: Stdio, err: Stdio) -> Output {
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_mtled"));
-    command.current_dir(folder).args(arguments).stdout(out).stderr(err).output().unwrap()
+    program(folder, arguments).stdout(out).stderr(err).output().unwrap()
 }
 
 #[cfg(target_os = "linux")]
@@ -104,14 +92,14 @@ fn a_folder_that_cannot_be_written_is_named_before_the_run() {
         &["study", "race", "--stored"],
     ];
     for command in commands {
-        let (code, out, err) = run(&folder, &[command, &["--out", "file/inside"]].concat());
+        let (code, out, err) = mtled(&folder, &[command, &["--out", "file/inside"]].concat());
         assert_eq!((code, out.as_str()), (2, ""), "{command:?}: {err}");
         assert!(err.contains("cannot write into the folder file/inside"), "{command:?}: {err}");
-        let (_, out, _) = run(&folder, &["runs", "list", "--format", "json"]);
+        let (_, out, _) = mtled(&folder, &["runs", "list", "--format", "json"]);
         assert_eq!(out, "[]\n", "{command:?}");
     }
     let update = ["verify", "--only", "manufactured", "--update-baseline", "--reason", "a test"];
-    let (code, _, err) = run(&folder, &[&update[..], &["--baseline", "file/base.json"]].concat());
+    let (code, _, err) = mtled(&folder, &[&update[..], &["--baseline", "file/base.json"]].concat());
     assert!(code == 2 && err.contains("file"), "{err}");
     assert!(!folder.join("reports/verify").exists());
 }
@@ -119,12 +107,12 @@ fn a_folder_that_cannot_be_written_is_named_before_the_run() {
 #[test]
 fn the_frames_of_a_longer_run_before_are_taken_away() {
     let (_dir, folder) = folder_with(&[BLOCK, DYNAMIC, "[output]\nframes = 5\n"]);
-    assert_eq!(run(&folder, &["solve", "case.toml", "--out", "out"]).0, 0);
+    assert_eq!(mtled(&folder, &["solve", "case.toml", "--out", "out"]).0, 0);
     assert_eq!(frames(&folder.join("out")), 6);
     let shorter = [BLOCK, DYNAMIC, "[output]\nframes = 2\n"].concat();
     std::fs::write(folder.join("other.toml"), shorter).unwrap();
     std::fs::write(folder.join("out/nodes_of_mine.vtu"), "").unwrap();
-    assert_eq!(run(&folder, &["solve", "other.toml", "--out", "out"]).0, 0);
+    assert_eq!(mtled(&folder, &["solve", "other.toml", "--out", "out"]).0, 0);
     assert_eq!(frames(&folder.join("out")), 3);
     assert!(folder.join("out/nodes_of_mine.vtu").exists());
     assert!(folder.join("out/other.pvd").exists() && !folder.join("out/case.pvd").exists());
@@ -134,11 +122,11 @@ fn the_frames_of_a_longer_run_before_are_taken_away() {
 fn files_that_cannot_be_completed_have_no_index() {
     let (_dir, folder) = folder_with(&[BLOCK, DYNAMIC]);
     let solve = ["solve", "case.toml", "--out", "out"];
-    assert_eq!(run(&folder, &solve).0, 0);
+    assert_eq!(mtled(&folder, &solve).0, 0);
     // Stands in for a program that is killed while it writes.
     std::fs::remove_file(folder.join("out/history.csv")).unwrap();
     std::fs::create_dir(folder.join("out/history.csv")).unwrap();
-    let (code, _, err) = run(&folder, &solve);
+    let (code, _, err) = mtled(&folder, &solve);
     assert!(code == 2 && err.contains("history.csv"), "{err}");
     for name in ["case.pvd", "case_nodes.pvd", "index.html", "result.json"] {
         assert!(!folder.join("out").join(name).exists(), "{name} is there");
@@ -149,7 +137,7 @@ fn files_that_cannot_be_completed_have_no_index() {
 fn frames_and_samples_are_taken_exactly_at_the_times_of_a_case() {
     let outputs = "[output]\ntimes = [0.0123, 0.1, 0.1001]\nhistory = 4\n";
     let (_dir, folder) = folder_with(&[BLOCK, DYNAMIC, outputs, PROBE]);
-    assert_eq!(run(&folder, &["solve", "case.toml", "--out", "out"]).0, 0);
+    assert_eq!(mtled(&folder, &["solve", "case.toml", "--out", "out"]).0, 0);
     let collection = std::fs::read_to_string(folder.join("out/case.pvd")).unwrap();
     let framed: Vec<f64> = (collection.split("timestep=\"").skip(1))
         .map(|rest| rest.split('"').next().unwrap().parse().unwrap())
@@ -172,7 +160,7 @@ fn frames_and_samples_are_taken_exactly_at_the_times_of_a_case() {
 #[test]
 fn the_frames_of_a_static_run_are_numbered_and_at_most_as_many_as_requested() {
     let (_dir, folder) = folder_with(&[BLOCK, STATIC]);
-    assert_eq!(run(&folder, &["solve", "case.toml", "--out", "out"]).0, 0);
+    assert_eq!(mtled(&folder, &["solve", "case.toml", "--out", "out"]).0, 0);
     let text = std::fs::read_to_string(folder.join("out/case.pvd")).unwrap();
     let steps: Vec<&str> = text.split("timestep=\"").skip(1).collect();
     let numbers = steps.iter().map(|part| part.split('"').next().unwrap().parse::<usize>());
@@ -191,7 +179,7 @@ fn texts_of_a_case_neither_steer_the_terminal_nor_calculate_in_a_spreadsheet() {
     let probe = PROBE.replace("top", "=1+1\\u001b[2J");
     let (_dir, folder) = folder_with(&[&evil, DYNAMIC, &probe]);
     for arguments in [&["solve", "case.toml", "--out", "out"][..], &["inspect", "case.toml"]] {
-        let (code, out, err) = run(&folder, arguments);
+        let (code, out, err) = mtled(&folder, arguments);
         assert_eq!(code, 0, "{err}");
         assert!(out.contains("\\u{1b}[2JPulled"), "{arguments:?}: {out}");
         assert!(!(out + &err).contains('\u{1b}'), "{arguments:?}");
@@ -201,7 +189,7 @@ fn texts_of_a_case_neither_steer_the_terminal_nor_calculate_in_a_spreadsheet() {
     assert!(header.contains(",'=1+1\\u{1b}[2J.ux_m,"), "{header}");
     assert!(!history.contains("'-"), "numbers must stay numbers: {history}");
     std::fs::write(folder.join("bad.toml"), "\"\u{7f}\\u001b[2J\" = 1\n").unwrap();
-    let (code, _, err) = run(&folder, &["case", "check", "bad.toml"]);
+    let (code, _, err) = mtled(&folder, &["case", "check", "bad.toml"]);
     assert!(code == 2 && !err.contains(['\u{1b}', '\u{7f}']), "{err:?}");
 }
 
@@ -209,7 +197,7 @@ fn texts_of_a_case_neither_steer_the_terminal_nor_calculate_in_a_spreadsheet() {
 fn a_report_from_elsewhere_writes_into_its_folder_only() {
     let (_dir, folder) = folder_with(&[BLOCK, STATIC]);
     let sweep = ["study", "consistency", "case.toml", "--dilation", "1.8,2", "--out", "report"];
-    let (code, _, err) = run(&folder, &[&sweep[..], &["--cells-per-spacing", "1.26"]].concat());
+    let (code, _, err) = mtled(&folder, &[&sweep[..], &["--cells-per-spacing", "1.26"]].concat());
     assert_eq!(code, 0, "{err}");
     let text = std::fs::read_to_string(folder.join("report/results.json")).unwrap();
     let evil = text.replace("\"id\":\"consistency\"", "\"id\":\"../../consistency\"");
@@ -217,7 +205,7 @@ fn a_report_from_elsewhere_writes_into_its_folder_only() {
     std::fs::create_dir(folder.join("deep")).unwrap();
     std::fs::write(folder.join("deep/results.json"), evil).unwrap();
     let before = std::fs::read_dir(&folder).unwrap().count();
-    let (code, _, err) = run(&folder, &["report", "deep/results.json", "--out", "deep/out"]);
+    let (code, _, err) = mtled(&folder, &["report", "deep/results.json", "--out", "deep/out"]);
     assert_eq!(code, 0, "{err}");
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), before);
     assert_eq!(std::fs::read_dir(folder.join("deep")).unwrap().count(), 2);
@@ -238,19 +226,19 @@ fn mistakes_are_data_where_json_is_asked_for() {
         assert_eq!(mistake["key"], "material.tissue.densty", "{mistake}");
         assert!(mistake["message"].as_str().unwrap().contains("did you mean `density`"));
     };
-    let (code, out, err) = run(&folder, &["case", "check", "case.toml", "--format", "json"]);
+    let (code, out, err) = mtled(&folder, &["case", "check", "case.toml", "--format", "json"]);
     assert_eq!((code, err.as_str()), (2, ""));
     let checked = json(&out)["cases"][0].clone();
     assert_eq!(checked["valid"], false);
     at_key(&checked["mistakes"][0]);
     for command in [&["solve"][..], &["inspect"], &["budget"], &["tune"], &["study", "patch"]] {
         let (code, out, err) =
-            run(&folder, &[command, &["case.toml", "--format", "json"]].concat());
+            mtled(&folder, &[command, &["case.toml", "--format", "json"]].concat());
         assert_eq!((code, out.as_str()), (2, ""), "{command:?}");
         at_key(&json(&err));
     }
     for arguments in [&["slove", "--format", "json"][..], &["runs", "show", "x", "--format=json"]] {
-        let (code, out, err) = run(&folder, arguments);
+        let (code, out, err) = mtled(&folder, arguments);
         assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}");
         assert_eq!(json(&err)["severity"], "error", "{arguments:?}");
     }
@@ -271,7 +259,7 @@ fn every_command_prints_one_json_document_where_json_is_asked_for() {
         (&["merge", "store"], "/added"),
     ];
     for (command, pointer) in commands {
-        let (code, out, err) = run(&folder, &[command, &["--format", "json"]].concat());
+        let (code, out, err) = mtled(&folder, &[command, &["--format", "json"]].concat());
         assert_eq!(code, 0, "{command:?}: {err}");
         assert!(json(&out).pointer(pointer).is_some(), "{command:?}: {out}");
         assert!(err.lines().all(|line| json(line)["severity"] != "error"), "{command:?}: {err}");
@@ -283,12 +271,12 @@ fn a_bundled_case_is_found_by_its_name() {
     let (_dir, folder) = folder_with(&[]);
     // A folder of that name, such as that of its results, is no case.
     std::fs::create_dir(folder.join("uniaxial_bar")).unwrap();
-    assert_eq!(run(&folder, &["case", "check", "uniaxial_bar"]).0, 0);
-    assert_eq!(run(&folder, &["case", "check", "brain_slice"]).0, 0);
-    let (code, out, err) = run(&folder, &["inspect", "uniaxial_bar", "--format", "json"]);
+    assert_eq!(mtled(&folder, &["case", "check", "uniaxial_bar"]).0, 0);
+    assert_eq!(mtled(&folder, &["case", "check", "brain_slice"]).0, 0);
+    let (code, out, err) = mtled(&folder, &["inspect", "uniaxial_bar", "--format", "json"]);
     assert_eq!((code, json(&out)["case"].as_str()), (0, Some("uniaxial_bar")), "{err}");
-    assert_eq!(run(&folder, &["solve", "uniaxial_bar"]).0, 0);
+    assert_eq!(mtled(&folder, &["solve", "uniaxial_bar"]).0, 0);
     assert!(folder.join("reports/uniaxial_bar/uniaxial_bar.pvd").exists());
-    let (code, _, err) = run(&folder, &["solve", "uniaxial_ball"]);
+    let (code, _, err) = mtled(&folder, &["solve", "uniaxial_ball"]);
     assert!(code == 2 && err.contains("mtled case list"), "{err}");
 }

@@ -67,9 +67,10 @@ impl Sparse {
         let rows = |(task, result): (usize, &mut [Padded])| {
             dispatch!(level, simd => self.rows(simd, task * ROWS_PER_TASK, field, result, how));
         };
-        match result.len() <= ROWS_PER_TASK {
-            true => rows((0, result)),
-            false => result.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(rows),
+        if result.len() <= ROWS_PER_TASK {
+            rows((0, result))
+        } else {
+            result.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(rows)
         }
     }
 

@@ -155,9 +155,8 @@ impl Lattice {
         let [nx, ny, nz] = self.counts.map(|n| n.min(3));
         (0..nx * ny * nz).map(move |function| {
             let at = [function % nx, function / nx % ny, function / (nx * ny)];
-            let factor = |axis: usize, along: usize| match axis == along {
-                true => slopes[axis][at[axis]],
-                false => values[axis][at[axis]],
+            let factor = |axis: usize, along: usize| {
+                if axis == along { slopes[axis][at[axis]] } else { values[axis][at[axis]] }
             };
             let along = |k: usize| factor(0, k) * factor(1, k) * factor(2, k);
             Vector3::new(along(0), along(1), along(2))

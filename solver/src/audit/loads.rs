@@ -111,27 +111,26 @@ impl Run<'_> {
         let own;
         let everywhere =
             body_force.part.is_everything() && matches!(body_force.acceleration, Field::Uniform(_));
-        let sampled = match everywhere {
-            true => self.sampled,
-            false => {
-                // The part itself first, divided among the regions by what it has in common
-                // with each.
-                let common: Vec<Selector> = regions
-                    .iter()
-                    .map(|region| {
-                        Selector::Intersection(vec![body_force.part.clone(), region.part.clone()])
-                    })
-                    .collect();
-                let divided = Divided {
-                    body: self.body,
-                    dimension: &self.problem.dimension,
-                    parts: common.iter().chain([&Selector::All]).collect(),
-                    spacing: self.spacing,
-                    nodes: self.model.positions.len(),
-                };
-                own = sample(&divided)?;
-                &own
-            }
+        let sampled = if everywhere {
+            self.sampled
+        } else {
+            // The part itself first, divided among the regions by what it has in common
+            // with each.
+            let common: Vec<Selector> = regions
+                .iter()
+                .map(|region| {
+                    Selector::Intersection(vec![body_force.part.clone(), region.part.clone()])
+                })
+                .collect();
+            let divided = Divided {
+                body: self.body,
+                dimension: &self.problem.dimension,
+                parts: common.iter().chain([&Selector::All]).collect(),
+                spacing: self.spacing,
+                nodes: self.model.positions.len(),
+            };
+            own = sample(&divided)?;
+            &own
         };
         let of_regions = sampled.pieces.iter().filter(|(.., part)| *part < regions.len());
         let force = |&(X, size, part): &(Vector3, f64, usize)| {

@@ -326,22 +326,15 @@ fn outside(position: Vector3, poor: &PoorSupport) -> Error {
 }
 
 fn evaluate_all(approximation: &Approximation, positions: &[Vector3]) -> Result<Evaluated, Error> {
-    let locate = |(point, poor): (usize, PoorSupport)| match poor.support_size
-        < approximation.smallest_support()
-    {
-        true => Error::SmallSupport {
-            point,
-            position: positions[point],
-            support_size: poor.support_size,
-            smallest: approximation.smallest_support(),
-        },
-        false => Error::SingularMomentMatrix {
-            point,
-            position: positions[point],
-            support_size: poor.support_size,
-            condition: poor.condition,
-            largest: approximation.largest_condition(),
-        },
+    let locate = |(point, poor): (usize, PoorSupport)| {
+        let (position, support_size) = (positions[point], poor.support_size);
+        let smallest = approximation.smallest_support();
+        if support_size < smallest {
+            Error::SmallSupport { point, position, support_size, smallest }
+        } else {
+            let (condition, largest) = (poor.condition, approximation.largest_condition());
+            Error::SingularMomentMatrix { point, position, support_size, condition, largest }
+        }
     };
     Rows::at(approximation, positions, Requested::ValuesAndGradients).map_err(locate)
 }

@@ -139,9 +139,10 @@ impl Footprint {
             + PER_PANEL * self.panels
             + PER_HELD_NODE * self.held.min(self.nodes)
             + problem.loads.pressures.len() as f64 * self.panels * PER_ROW_ENTRY * self.neighbours
-            + match problem.by_newton() {
-                true => PER_NEWTON_ENTRY * self.nodes * self.neighbours,
-                false => 0.0,
+            + if problem.by_newton() {
+                PER_NEWTON_ENTRY * self.nodes * self.neighbours
+            } else {
+                0.0
             }
             + shapes.kept;
         let choosing = shapes.kept + size_field_bytes(problem);
@@ -308,10 +309,7 @@ fn density_at(problem: &Problem, spacing: f64, X: &Vector3, distance: f64) -> De
         _ => 1.0,
     };
     let nodes = if distance < 0.5 * spacing { crowding * spacing.powi(-d) } else { 0.0 };
-    let points = match distance < reach {
-        true => (grid.gauss_points as f64 / cell).powi(d),
-        false => 0.0,
-    };
+    let points = if distance < reach { (grid.gauss_points as f64 / cell).powi(d) } else { 0.0 };
     let neighbours = crowding * support(d, recipe.dilation, distance / spacing);
     Density { nodes, points, entries: points * neighbours }
 }

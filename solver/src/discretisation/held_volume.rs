@@ -146,9 +146,8 @@ fn beyond(shape: &Shape, (lower, upper): (&Vector3, &Vector3), spacing: f64) -> 
     match shape {
         Shape::Box { min, max } => {
             let near = SAME_FACE * spacing;
-            let out = |at: f64, end: f64, way: f64| match (end - at) * way <= near {
-                true => end + way * spacing,
-                false => at,
+            let out = |at: f64, end: f64, way: f64| {
+                if (end - at) * way <= near { end + way * spacing } else { at }
             };
             Shape::Box {
                 min: Vector3::from_fn(|k, _| out(min[k], lower[k], -1.0)),

@@ -27,13 +27,12 @@ impl Discretisation {
         flatten(&mut quadrature.positions, &self.dimension);
         let rows = self.rows_at(&quadrature.positions)?;
         let Loads { tractions, pressures, .. } = &problem.loads;
-        let surface = match tractions.is_empty() && pressures.is_empty() {
-            true => SurfaceRule::default(),
-            false => {
-                let size = self.surface.panel_size;
-                let panels = problem.body.boundary_panels(size, &self.dimension)?;
-                self.surface_rule(problem, (panels, size))?
-            }
+        let surface = if tractions.is_empty() && pressures.is_empty() {
+            SurfaceRule::default()
+        } else {
+            let size = self.surface.panel_size;
+            let panels = problem.body.boundary_panels(size, &self.dimension)?;
+            self.surface_rule(problem, (panels, size))?
         };
         self.held = Some(HeldVolume { shape, quadrature, rows, surface, first_node });
         Ok(())

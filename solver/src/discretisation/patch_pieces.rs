@@ -22,9 +22,10 @@ pub fn part_at_gaps(
 ) -> Vec<usize> {
     let pieces = |patch: &[usize]| {
         let positions = &quadrature.positions[patch[0]..patch[1]];
-        match positions.iter().any(beside_gap) {
-            true => pieces(body, positions, TOGETHER * spacing_at(&positions[0])),
-            false => vec![0; positions.len()],
+        if positions.iter().any(beside_gap) {
+            pieces(body, positions, TOGETHER * spacing_at(&positions[0]))
+        } else {
+            vec![0; positions.len()]
         }
     };
     let found: Vec<Vec<u32>> =

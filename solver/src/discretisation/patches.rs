@@ -101,9 +101,10 @@ impl Bisection<'_> {
         let (low_places, high_places) = halve(&order, ascending, middle);
         let (low, high) = points.split_at_mut(middle);
         let halves = (|| self.split(low, low_places), || self.split(high, high_places));
-        let (mut counts, others) = match sorted.len() < FEWEST_PARALLEL {
-            true => (halves.0(), halves.1()),
-            false => rayon::join(halves.0, halves.1),
+        let (mut counts, others) = if sorted.len() < FEWEST_PARALLEL {
+            (halves.0(), halves.1())
+        } else {
+            rayon::join(halves.0, halves.1)
         };
         counts.extend(others);
         counts

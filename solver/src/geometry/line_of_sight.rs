@@ -175,19 +175,18 @@ impl<'a> Way<'a> {
     }
 
     fn is_parted(&self) -> bool {
-        let end = match self.total <= self.step {
-            true => self.total,
-            false => self.total + self.ends[1].distance.min(0.0),
+        let end = if self.total <= self.step {
+            self.total
+        } else {
+            self.total + self.ends[1].distance.min(0.0)
         };
         // The last place inside, and the outside since.
         let (mut inside, mut outside) = (0.0, None);
         let (mut t, mut distance) = (0.0, self.ends[0].distance);
         while t < end {
             let next = (t + distance.abs().max(self.step)).min(end);
-            let there = match next == self.total {
-                true => self.ends[1].distance,
-                false => self.distance(next),
-            };
+            let there =
+                if next == self.total { self.ends[1].distance } else { self.distance(next) };
             let narrow = distance <= self.thin && there <= self.thin;
             if narrow {
                 outside = self.outside_between((t, distance), (next, there), LOOKS);
@@ -250,9 +249,10 @@ impl<'a> Way<'a> {
             let mut out = outside.first;
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (inside + out);
-                match self.distance(middle) > self.thin {
-                    true => out = middle,
-                    false => inside = middle,
+                if self.distance(middle) > self.thin {
+                    out = middle;
+                } else {
+                    inside = middle;
                 }
             }
             out

@@ -33,9 +33,10 @@ impl SizeLimit {
     /// Refuses a count beyond the limit, and one that is NaN.
     pub fn check(&self, count: f64) -> Result<(), GeometryError> {
         let SizeLimit { what, most: limit, remedy } = *self;
-        match count <= limit {
-            true => Ok(()),
-            false => Err(GeometryError::TooMany { what, count, limit, remedy }),
+        if count <= limit {
+            Ok(())
+        } else {
+            Err(GeometryError::TooMany { what, count, limit, remedy })
         }
     }
 }

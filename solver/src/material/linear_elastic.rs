@@ -34,9 +34,12 @@ impl ConstitutiveLaw for LinearElastic {
         let trace = F[0][0] + F[1][1] + F[2][2] - 3.0;
         map(
             #[inline(always)]
-            |i, j| match i == j {
-                true => (F[i][i] - 1.0) * (2.0 * self.mu) + trace * self.lambda,
-                false => (F[i][j] + F[j][i]) * self.mu,
+            |i, j| {
+                if i == j {
+                    (F[i][i] - 1.0) * (2.0 * self.mu) + trace * self.lambda
+                } else {
+                    (F[i][j] + F[j][i]) * self.mu
+                }
             },
         )
     }

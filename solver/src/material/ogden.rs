@@ -87,10 +87,7 @@ impl Scalar for OgdenTerms {
         let logarithm = ratio.ln_1p();
         let slope = |t: &OgdenTerm| {
             let power = 0.5 * t.alpha;
-            let growth = match ratio == 0.0 {
-                true => power,
-                false => (power * logarithm).exp_m1() / ratio,
-            };
+            let growth = if ratio == 0.0 { power } else { (power * logarithm).exp_m1() / ratio };
             2.0 * t.mu / t.alpha * large.powf(power - 1.0) * growth
         };
         self.given().iter().map(slope).sum()
@@ -136,10 +133,7 @@ impl ConstitutiveLaw for Ogden {
         let volumetric = self.bulk_slope(*J) - mean * inverse;
         let inner = map(
             #[inline(always)]
-            |i, j| match i == j {
-                true => h[i][i].times_plus(inverse, volumetric),
-                false => h[i][j] * inverse,
-            },
+            |i, j| if i == j { h[i][i].times_plus(inverse, volumetric) } else { h[i][j] * inverse },
         );
         times_symmetric(cof, &inner)
     }

@@ -34,10 +34,7 @@ impl ConstitutiveLaw for StVenantKirchhoff {
         let spherical = (C[0][0] + C[1][1] + C[2][2] - 3.0) * (0.5 * self.lambda);
         let S = map(
             #[inline(always)]
-            |i, j| match i == j {
-                true => (C[i][i] - 1.0) * self.mu + spherical,
-                false => C[i][j] * self.mu,
-            },
+            |i, j| if i == j { (C[i][i] - 1.0) * self.mu + spherical } else { C[i][j] * self.mu },
         );
         times_symmetric(&state.F, &S)
     }

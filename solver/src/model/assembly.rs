@@ -76,10 +76,8 @@ impl Model {
         let components = problem.dimension.components();
         let blocks = blocks(problem, discretisation)?;
         let stiffness = stiffness_diagonal(&blocks, components, lumped_mass.len(), f64::INFINITY);
-        let inertia = match lumped {
-            true => lumped_mass.clone(),
-            false => fictitious_mass(&stiffness, &lumped_mass),
-        };
+        let inertia =
+            if lumped { lumped_mass.clone() } else { fictitious_mass(&stiffness, &lumped_mass) };
         let mut warnings = empty_regions(problem, discretisation);
         warnings.extend(check_shared_nodes(problem, discretisation)?);
         let constraints = Constraints::new(problem, discretisation, &inertia)?;
@@ -108,9 +106,10 @@ impl Model {
             point_positions: quadrature.positions.clone(),
             extent: (upper - lower).norm(),
             lumped_mass,
-            nodal_rows: match problem.by_newton() {
-                true => Some(discretisation.rows_at(&discretisation.cloud.positions)?),
-                false => None,
+            nodal_rows: if problem.by_newton() {
+                Some(discretisation.rows_at(&discretisation.cloud.positions)?)
+            } else {
+                None
             },
             constraints,
             per_point_bound,

@@ -35,9 +35,10 @@ impl<'a> LoadedPart<'a> {
         }
         let mut is_covered = vec![false; base.panels.len()];
         covered.iter().for_each(|covered| is_covered[covered.index] = true);
-        let own = match has_own_rule(&covered, &base.panels) {
-            true => Some(discretisation.surface_of_part(problem, &covered)?),
-            false => None,
+        let own = if has_own_rule(&covered, &base.panels) {
+            Some(discretisation.surface_of_part(problem, &covered)?)
+        } else {
+            None
         };
         Ok(Some(LoadedPart { base, covered, is_covered, own }))
     }
@@ -50,10 +51,10 @@ impl<'a> LoadedPart<'a> {
     /// Strengths at the points of [`Self::rule`] of a density on what is covered.
     pub fn strengths(&self, nodes: usize, density: impl Fn(&Panel) -> Vector3) -> Vec<Vector3> {
         let covers = |index: usize| self.own.is_some() || self.is_covered[index];
-        self.rule().strengths(nodes, |index, panel| match covers(index) {
-            true => density(panel),
-            false => Vector3::zeros(),
-        })
+        self.rule().strengths(
+            nodes,
+            |index, panel| if covers(index) { density(panel) } else { Vector3::zeros() },
+        )
     }
 
     /// The point of the whole boundary that a point of [`Self::rule`] is, or lies in the panel

@@ -58,9 +58,10 @@ impl PressureLoad {
             let Some((whole, fraction)) = loaded.point_of_whole(point) else { return part[point] };
             let fraction = fraction
                 .unwrap_or_else(|| part[point].dot(&all[whole]) / all[whole].norm_squared());
-            match fraction.is_finite() {
-                true => part[point] + fraction * (closed[whole] - all[whole]),
-                false => part[point],
+            if fraction.is_finite() {
+                part[point] + fraction * (closed[whole] - all[whole])
+            } else {
+                part[point]
             }
         };
         let points = (0..part.len()).filter(|&point| part[point] != Vector3::zeros());

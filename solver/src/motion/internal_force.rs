@@ -139,9 +139,10 @@ fn linearise_in<const D: usize>(model: &Model, u: &[f64], workspace: &mut Worksp
             });
         })
     };
-    match on_one_thread(model) {
-        true => model.blocks.iter().zip(&mut workspace.blocks).for_each(run),
-        false => model.blocks.par_iter().zip(&mut workspace.blocks).with_max_len(1).for_each(run),
+    if on_one_thread(model) {
+        model.blocks.iter().zip(&mut workspace.blocks).for_each(run)
+    } else {
+        model.blocks.par_iter().zip(&mut workspace.blocks).with_max_len(1).for_each(run)
     }
 }
 
@@ -171,9 +172,10 @@ fn internal_force_in<const D: usize>(
     let run = |index: usize, block: &Block, local: &mut Local, scratch: &mut Scratch| {
         local.u.gather::<D>(&block.nodes, u);
         let block = (block, own.map(|own| own.block(index)));
-        with_vectors!(level, (simd, numbers) => match along {
-            false => force::<_, _, D>(simd, numbers, block, local, scratch),
-            true => derivative::<_, _, D>(simd, numbers, block, local, scratch),
+        with_vectors!(level, (simd, numbers) => if along {
+            derivative::<_, _, D>(simd, numbers, block, local, scratch)
+        } else {
+            force::<_, _, D>(simd, numbers, block, local, scratch)
         });
     };
     let nodes = f.as_chunks_mut::<D>().0;

@@ -195,10 +195,7 @@ fn weights_of(model: &Model, here: Here, least: f64, motions: &DMatrix<f64>) -> 
         [1.0, 0.61, 0.37][i % d] * (1.0 + 0.43 * x.x + 0.29 * x.y + 0.19 * x.z)
     });
     let along = part(&slanted.collect::<Vec<f64>>());
-    match along.norm() > 0.0 {
-        true => along.normalize(),
-        false => DVector::from_element(motions.ncols(), 1.0),
-    }
+    if along.norm() > 0.0 { along.normalize() } else { DVector::from_element(motions.ncols(), 1.0) }
 }
 
 /// Fields of one component each that the conditions allow \[field\]\[component of node\].

@@ -138,9 +138,10 @@ pub fn external_force(model: &Model, t: f64, f_ext: &mut [f64]) {
             f_ext.iter_mut().zip(force).for_each(|(f, pattern)| *f += amplitude * pattern);
         }
     };
-    match f_ext.len() <= length {
-        true => add((0, f_ext)),
-        false => f_ext.par_chunks_mut(length).enumerate().for_each(add),
+    if f_ext.len() <= length {
+        add((0, f_ext))
+    } else {
+        f_ext.par_chunks_mut(length).enumerate().for_each(add)
     }
 }
 

@@ -35,9 +35,10 @@ pub fn without_commands(text: &str) -> String {
 fn shown(text: &str, kept: &[char]) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
-        match is_invisible(c) && !kept.contains(&c) {
-            true => shown.extend(c.escape_default()),
-            false => shown.push(c),
+        if is_invisible(c) && !kept.contains(&c) {
+            shown.extend(c.escape_default())
+        } else {
+            shown.push(c)
         }
     }
     shown
@@ -48,9 +49,10 @@ fn shown(text: &str, kept: &[char]) -> String {
 pub fn printable_json(document: &str) -> String {
     let mut shown = String::with_capacity(document.len());
     for c in document.chars() {
-        match is_invisible(c) && !matches!(c, '\n' | '\r' | '\t') {
-            true => shown += &format!("\\u{:04x}", c as u32),
-            false => shown.push(c),
+        if is_invisible(c) && !matches!(c, '\n' | '\r' | '\t') {
+            shown += &format!("\\u{:04x}", c as u32);
+        } else {
+            shown.push(c)
         }
     }
     shown
@@ -60,10 +62,7 @@ pub fn printable_json(document: &str) -> String {
 /// are left to the writer of the file.
 pub fn csv_text(text: &str) -> String {
     let text = printable(text);
-    match text.trim_start().starts_with(['=', '+', '-', '@']) {
-        true => format!("'{text}"),
-        false => text,
-    }
+    if text.trim_start().starts_with(['=', '+', '-', '@']) { format!("'{text}") } else { text }
 }
 
 /// The name of a file made of a text: what separates folders, what some system forbids in a
@@ -74,10 +73,7 @@ pub fn file_name(text: &str) -> String {
     };
     let name = text.replace(forbidden, "-");
     let rest = name.trim_start_matches('.');
-    match name.is_empty() {
-        true => "-".to_string(),
-        false => "-".repeat(name.len() - rest.len()) + rest,
-    }
+    if name.is_empty() { "-".to_string() } else { "-".repeat(name.len() - rest.len()) + rest }
 }
 
 #[cfg(test)]

@@ -76,9 +76,10 @@ pub fn stored_reference(
     name: &str,
 ) -> Result<ReferenceSolution, ReferenceError> {
     let json = serde_json::from_str::<serde_json::Value>(text);
-    match json.is_ok_and(|value| value["made_by"] == MADE_BY) {
-        true => read_own_reference(case, text, name),
-        false => ReferenceSolution::from_file(case, text, name),
+    if json.is_ok_and(|value| value["made_by"] == MADE_BY) {
+        read_own_reference(case, text, name)
+    } else {
+        ReferenceSolution::from_file(case, text, name)
     }
 }
 

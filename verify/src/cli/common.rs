@@ -65,9 +65,10 @@ impl Common {
         json: &dyn Fn() -> Result<String>,
         text: &dyn Fn() -> String,
     ) -> Result<()> {
-        match self.quiet && self.format != Format::Json {
-            true => Ok(()),
-            false => self.print_result(json, text),
+        if self.quiet && self.format != Format::Json {
+            Ok(())
+        } else {
+            self.print_result(json, text)
         }
     }
 
@@ -98,9 +99,8 @@ pub fn arguments() -> Vec<String> {
 
 /// The command as it was typed.
 pub fn command_line() -> String {
-    let arguments = arguments().into_iter().map(|argument| match argument.contains(' ') {
-        true => format!("\"{argument}\""),
-        false => argument,
-    });
+    let arguments = arguments()
+        .into_iter()
+        .map(|argument| if argument.contains(' ') { format!("\"{argument}\"") } else { argument });
     format!("mtled {}", arguments.collect::<Vec<_>>().join(" "))
 }

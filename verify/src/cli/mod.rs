@@ -175,9 +175,10 @@ fn without_a_command(answer: &clap::Error) -> u8 {
 fn requested_format() -> Format {
     let arguments = arguments();
     let apart = arguments.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json");
-    match apart || arguments.iter().any(|argument| argument == "--format=json") {
-        true => Format::Json,
-        false => Format::Human,
+    if apart || arguments.iter().any(|argument| argument == "--format=json") {
+        Format::Json
+    } else {
+        Format::Human
     }
 }
 

@@ -42,9 +42,12 @@ fn rebuild(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
         let comparison = compare_with(&report, &read_baseline(path)?, false);
         report.comparison = Some(comparison.with_context(|| path.display().to_string())?);
     }
-    let same = || match arguments.run.is_dir() {
-        true => arguments.run.clone(),
-        false => arguments.run.parent().map(PathBuf::from).unwrap_or_default(),
+    let same = || {
+        if arguments.run.is_dir() {
+            arguments.run.clone()
+        } else {
+            arguments.run.parent().map(PathBuf::from).unwrap_or_default()
+        }
     };
     let out = arguments.out.clone().unwrap_or_else(same);
     write_report(&report, &out)?;

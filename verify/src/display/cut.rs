@@ -31,9 +31,10 @@ pub fn crossing(level: impl Fn(&Vector3) -> f64, ends: [&Vector3; 2], values: [f
         if f.is_nan() || f.abs() <= LEFT * (values[0] - values[1]).abs() {
             break;
         }
-        match (f < 0.0) == (f_a < 0.0) {
-            true => (a, f_a) = (t, f),
-            false => (b, f_b) = (t, f),
+        if (f < 0.0) == (f_a < 0.0) {
+            (a, f_a) = (t, f)
+        } else {
+            (b, f_b) = (t, f)
         }
         t = if step % 2 == 1 { 0.5 * (a + b) } else { secant(a, b, f_a, f_b) };
     }

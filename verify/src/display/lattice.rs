@@ -67,10 +67,7 @@ impl Lattice {
 
     /// Volume \[m³\] or area \[m²\] of a cell.
     pub fn cell_measure(&self) -> f64 {
-        match self.is_plane() {
-            true => self.step.x * self.step.y / 2.0,
-            false => self.step.product() / 6.0,
-        }
+        if self.is_plane() { self.step.x * self.step.y / 2.0 } else { self.step.product() / 6.0 }
     }
 
     /// A bit for each side of the lattice that a vertex of it is on.
@@ -168,9 +165,10 @@ impl Lattice {
                 cells.extend(corners);
             }
         };
-        match self.is_plane() {
-            true => TRIANGLES.iter().for_each(|path| push(path)),
-            false => TETRAHEDRA.iter().for_each(|path| push(path)),
+        if self.is_plane() {
+            TRIANGLES.iter().for_each(|path| push(path))
+        } else {
+            TETRAHEDRA.iter().for_each(|path| push(path))
         }
     }
 }

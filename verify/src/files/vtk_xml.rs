@@ -259,10 +259,8 @@ impl Storage {
     /// Numbers of an array that starts with its lengths.
     fn numbers(&self, bytes: &[u8], scalar: Scalar, most: usize) -> Result<Vec<f64>, Mistake> {
         let most = most.saturating_mul(scalar.size());
-        let data = match self.compressed {
-            true => self.inflate(bytes, most)?,
-            false => self.plain(bytes)?.to_vec(),
-        };
+        let data =
+            if self.compressed { self.inflate(bytes, most)? } else { self.plain(bytes)?.to_vec() };
         Ok(bytes::numbers(&data, scalar, self.order).collect())
     }
 

@@ -54,10 +54,7 @@ impl Field {
     pub fn label(&self) -> String {
         let words = self.name.replace('_', " ").replace("von mises", "von Mises");
         let words = words.replace("green lagrange", "Green–Lagrange");
-        match self.name.starts_with("principal") {
-            true => format!("largest {words}"),
-            false => words,
-        }
+        if self.name.starts_with("principal") { format!("largest {words}") } else { words }
     }
 
     /// Its unit; empty for pure numbers and what is not known.

@@ -44,9 +44,10 @@ pub fn viridis(fraction: f64) -> Colour {
 /// The colour of one of several regions. The last one, which is what no other has taken, is grey.
 pub fn of_region(region: u16, regions: usize) -> Colour {
     let number = usize::from(region);
-    match number + 1 >= regions {
-        true => unit(REGIONS[0]),
-        false => unit(REGIONS[1 + number % (REGIONS.len() - 1)]),
+    if number + 1 >= regions {
+        unit(REGIONS[0])
+    } else {
+        unit(REGIONS[1 + number % (REGIONS.len() - 1)])
     }
 }
 

@@ -147,9 +147,10 @@ fn cut_open(body: &Body, camera: &Camera, moved: &[Vector3], values: &[f64]) -> 
 fn short(value: f64, extent: f64) -> String {
     let digits = (2.0 - extent.max(1e-300).log10().floor()).clamp(0.0, 12.0) as usize;
     let text = format!("{:.digits$}", value.abs());
-    let text = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => text.as_str(),
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        text.as_str()
     };
     if value < 0.0 && text != "0" { format!("−{text}") } else { text.to_string() }
 }

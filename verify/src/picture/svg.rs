@@ -118,9 +118,10 @@ fn bar(scale: &Scale, [left, top]: [f64; 2]) -> String {
 /// Four digits without zeros at their end.
 fn trimmed(value: f64) -> String {
     let text = four_digits(value);
-    match text.contains('.') && !text.contains('×') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text,
+    if text.contains('.') && !text.contains('×') {
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        text
     }
 }
 

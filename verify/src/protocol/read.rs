@@ -231,9 +231,10 @@ fn numbers(
 }
 
 fn count(key: &str, found: usize, expected: usize, per: &'static str) -> Result<(), AnswerFault> {
-    match found == expected {
-        true => Ok(()),
-        false => Err(AnswerFault::Count { key: key.into(), found, expected, per }),
+    if found == expected {
+        Ok(())
+    } else {
+        Err(AnswerFault::Count { key: key.into(), found, expected, per })
     }
 }
 

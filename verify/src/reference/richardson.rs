@@ -133,9 +133,10 @@ fn with_order(
     let safety = if extrapolate { SAFETY } else { SAFETY_WITHOUT_ORDER };
     let factor = safety / (ratio.powf(order) - 1.0);
     let pairs = || fine.iter().zip(medium);
-    let values = match extrapolate {
-        true => pairs().map(|(&f, &m)| richardson(f, m, ratio, order)).collect(),
-        false => fine.to_vec(),
+    let values = if extrapolate {
+        pairs().map(|(&f, &m)| richardson(f, m, ratio, order)).collect()
+    } else {
+        fine.to_vec()
     };
     let errors = pairs().map(|(f, m)| (factor * (m - f).abs()).max(floor)).collect();
     Estimate { values, errors, basis }

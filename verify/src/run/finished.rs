@@ -88,9 +88,10 @@ pub fn solve_recorded(
 /// What was asked beside what was done, unless the user stopped the run before its end.
 fn audited(problem: &Problem, solved: &Solved) -> Result<Option<Audit>, Error> {
     let Solved { prepared, state, summary, .. } = solved;
-    match summary.stopped {
-        true => Ok(None),
-        false => audit(problem, &prepared.discretisation, &prepared.model, state).map(Some),
+    if summary.stopped {
+        Ok(None)
+    } else {
+        audit(problem, &prepared.discretisation, &prepared.model, state).map(Some)
     }
 }
 

@@ -82,10 +82,7 @@ fn recorded_bytes(case: &Case, footprint: &Footprint) -> f64 {
 /// Refuses where more is needed than available \[bytes\].
 fn refuse_beyond(footprint: Footprint, available: f64) -> Result<(), MemoryShortage> {
     // An estimate that overflows is NaN.
-    match footprint.bytes <= available {
-        true => Ok(()),
-        false => Err(MemoryShortage { footprint, available }),
-    }
+    if footprint.bytes <= available { Ok(()) } else { Err(MemoryShortage { footprint, available }) }
 }
 
 /// Peak memory, in total, per point and per node, beside the estimate.

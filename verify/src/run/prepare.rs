@@ -100,12 +100,11 @@ impl Prepared {
             1 => "a rigid motion".to_string(),
             several => format!("{several} rigid motions"),
         };
-        let consequence = match model.contact.obstacles.is_empty() {
-            true => "the result is one of many that differ by such a motion",
-            false => {
-                "only contact that closes during the run can hold it, and without friction that may \
+        let consequence = if model.contact.obstacles.is_empty() {
+            "the result is one of many that differ by such a motion"
+        } else {
+            "only contact that closes during the run can hold it, and without friction that may \
                  not be enough to converge"
-            }
         };
         Some(format!(
             "the conditions, and contacts that are closed at the start, leave {free} of the body \

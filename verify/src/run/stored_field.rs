@@ -89,9 +89,10 @@ impl StoredField {
     pub fn new(case: &Case, prepared: &Prepared, u: &[f64], stopped: bool) -> StoredField {
         let approximation = &prepared.discretisation.approximation;
         let file = Path::new(case.file());
-        let file = match file.is_file() {
-            true => std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf()),
-            false => PathBuf::from(&case.name),
+        let file = if file.is_file() {
+            std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf())
+        } else {
+            PathBuf::from(&case.name)
         };
         StoredField {
             schema_version: SCHEMA_VERSION,
@@ -147,9 +148,10 @@ impl StoredField {
         let numbers = self.nodes_m.iter().flatten().chain(&self.nodal_parameters_m);
         let sound = numbers.chain(&self.influence_radius_m).all(|number| number.abs() < LARGEST_M)
             && self.influence_radius_m.iter().all(|radius| *radius > 0.0);
-        match nodes > 0 && radii == nodes && parameters == components * nodes && sound {
-            true => Ok(()),
-            false => Err(FieldError::Damaged { path, nodes, components, radii, parameters }),
+        if nodes > 0 && radii == nodes && parameters == components * nodes && sound {
+            Ok(())
+        } else {
+            Err(FieldError::Damaged { path, nodes, components, radii, parameters })
         }
     }
 

@@ -70,9 +70,10 @@ impl Diagnostic {
     ) -> Diagnostic {
         let location = Location::of(file, text, span.start);
         let line = text.lines().nth(location.line - 1).unwrap_or("");
-        let shown_from = match line.len() > LONGEST_LINE {
-            true => (location.column - 1).saturating_sub(LONGEST_LINE / 2),
-            false => 0,
+        let shown_from = if line.len() > LONGEST_LINE {
+            (location.column - 1).saturating_sub(LONGEST_LINE / 2)
+        } else {
+            0
         };
         let source_line: String = line.chars().skip(shown_from).take(LONGEST_LINE).collect();
         let indent = (location.column - 1 - shown_from) as u32;

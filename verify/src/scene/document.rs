@@ -127,12 +127,11 @@ impl Document {
             if item.span().is_some_and(|own| own != span) {
                 return;
             }
-            match mistakes.len() < A_FEW {
-                true => {
-                    let message = format!("is {value}; it must be a finite number");
-                    mistakes.push(self.diagnostic_at(span, path.to_string(), message));
-                }
-                false => more += 1,
+            if mistakes.len() < A_FEW {
+                let message = format!("is {value}; it must be a finite number");
+                mistakes.push(self.diagnostic_at(span, path.to_string(), message));
+            } else {
+                more += 1;
             }
         });
         if let Some(last) = mistakes.last_mut().filter(|_| more > 0) {

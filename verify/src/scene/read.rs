@@ -34,15 +34,14 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     refuse_named_pipe(path)?;
     let mut text = String::new();
     File::open(path)?.take(LONGEST + 1).read_to_string(&mut text)?;
-    match text.len() as u64 <= LONGEST {
-        true => Ok(text),
-        false => {
-            let reason = format!(
-                "it has more than {LONGEST} bytes: put points into a file that it names \
+    if text.len() as u64 <= LONGEST {
+        Ok(text)
+    } else {
+        let reason = format!(
+            "it has more than {LONGEST} bytes: put points into a file that it names \
                  (`points`), or leave some out"
-            );
-            Err(io::Error::new(io::ErrorKind::FileTooLarge, reason))
-        }
+        );
+        Err(io::Error::new(io::ErrorKind::FileTooLarge, reason))
     }
 }
 

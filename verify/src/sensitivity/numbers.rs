@@ -28,9 +28,10 @@ impl Number {
     /// Half of the distance of the two values between which it is varied.
     pub fn step(&self) -> f64 {
         let step = STEP * self.value.abs();
-        match self.key.ends_with(".poisson_ratio") {
-            true => step.min(STEP_TO_HALF * (0.5 - self.value)),
-            false => step,
+        if self.key.ends_with(".poisson_ratio") {
+            step.min(STEP_TO_HALF * (0.5 - self.value))
+        } else {
+            step
         }
     }
 

@@ -212,9 +212,10 @@ impl DraftCase {
             .map(|(group, bound)| format!("{} {}", group.label(), percent(*bound)))
             .collect();
         let file = self.format.file.display();
-        match bounds.is_empty() {
-            true => format!("{file}: no errors are judged"),
-            false => format!("{file}: errors at most {}", bounds.join(", ")),
+        if bounds.is_empty() {
+            format!("{file}: no errors are judged")
+        } else {
+            format!("{file}: errors at most {}", bounds.join(", "))
         }
     }
 }

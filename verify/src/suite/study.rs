@@ -176,9 +176,10 @@ fn parts(case: &SuiteCase, quantity: &Quantity, values: &[f64]) -> Vec<(String, 
     let shown = if components == 1 { 1 } else { case.source.case.problem.dimension.components() };
     let part = |component: usize| {
         let own = || values.iter().skip(component).step_by(components);
-        let value = match history {
-            true => rms(&mut own().map(|value| value * value), own().count()),
-            false => own().next_back().copied().unwrap_or(f64::NAN),
+        let value = if history {
+            rms(&mut own().map(|value| value * value), own().count())
+        } else {
+            own().next_back().copied().unwrap_or(f64::NAN)
         };
         let over = if history { ", rms over the instants" } else { "" };
         match components {

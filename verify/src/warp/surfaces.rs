@@ -40,9 +40,10 @@ pub fn region_surfaces(
     for region in regions {
         match solid(&region.part, &problem.body) {
             Some(shape) => {
-                let own = match earlier.is_empty() {
-                    true => shape.clone(),
-                    false => without(&shape, Shape::Union(earlier.clone())),
+                let own = if earlier.is_empty() {
+                    shape.clone()
+                } else {
+                    without(&shape, Shape::Union(earlier.clone()))
                 };
                 shapes.push((format!("region_{}", region.name), own));
                 earlier.push(shape);

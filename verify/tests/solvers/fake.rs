@@ -1,9 +1,8 @@
 //! Solvers made of a few lines of shell, and a case with a made-up reference.
 
 use crate::common::{BLOCK, block, json, synthetic};
-use assert_cmd::Command;
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use crate::program::mtled;
+use std::path::PathBuf;
 use tempfile::TempDir;
 
 /// What every script starts with: values close to the reference, closer on finer levels, and a
@@ -72,16 +71,4 @@ impl Arena {
     pub fn about(&self, body: &str) -> Said {
         self.study(&[self.fake("fake", body)], &[])
     }
-}
-
-pub fn mtled(dir: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_mtled"));
-    let output = command
-        .current_dir(dir)
-        .args(arguments)
-        .timeout(Duration::from_secs(120))
-        .output()
-        .unwrap();
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
 }

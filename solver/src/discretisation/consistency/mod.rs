@@ -62,9 +62,10 @@ impl Correction {
     /// such a discretisation may be so small that no run ends.
     pub fn checked(self) -> Result<Correction, Error> {
         let Correction { iterations, residual, .. } = self;
-        match residual <= 1.0 || residual * self.defect <= ROUND_OFF {
-            true => Ok(self),
-            false => Err(Error::DivergedCorrection { iterations, residual }),
+        if residual <= 1.0 || residual * self.defect <= ROUND_OFF {
+            Ok(self)
+        } else {
+            Err(Error::DivergedCorrection { iterations, residual })
         }
     }
 }

@@ -61,9 +61,10 @@ impl Approximation {
         let mean = influence_radius.iter().sum::<f64>() / influence_radius.len() as f64;
         let neighbours = Neighbours::new(&nodes, 0.6 * mean);
         let components = dimension.components();
-        let reaches = match smallest_radius == largest_radius {
-            true => Vec::new(),
-            false => neighbours.reaches(&influence_radius),
+        let reaches = if smallest_radius == largest_radius {
+            Vec::new()
+        } else {
+            neighbours.reaches(&influence_radius)
         };
         Approximation {
             nodes,
@@ -83,9 +84,10 @@ impl Approximation {
 
     /// No node farther away covers X \[m\] with radii enlarged by a factor.
     pub(super) fn reach(&self, X: &Vector3, enlargement: f64) -> f64 {
-        match self.reaches.is_empty() || enlargement > 1.0 {
-            true => self.largest_radius * enlargement,
-            false => self.reaches[self.neighbours.cell_of(X)],
+        if self.reaches.is_empty() || enlargement > 1.0 {
+            self.largest_radius * enlargement
+        } else {
+            self.reaches[self.neighbours.cell_of(X)]
         }
     }
 

@@ -19,9 +19,10 @@ impl Approximation {
                 count += 1.0;
             }
         });
-        match count > 0.0 {
-            true => sum / count,
-            false => self.influence_radius.iter().sum::<f64>() / self.influence_radius.len() as f64,
+        if count > 0.0 {
+            sum / count
+        } else {
+            self.influence_radius.iter().sum::<f64>() / self.influence_radius.len() as f64
         }
     }
 

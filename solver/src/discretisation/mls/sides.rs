@@ -79,9 +79,10 @@ impl Stiffness {
         let (own, way) = (self.at(&from), to - from);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (from + to);
-            match self.at(&middle) == own {
-                true => from = middle,
-                false => to = middle,
+            if self.at(&middle) == own {
+                from = middle;
+            } else {
+                to = middle;
             }
         }
         let thin = self.is_thin(&from, own, spacing, flat);

@@ -163,9 +163,10 @@ impl Visibility {
         let (a, b) = (a as usize, b as usize);
         let spacing = self.spacing[a].min(self.spacing[b]);
         let reach = SOUGHT * self.dilation * spacing;
-        match (self.nodes[a].X - self.nodes[b].X).norm_squared() < reach * reach {
-            true => self.barred[a].binary_search(&(b as u32)).is_err(),
-            false => !self.body.parts(&self.nodes[a], &self.nodes[b], spacing),
+        if (self.nodes[a].X - self.nodes[b].X).norm_squared() < reach * reach {
+            self.barred[a].binary_search(&(b as u32)).is_err()
+        } else {
+            !self.body.parts(&self.nodes[a], &self.nodes[b], spacing)
         }
     }
 }

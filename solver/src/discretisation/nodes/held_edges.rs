@@ -194,9 +194,10 @@ impl<'a> HeldParts<'a> {
         let Bracket { held, free, halvings } = bracket;
         let middle = project(self.body, &(0.5 * (held + free)));
         let halvings = halvings + 1;
-        match condition.part.contains(&middle) {
-            true => Bracket { held: middle, free, halvings },
-            false => Bracket { held, free: middle, halvings },
+        if condition.part.contains(&middle) {
+            Bracket { held: middle, free, halvings }
+        } else {
+            Bracket { held, free: middle, halvings }
         }
     }
 

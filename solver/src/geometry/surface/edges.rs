@@ -114,13 +114,10 @@ fn paired(
     faces.rotate_left(start);
     let mut waiting = Vec::new();
     for (_, opens, edge) in faces {
-        match opens {
-            true => waiting.push(edge),
-            false => {
-                if let Some(other) = waiting.pop() {
-                    join(edge, other);
-                }
-            }
+        if opens {
+            waiting.push(edge)
+        } else if let Some(other) = waiting.pop() {
+            join(edge, other);
         }
     }
 }

@@ -190,13 +190,12 @@ fn around(triangles: &[(Triangle, u32)]) -> Node {
     let areas = triangles.iter().map(|(t, _)| area_vector(t));
     let (mean, sum) =
         areas.fold((Vector3::zeros(), 0.0), |(mean, sum), area| (mean + area, sum + area.norm()));
-    let axes = match mean.norm() > 0.5 * sum {
-        true => {
-            let normal = mean.normalize();
-            let (u, v) = perpendicular(&normal);
-            [normal, u, v]
-        }
-        false => [Vector3::x(), Vector3::y(), Vector3::z()],
+    let axes = if mean.norm() > 0.5 * sum {
+        let normal = mean.normalize();
+        let (u, v) = perpendicular(&normal);
+        [normal, u, v]
+    } else {
+        [Vector3::x(), Vector3::y(), Vector3::z()]
     };
     let (mut lower, mut upper) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for vertex in triangles.iter().flat_map(|(t, _)| t) {

@@ -102,12 +102,13 @@ impl Nest {
                 continue;
             }
             // All that is in an outermost shell faces the wrong way with it.
-            let within: Vec<usize> = match self.around[shell].is_empty() {
-                true => (0..self.shells.len())
+            let within: Vec<usize> = if self.around[shell].is_empty() {
+                (0..self.shells.len())
                     .filter(|other| self.around[*other].contains(&shell))
                     .filter(|other| turned.insert(*other))
-                    .collect(),
-                false => Vec::new(),
+                    .collect()
+            } else {
+                Vec::new()
             };
             for &one in within.iter().chain([&shell]) {
                 self.signs[one] = -self.signs[one];

@@ -30,9 +30,10 @@ pub fn pack(
         let of = |lane: usize| slot[lane].node().map_or(unused[lane], |e| place(supports.nodes[e]));
         places.push([of(0), of(1), of(2), of(3)]);
     }
-    let grad_phi = match single {
-        false => StoredGradients::Double(gradients(supports, &entries, components)),
-        true => StoredGradients::Single(gradients(supports, &entries, components)),
+    let grad_phi = if single {
+        StoredGradients::Single(gradients(supports, &entries, components))
+    } else {
+        StoredGradients::Double(gradients(supports, &entries, components))
     };
     Packed { starts, places, grad_phi }
 }

@@ -69,9 +69,10 @@ fn block(
     };
     let projected = fraction > 0.0;
     let order = by_size(starts, &discretisation.supports, projected);
-    let sizes: Vec<usize> = match projected {
-        true => starts.windows(2).map(|patch| patch[1] - patch[0]).collect(),
-        false => order.chunks(CHUNK).map(<[usize]>::len).collect(),
+    let sizes: Vec<usize> = if projected {
+        starts.windows(2).map(|patch| patch[1] - patch[0]).collect()
+    } else {
+        order.chunks(CHUNK).map(<[usize]>::len).collect()
     };
     let mut chunks: Vec<Chunk> = Vec::with_capacity(sizes.len());
     for size in sizes {

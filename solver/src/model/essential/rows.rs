@@ -54,9 +54,10 @@ fn refuse_unknown(
             return Err(Error::BeyondData { name, node, position, distance, reach });
         }
     }
-    match field.at(&position).iter().all(|component| component.is_finite()) {
-        true => Ok(()),
-        false => Err(Error::NoDisplacement { name, node, position }),
+    if field.at(&position).iter().all(|component| component.is_finite()) {
+        Ok(())
+    } else {
+        Err(Error::NoDisplacement { name, node, position })
     }
 }
 

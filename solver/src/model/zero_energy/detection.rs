@@ -67,9 +67,10 @@ pub fn zero_energy_modes(
 pub fn tested_points(discretisation: &Discretisation) -> f64 {
     let (points, nodes) = (discretisation.supports.len(), discretisation.deforming_nodes());
     let few = points as f64 <= FEW * nodes as f64;
-    match few || points_per_spacing(discretisation).iter().any(|&density| density < FEW) {
-        true => f64::max(POINTS_PER_POINT * points as f64, POINTS_PER_NODE * nodes as f64),
-        false => 0.0,
+    if few || points_per_spacing(discretisation).iter().any(|&density| density < FEW) {
+        f64::max(POINTS_PER_POINT * points as f64, POINTS_PER_NODE * nodes as f64)
+    } else {
+        0.0
     }
 }
 

@@ -145,9 +145,10 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
             let pressure = projection.map(|_| &*pressure);
             let results = (&mut *stress, &mut *jacobian, is_known);
             // In a plane half of a law is not needed; a derivative is, rarely enough.
-            match D == 2 && !R::SLOPES {
-                true => stresses::<S, R, _, 2>(simd, law, count, deformation, pressure, results),
-                false => stresses::<S, R, _, 3>(simd, law, count, deformation, pressure, results),
+            if D == 2 && !R::SLOPES {
+                stresses::<S, R, _, 2>(simd, law, count, deformation, pressure, results)
+            } else {
+                stresses::<S, R, _, 3>(simd, law, count, deformation, pressure, results)
             }
         });
         for (lane, value) in lanes.clone().zip(jacobian.values.iter().flat_map(|block| block.0)) {

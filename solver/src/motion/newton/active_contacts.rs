@@ -153,13 +153,14 @@ impl ActiveContacts {
             let (x, free) = (place(model, contact.node, u), model.contact.free(contact.node));
             let n = normal(obstacle, &x, free);
             let lambda = force.force.dot(&n).max(0.0);
-            let turn = Matrix3::from_columns(&[0, 1, 2].map(|k| match free[k] {
-                true => {
+            let turn = Matrix3::from_columns(&[0, 1, 2].map(|k| {
+                if free[k] {
                     let aside = step * Vector3::ith(k, 1.0);
                     let ahead = normal(obstacle, &(x + aside), free);
                     (ahead - normal(obstacle, &(x - aside), free)) / (2.0 * step)
+                } else {
+                    Vector3::zeros()
                 }
-                false => Vector3::zeros(),
             }));
             let along = Matrix3::identity() - n * n.transpose();
             let symmetric = -0.5 * lambda * (turn + turn.transpose());
@@ -209,9 +210,10 @@ fn crossing(obstacle: &Obstacle, outside: &Vector3, inside: &Vector3, free: Comp
     if gap(obstacle, outside) > 0.0 {
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
-            match gap(obstacle, &outside.lerp(inside, middle)) >= 0.0 {
-                true => low = middle,
-                false => high = middle,
+            if gap(obstacle, &outside.lerp(inside, middle)) >= 0.0 {
+                low = middle;
+            } else {
+                high = middle;
             }
         }
     }

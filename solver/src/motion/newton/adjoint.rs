@@ -120,9 +120,10 @@ impl<'a> Balanced<'a> {
         let left = self.left_by(&z, forces);
         let free = self.free_part(&left);
         let residual = self.product(&free, &free).sqrt() / first;
-        match residual > UNSOLVED || residual.is_nan() && first > 0.0 {
-            true => Err(Error::NoSensitivity { residual, limit: UNSOLVED }),
-            false => Ok((z, left)),
+        if residual > UNSOLVED || residual.is_nan() && first > 0.0 {
+            Err(Error::NoSensitivity { residual, limit: UNSOLVED })
+        } else {
+            Ok((z, left))
         }
     }
 

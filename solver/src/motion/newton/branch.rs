@@ -78,9 +78,10 @@ impl Branch {
             let found = self.stability.search(model, here, &mut buffers.workspace);
             let Some(motion) = found else { return Ok(equilibrium) };
             let motion = of_unit_size(motion);
-            let next = match led {
-                true => solver.lead(&equilibrium.u, &motion, load, buffers, observer),
-                false => None,
+            let next = if led {
+                solver.lead(&equilibrium.u, &motion, load, buffers, observer)
+            } else {
+                None
             };
             match next {
                 Some(next) => equilibrium = next.equilibrium,

@@ -57,9 +57,10 @@ fn drift_of(
     let d = model.components;
     let mut drift = Vec::with_capacity(model.size());
     for (node, X) in model.positions.iter().enumerate() {
-        let velocity = match model.bodies[node] == body {
-            true => motion(&(X + vector_at(u, node, d))),
-            false => Vector3::zeros(),
+        let velocity = if model.bodies[node] == body {
+            motion(&(X + vector_at(u, node, d)))
+        } else {
+            Vector3::zeros()
         };
         drift.extend((0..d).map(|k| velocity[k]));
     }

@@ -108,14 +108,11 @@ impl<'a> FreeSpace<'a> {
 
     /// Π v.
     pub fn project(&mut self, v: &mut [f64]) {
-        match self.together.is_some() {
-            true => {
-                self.project_contacts(v);
-            }
-            false => {
-                let inertia = &self.model.inertia;
-                self.model.constraints.project(self.t, inertia, v, &mut self.forces);
-            }
+        if self.together.is_some() {
+            self.project_contacts(v);
+        } else {
+            let inertia = &self.model.inertia;
+            self.model.constraints.project(self.t, inertia, v, &mut self.forces);
         }
     }
 

@@ -133,14 +133,16 @@ impl Solver<'_> {
         let asked = largest(&self.jump(start, fraction));
         let solved = self.iterate(start, load, buffers, observer);
         // Whatever an iteration does, it may not end short of what is prescribed.
-        let solved =
-            solved.and_then(|now| match is_left(&self.jump(&now.u, fraction), asked, &now.u) {
-                true => Err(Unsolved::Failed {
+        let solved = solved.and_then(|now| {
+            if is_left(&self.jump(&now.u, fraction), asked, &now.u) {
+                Err(Unsolved::Failed {
                     residual: now.exact().relative(self.model),
                     indefinite: false,
-                }),
-                false => Ok(now),
-            });
+                })
+            } else {
+                Ok(now)
+            }
+        });
         if matches!(solved, Err(Unsolved::Failed { .. })) {
             (self.contacts, self.pressures) = (contacts, pressures);
         }
@@ -287,9 +289,10 @@ impl Solver<'_> {
     /// unbalanced forces \[N\] do not drive.
     pub(super) fn close(&mut self, u: &[f64], force: &[f64]) {
         let rows = self.contacts.rows(self.model, u);
-        let stopped = match self.floating {
-            true => drifts(self.model, self.free.t, u, &rows, force),
-            false => Vec::new(),
+        let stopped = if self.floating {
+            drifts(self.model, self.free.t, u, &rows, force)
+        } else {
+            Vec::new()
         };
         self.free.close(rows, &stopped);
     }
@@ -312,9 +315,10 @@ impl Solver<'_> {
 
     /// Of the rows of the closed contacts \[N\].
     fn contact_multipliers(&mut self, imbalance: &Imbalance) -> Vec<f64> {
-        match self.free.contacts.is_empty() {
-            true => Vec::new(),
-            false => self.free.project_contacts(&mut self.model.accelerations(&imbalance.force)),
+        if self.free.contacts.is_empty() {
+            Vec::new()
+        } else {
+            self.free.project_contacts(&mut self.model.accelerations(&imbalance.force))
         }
     }
 

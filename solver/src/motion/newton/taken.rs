@@ -105,9 +105,10 @@ impl Solver<'_> {
         }
         let smallest = now.imbalance.smallest_jacobian.jacobian.min(1.0);
         // Of a jump without contact the rest can follow.
-        let (halvings, volume) = match from.is_some() && model.contact.obstacles.is_empty() {
-            true => (MOST_HALVINGS, SMALLEST_VOLUME_IN_JUMP),
-            false => (0, SMALLEST_VOLUME),
+        let (halvings, volume) = if from.is_some() && model.contact.obstacles.is_empty() {
+            (MOST_HALVINGS, SMALLEST_VOLUME_IN_JUMP)
+        } else {
+            (0, SMALLEST_VOLUME)
         };
         let taken = (0..=halvings).find_map(|halvings| {
             let length = length * 0.5f64.powi(halvings as i32);

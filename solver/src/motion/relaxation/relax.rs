@@ -220,9 +220,10 @@ fn residual(model: &Model, state: &mut State, buffers: &mut Buffers) -> f64 {
 fn progress(count: usize, settings: &Relaxation, convergence: &Convergence, size: f64) -> f64 {
     let loaded = (count as f64 / settings.load_steps as f64).min(1.0);
     let relative = convergence.estimated_error / size;
-    let fallen = match relative.is_finite() && relative > 0.0 {
-        true => (relative.min(1.0).ln() / settings.tolerance.ln()).clamp(0.0, 1.0),
-        false => 0.0,
+    let fallen = if relative.is_finite() && relative > 0.0 {
+        (relative.min(1.0).ln() / settings.tolerance.ln()).clamp(0.0, 1.0)
+    } else {
+        0.0
     };
     // Not at its end before the residual confirms the error.
     (0.5 * loaded + 0.5 * fallen).min(0.999)

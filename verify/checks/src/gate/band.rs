@@ -106,9 +106,10 @@ fn scale_of(samples: &[f64]) -> Scale {
         return Scale::Linear;
     }
     let logarithms: Vec<f64> = samples.iter().map(|value| value.ln()).collect();
-    match skewness(&logarithms).abs() <= skewness(samples).abs() {
-        true => Scale::Logarithmic,
-        false => Scale::Linear,
+    if skewness(&logarithms).abs() <= skewness(samples).abs() {
+        Scale::Logarithmic
+    } else {
+        Scale::Linear
     }
 }
 

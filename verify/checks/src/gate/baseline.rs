@@ -126,9 +126,12 @@ impl Baseline {
         let suite = line(&self.suite);
         let history: Vec<String> = self.history.iter().map(line).collect();
         let checks: Vec<String> = self.checks.iter().map(line).collect();
-        let list = |lines: Vec<String>| match lines.is_empty() {
-            true => "[]".to_string(),
-            false => format!("[\n    {}\n  ]", lines.join(",\n    ")),
+        let list = |lines: Vec<String>| {
+            if lines.is_empty() {
+                "[]".to_string()
+            } else {
+                format!("[\n    {}\n  ]", lines.join(",\n    "))
+            }
         };
         format!(
             "{{\n  \"schema_version\": {},\n  \"suite\": {suite},\n  \"false_alarms\": {},\n  \

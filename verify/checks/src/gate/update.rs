@@ -122,9 +122,10 @@ pub fn difference(old: Option<&Baseline>, new: &Baseline) -> Vec<String> {
                 lines.push(format!("~ {} {}{}", now.id, now.value, within(&now.band)));
             }
             Some(old) => {
-                let bound = match old.bound == now.bound {
-                    true => String::new(),
-                    false => format!(", bound {:?}, was {:?}", now.bound, old.bound),
+                let bound = if old.bound == now.bound {
+                    String::new()
+                } else {
+                    format!(", bound {:?}, was {:?}", now.bound, old.bound)
                 };
                 let (from, to) = (old.value, now.value);
                 lines.push(format!("~ {} {from} → {to}{}{bound}", now.id, within(&now.band)));

@@ -25,9 +25,8 @@ pub(super) fn figure_text(value: f64) -> String {
 /// `0.0101 mm → 0.0312 mm`.
 pub(super) fn change_text(change: &Change) -> String {
     let unit = unit_suffix(&change.unit);
-    let figure = |value: f64| match value.is_nan() {
-        true => "nothing".to_string(),
-        false => format!("{}{unit}", four_digits(value)),
+    let figure = |value: f64| {
+        if value.is_nan() { "nothing".to_string() } else { format!("{}{unit}", four_digits(value)) }
     };
     format!("{} → {}", figure(change.before), figure(change.now))
 }

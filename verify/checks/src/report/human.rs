@@ -161,10 +161,7 @@ fn check_table(study: &Study, colour: bool, width: u16) -> Table {
 
 fn verdict(outcome: Outcome, colour: bool) -> Cell {
     let cell = Cell::new(outcome.word());
-    match colour {
-        false => cell,
-        true => cell.fg(colour_of(outcome).0).add_attribute(Attribute::Bold),
-    }
+    if colour { cell.fg(colour_of(outcome).0).add_attribute(Attribute::Bold) } else { cell }
 }
 
 /// Colour in tables, and its ANSI code.

@@ -81,9 +81,10 @@ fn failure(check: &Check) -> Option<Failure> {
     if let Some(file) = check.failure_file() {
         description += &format!("\nthe smallest case that shows it: {file}");
     }
-    let (element, message) = match check.pass {
-        true => ("skipped", format!("{quantity}: {value}{unit} is new, and nothing judges it")),
-        false => ("failure", format!("{quantity}: {value}{unit} breaks {bound}{unit}")),
+    let (element, message) = if check.pass {
+        ("skipped", format!("{quantity}: {value}{unit} is new, and nothing judges it"))
+    } else {
+        ("failure", format!("{quantity}: {value}{unit} breaks {bound}{unit}"))
     };
     Some(Failure { element, kind: check.kind.name(), message, description })
 }

@@ -82,9 +82,10 @@ impl Report {
     /// How it ended, beside the baseline too.
     pub fn outcome(&self) -> Outcome {
         let studies = self.studies.iter().map(Study::outcome).max().unwrap_or(Outcome::Passed);
-        match self.comparison.as_ref().is_none_or(|comparison| comparison.holds()) {
-            true => studies,
-            false => studies.max(Outcome::Failed),
+        if self.comparison.as_ref().is_none_or(|comparison| comparison.holds()) {
+            studies
+        } else {
+            studies.max(Outcome::Failed)
         }
     }
 

@@ -3,7 +3,7 @@
 use super::filter::FilterArgs;
 use crate::cli::common::Common;
 use crate::cli::streams::print_data;
-use crate::explore::records::{quantities_are_missing, runs_table, to_csv};
+use crate::explore::records::{quantities_are_missing, runs_table};
 use anyhow::{Result, bail};
 use clap::Args;
 use mtled_checks::report::{ensure_writable, write_atomically};
@@ -24,7 +24,7 @@ const TABLE: &str = "The table has one row for each run and number that it gave:
 probe with several), `component`, `time_s`, `value`, `unit`. Other columns say which run it is,
 its settings (empty where the run has those of its case), its sizes, CPU times, counts of work,
 date and version. A run that failed has one row, with the reason. Errors depend on a reference;
-they are in the reports of studies.
+they are in the reports of studies. Where Parquet is useful, pandas or DuckDB make it of the table.
 
 Examples:
   mtled runs export -o runs.csv
@@ -48,13 +48,12 @@ pub fn export(arguments: &ExportArgs, common: &Common) -> Result<u8> {
              are; of these the table has the other figures only"
         ));
     }
-    let table = runs_table(&chosen.records);
-    let bytes = to_csv(&table)?;
+    let (bytes, rows) = runs_table(&chosen.records)?;
     match &arguments.output {
         None => print_data(&String::from_utf8(bytes)?)?,
         Some(file) => {
             write_atomically(file, &bytes)?;
-            let (runs, rows) = (chosen.records.len(), table.rows);
+            let runs = chosen.records.len();
             let json = || Ok(format!("{}\n", json!({ "file": file, "runs": runs, "rows": rows })));
             common.print_summary(&json, &|| {
                 format!("{rows} rows of {runs} runs in {}\n", file.display())

@@ -67,9 +67,10 @@ const DEFAULT_GOAL: Goal = Goal::Error(0.02);
 
 pub fn tune_cases(arguments: &TuneArgs, common: &Common) -> Result<u8> {
     let store = arguments.error.store.open()?;
-    let names: Vec<String> = match arguments.all_cases {
-        true => small_cases().map(String::from).collect(),
-        false => arguments.cases.clone(),
+    let names: Vec<String> = if arguments.all_cases {
+        small_cases().map(String::from).collect()
+    } else {
+        arguments.cases.clone()
     };
     let requests = names.iter().map(|name| request(name, arguments, &store));
     let requests = requests.collect::<Result<Vec<_>>>()?;

@@ -72,9 +72,10 @@ pub fn examine<'a>(
         Search::Always => true,
         Search::Never => false,
     };
-    let modes = match searched {
-        true => Some(zero_energy_modes(&case.problem, discretisation, model)?),
-        false => None,
+    let modes = if searched {
+        Some(zero_energy_modes(&case.problem, discretisation, model)?)
+    } else {
+        None
     };
     Ok(Inspection {
         case,

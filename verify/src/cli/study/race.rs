@@ -43,9 +43,10 @@ pub fn race_study(arguments: &RaceArgs, common: &Common) -> Result<u8> {
     ensure_writable(&arguments.out)?;
     let start = Instant::now();
     let say = |text: &str| common.note(text);
-    let challenges = match arguments.cases.is_empty() {
-        true => Challenge::value_variants().to_vec(),
-        false => arguments.cases.clone(),
+    let challenges = if arguments.cases.is_empty() {
+        Challenge::value_variants().to_vec()
+    } else {
+        arguments.cases.clone()
     };
     let interpreters = if arguments.stored { Vec::new() } else { interpreters(arguments, &say) };
     let settings = RaceSettings { challenges, repetitions: arguments.repeat.into(), interpreters };

@@ -80,9 +80,10 @@ fn contest(arguments: &SolversArgs, folder: &Path) -> Result<Contest> {
     };
     let references: Vec<(String, String)> =
         arguments.references.iter().map(read).collect::<Result<_>>()?;
-    let names = match arguments.cases.is_empty() {
-        true => REFERENCES.iter().map(|(name, _)| name.to_string()).collect(),
-        false => arguments.cases.clone(),
+    let names = if arguments.cases.is_empty() {
+        REFERENCES.iter().map(|(name, _)| name.to_string()).collect()
+    } else {
+        arguments.cases.clone()
     };
     let case = |name: &String| {
         let source = Source::find(name, folder, &[]).context("the case cannot be used")?;

@@ -3,9 +3,6 @@
 mod csv;
 mod filter;
 mod rows;
-mod table;
 
-pub use csv::to_csv;
 pub use filter::{FilterError, RunFilter, Wanted};
 pub use rows::{quantities_are_missing, runs_table};
-pub use table::{Cells, Column, Table};

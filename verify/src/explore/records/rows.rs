@@ -1,10 +1,11 @@
 //! Records as a tidy table: one row for each run and number that it gave.
 
-use super::table::{Cells, Column, Table};
+use super::csv;
 use crate::explore::store::{RunOutcome, RunRecord, Stage};
 use crate::reference::Quantity;
 use crate::run::Work;
 use crate::scene::{Knob, Level, Levels};
+use anyhow::Result;
 
 /// Figures that have a column of their own, since others depend on them.
 const SIZES: [&str; 3] = ["spacing_m", "nodes", "points"];
@@ -28,15 +29,18 @@ struct Number<'a> {
     time_s: Option<f64>,
 }
 
-/// The table of records. Settings that a run leaves as they are in its case are empty.
-pub fn runs_table(records: &[RunRecord]) -> Table {
+type Column<'a> = csv::Column<Row<'a>>;
+
+/// The table of records as CSV, and the number of its rows. Settings that a run leaves as they
+/// are in its case are empty.
+pub fn runs_table(records: &[RunRecord]) -> Result<(Vec<u8>, usize)> {
     let rows: Vec<Row> = records.iter().flat_map(rows).collect();
-    let mut columns = about_the_run(&rows);
-    columns.extend(settings(&rows));
-    columns.extend(sizes(&rows));
-    columns.extend(about_the_number(&rows));
-    columns.extend(effort(&rows));
-    Table { columns, rows: rows.len() }
+    let mut columns = about_the_run();
+    columns.extend(Knob::ALL.iter().copied().map(setting));
+    columns.extend(sizes());
+    columns.extend(about_the_number());
+    columns.extend(effort());
+    Ok((csv::to_csv(&columns, &rows)?, rows.len()))
 }
 
 /// Whether a record does not say what its values are, as those of earlier versions; they are
@@ -50,10 +54,10 @@ pub fn quantities_are_missing(record: &RunRecord) -> bool {
 
 fn rows(record: &RunRecord) -> Vec<Row<'_>> {
     let numbers = numbers(record);
-    match numbers.is_empty() {
-        true => vec![Row { record, number: None }],
-        false => numbers.into_iter().map(|number| Row { record, number: Some(number) }).collect(),
+    if numbers.is_empty() {
+        return vec![Row { record, number: None }];
     }
+    numbers.into_iter().map(|number| Row { record, number: Some(number) }).collect()
 }
 
 fn numbers(record: &RunRecord) -> Vec<Number<'_>> {
@@ -87,10 +91,7 @@ fn series_of<'a>(
         value: *value,
         position: (width > components).then_some(index % width / components),
         component: (components > 1).then(|| AXES[index % components]),
-        time_s: match quantity.changes {
-            true => record.times_s.get(index / width).copied(),
-            false => None,
-        },
+        time_s: record.times_s.get(index / width).copied().filter(|_| quantity.changes),
     })
 }
 
@@ -104,20 +105,8 @@ fn unit_of_figure(name: &str) -> &'static str {
     }
 }
 
-fn text(name: &'static str, rows: &[Row], cell: impl Fn(&Row) -> Option<String>) -> Column {
-    Column { name, cells: Cells::Text(rows.iter().map(cell).collect()) }
-}
-
-fn count(name: &'static str, rows: &[Row], cell: impl Fn(&Row) -> Option<i64>) -> Column {
-    Column { name, cells: Cells::Count(rows.iter().map(cell).collect()) }
-}
-
-fn number(name: &'static str, rows: &[Row], cell: impl Fn(&Row) -> Option<f64>) -> Column {
-    Column { name, cells: Cells::Number(rows.iter().map(cell).collect()) }
-}
-
 /// Which run it is and how it ended.
-fn about_the_run(rows: &[Row]) -> Vec<Column> {
+fn about_the_run<'a>() -> Vec<Column<'a>> {
     let outcome = |row: &Row| match &row.record.outcome {
         RunOutcome::Done { .. } => "done",
         RunOutcome::Failed { stage: Stage::Refused, .. } => "refused",
@@ -132,32 +121,33 @@ fn about_the_run(rows: &[Row]) -> Vec<Column> {
         _ => None,
     };
     vec![
-        text("key", rows, |row| Some(row.record.key.clone())),
-        text("run", rows, |row| Some(row.record.job.name().into())),
-        text("case_name", rows, |row| Some(row.record.case.clone())),
-        text("overrides", rows, overrides),
-        text("outcome", rows, |row| Some(outcome(row).into())),
-        text("reason", rows, |row| row.record.failure().map(String::from)),
-        text("warnings", rows, warnings),
+        Column::text("key", |row| Some(row.record.key.clone())),
+        Column::text("run", |row| Some(row.record.job.name().into())),
+        Column::text("case_name", |row| Some(row.record.case.clone())),
+        Column::text("overrides", overrides),
+        Column::text("outcome", move |row| Some(outcome(row).into())),
+        Column::text("reason", |row| row.record.failure().map(String::from)),
+        Column::text("warnings", warnings),
     ]
 }
 
-/// A column for every knob, of the kind of its levels.
-fn settings(rows: &[Row]) -> Vec<Column> {
-    let column = |&knob: &Knob| {
-        let level = |row: &Row| row.record.setting(knob).map(|setting| setting.level.clone());
-        match knob.levels() {
-            // In metres it is a size.
-            _ if knob == Knob::Spacing => number("spacing_factor", rows, |row| match level(row)? {
+/// The column of a knob, of the kind of its levels.
+fn setting<'a>(knob: Knob) -> Column<'a> {
+    let level = move |row: &Row| row.record.setting(knob).map(|setting| setting.level.clone());
+    match knob.levels() {
+        // In metres it is a size.
+        _ if knob == Knob::Spacing => {
+            Column::number("spacing_factor", move |row| match level(row)? {
                 Level::Word(factor) => factor.strip_prefix('x')?.parse().ok(),
                 Level::Number(_) => None,
-            }),
-            Levels::Word(_) => text(knob.name(), rows, |row| Some(level(row)?.to_string())),
-            Levels::Count => count(knob.name(), rows, |row| Some(as_number(&level(row)?)? as i64)),
-            Levels::Number => number(knob.name(), rows, |row| as_number(&level(row)?)),
+            })
         }
-    };
-    Knob::ALL.iter().map(column).collect()
+        Levels::Word(_) => Column::text(knob.name(), move |row| Some(level(row)?.to_string())),
+        Levels::Count => {
+            Column::count(knob.name(), move |row| Some(as_number(&level(row)?)? as i64))
+        }
+        Levels::Number => Column::number(knob.name(), move |row| as_number(&level(row)?)),
+    }
 }
 
 fn as_number(level: &Level) -> Option<f64> {
@@ -168,27 +158,26 @@ fn as_number(level: &Level) -> Option<f64> {
 }
 
 /// How fine the discretisation is; the spacing of a run that failed where it was set.
-fn sizes(rows: &[Row]) -> Vec<Column> {
+fn sizes<'a>() -> Vec<Column<'a>> {
     let spacing = |row: &Row| {
         let set = || as_number(&row.record.setting(Knob::Spacing)?.level);
         row.record.figure("spacing_m").or_else(set)
     };
     vec![
-        number("spacing_m", rows, spacing),
-        count("nodes", rows, |row| row.record.figure("nodes").map(|nodes| nodes as i64)),
-        count("points", rows, |row| row.record.figure("points").map(|points| points as i64)),
+        Column::number("spacing_m", spacing),
+        Column::count("nodes", |row| row.record.figure("nodes").map(|nodes| nodes as i64)),
+        Column::count("points", |row| row.record.figure("points").map(|points| points as i64)),
     ]
 }
 
-fn about_the_number(rows: &[Row]) -> Vec<Column> {
-    let is = |row: &Row, field: fn(&Number) -> Option<String>| row.number.as_ref().and_then(field);
+fn about_the_number<'a>() -> Vec<Column<'a>> {
     vec![
-        text("quantity", rows, |row| is(row, |number| Some(number.quantity.into()))),
-        count("position", rows, |row| Some(row.number.as_ref()?.position? as i64)),
-        text("component", rows, |row| is(row, |number| number.component.map(String::from))),
-        number("time_s", rows, |row| row.number.as_ref()?.time_s),
-        number("value", rows, |row| row.number.as_ref().map(|number| number.value)),
-        text("unit", rows, |row| is(row, |number| Some(number.unit.into()))),
+        Column::text("quantity", |row| Some(row.number.as_ref()?.quantity.into())),
+        Column::count("position", |row| Some(row.number.as_ref()?.position? as i64)),
+        Column::text("component", |row| row.number.as_ref()?.component.map(String::from)),
+        Column::number("time_s", |row| row.number.as_ref()?.time_s),
+        Column::number("value", |row| row.number.as_ref().map(|number| number.value)),
+        Column::text("unit", |row| Some(row.number.as_ref()?.unit.into())),
     ]
 }
 
@@ -196,7 +185,7 @@ fn about_the_number(rows: &[Row]) -> Vec<Column> {
 type Counter = (&'static str, fn(&Work) -> usize);
 
 /// What the run took, where, when and by which program.
-fn effort(rows: &[Row]) -> Vec<Column> {
+fn effort<'a>() -> Vec<Column<'a>> {
     let counters: [Counter; 7] = [
         ("steps", |work| work.steps),
         ("force_evaluations", |work| work.force_evaluations),
@@ -207,17 +196,17 @@ fn effort(rows: &[Row]) -> Vec<Column> {
         ("bytes_streamed", |work| work.bytes_streamed),
     ];
     let mut columns = vec![
-        number("set_up_cpu_s", rows, |row| Some(row.record.timings.set_up_cpu_s)),
-        number("solve_cpu_s", rows, |row| Some(row.record.timings.solve_cpu_s)),
+        Column::number("set_up_cpu_s", |row| Some(row.record.timings.set_up_cpu_s)),
+        Column::number("solve_cpu_s", |row| Some(row.record.timings.solve_cpu_s)),
     ];
     columns.extend(
         counters
-            .map(|(name, of)| count(name, rows, move |row| Some(of(row.record.work()?) as i64))),
+            .map(|(name, of)| Column::count(name, move |row| Some(of(row.record.work()?) as i64))),
     );
     columns.extend([
-        text("processor", rows, |row| Some(row.record.timings.processor.clone())),
-        text("date", rows, |row| Some(row.record.timings.date.clone())),
-        text("version", rows, |row| Some(row.record.solver.clone())),
+        Column::text("processor", |row| Some(row.record.timings.processor.clone())),
+        Column::text("date", |row| Some(row.record.timings.date.clone())),
+        Column::text("version", |row| Some(row.record.solver.clone())),
     ]);
     columns
 }

@@ -85,9 +85,10 @@ impl Store {
 
     /// Where the record of a key is; only a key leads to a file.
     fn file(&self, key: &str) -> Result<PathBuf, StoreError> {
-        match is_key(key) {
-            true => Ok(self.folder.join(&key[..2]).join(format!("{key}.json"))),
-            false => Err(StoreError::NotAKey(key.to_string())),
+        if is_key(key) {
+            Ok(self.folder.join(&key[..2]).join(format!("{key}.json")))
+        } else {
+            Err(StoreError::NotAKey(key.to_string()))
         }
     }
 

@@ -87,9 +87,10 @@ impl TaskRunner<'_> {
                 missing.push((key.clone(), *task));
             }
         }
-        match missing.is_empty() {
-            true => plan.clear(),
-            false => Err(plan.write(&missing, self.store)?.into()),
+        if missing.is_empty() {
+            plan.clear()
+        } else {
+            Err(plan.write(&missing, self.store)?.into())
         }
     }
 

@@ -62,9 +62,10 @@ pub enum AxisError {
 pub fn refuse_too_many_runs(axes: &[Axis], clouds: usize) -> Result<(), AxisError> {
     let combinations: f64 = axes.iter().map(|axis| axis.levels.len() as f64).product();
     let clouds = clouds as f64;
-    match (1.0..=MOST_RUNS).contains(&(combinations * clouds)) {
-        true => Ok(()),
-        false => Err(AxisError::Runs { combinations, clouds }),
+    if (1.0..=MOST_RUNS).contains(&(combinations * clouds)) {
+        Ok(())
+    } else {
+        Err(AxisError::Runs { combinations, clouds })
     }
 }
 

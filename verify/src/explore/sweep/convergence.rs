@@ -58,9 +58,10 @@ pub fn add_convergence(study: &mut Study, sweep: &Sweep, case: &MeasuredCase) {
     ));
     study.undecided.extend(families.iter().filter_map(|family| {
         let why = undecided(sweep.clouds, family, bar)?;
-        Some(match family.0 == case.source.name {
-            true => format!("{}: {why}", case.source.name),
-            false => format!("{}, {}: {why}", case.source.name, family.0),
+        Some(if family.0 == case.source.name {
+            format!("{}: {why}", case.source.name)
+        } else {
+            format!("{}, {}: {why}", case.source.name, family.0)
         })
     }));
     study.figures.push(Figure::Plot(figure(case, group.label(), &families, bar)));

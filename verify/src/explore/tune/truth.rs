@@ -61,17 +61,18 @@ pub fn truth(request: &TuneRequest, tasks: &TaskRunner) -> Result<Truth> {
             from = ReferenceSource::Own(finer);
             continue;
         }
-        why += &match finer <= FINEST {
-            true => format!(
+        why += &if finer <= FINEST {
+            format!(
                 ": finer runs, with a spacing {} times smaller than that of the case, would decide \
                  it in about {} s of CPU time (--truth-budget {:.0}s)",
                 four_digits(finer),
                 four_digits(cpu_s),
                 (1.2 * cpu_s).ceil()
-            ),
-            false => ": runs fine enough to decide it are out of reach; take a larger goal, or a \
+            )
+        } else {
+            ": runs fine enough to decide it are out of reach; take a larger goal, or a \
                       reference of another code (--reference FILE)"
-                .to_string(),
+                .to_string()
         };
         return Ok(Truth { reference, group, undecided: Some(why) });
     }

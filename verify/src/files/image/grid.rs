@@ -59,10 +59,7 @@ impl Grid {
 
     /// Lower and upper corner of the box around all voxels \[m\].
     pub fn bounds(&self) -> (Vector3, Vector3) {
-        let end = |axis: usize, high: bool| match high {
-            true => self.size[axis] as f64 - 0.5,
-            false => -0.5,
-        };
+        let end = |axis: usize, high: bool| if high { self.size[axis] as f64 - 0.5 } else { -0.5 };
         let corner = |n: usize| {
             self.origin
                 + self.directions * Vector3::from_fn(|axis, _| end(axis, n >> axis & 1 == 1))

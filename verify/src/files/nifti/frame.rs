@@ -45,9 +45,10 @@ pub fn doubts(header: &NiftiHeader, size: [usize; 3]) -> Result<Vec<String>, Mis
 
 /// Refuses a field with a number that is not finite.
 pub fn finite(field: &'static str, values: &[f32]) -> Result<(), Mistake> {
-    match values.iter().all(|value| value.is_finite()) {
-        true => Ok(()),
-        false => Err(Mistake::bad_field(field, &format!("{values:?}"), "finite numbers")),
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err(Mistake::bad_field(field, &format!("{values:?}"), "finite numbers"))
     }
 }
 

@@ -90,9 +90,10 @@ fn pair(path: &Path) -> Option<(PathBuf, PathBuf)> {
 fn decompressed(path: &Path) -> Result<Box<dyn Read>, FileError> {
     let (mut file, _) = open(path)?;
     let start = file.fill_buf().map_err(|error| Mistake::Unreadable(error).of(path))?;
-    Ok(match start.starts_with(&[0x1f, 0x8b]) {
-        true => Box::new(MultiGzDecoder::new(file)),
-        false => Box::new(file),
+    Ok(if start.starts_with(&[0x1f, 0x8b]) {
+        Box::new(MultiGzDecoder::new(file))
+    } else {
+        Box::new(file)
     })
 }
 
@@ -155,9 +156,10 @@ fn read_header(stream: &mut impl Read) -> Result<Start, Mistake> {
     }
     let format = "a NIfTI file (.nii or .nii.gz, or .hdr beside .img; Analyze 7.5 does not say where right is)";
     if bytes.len() < HEADER {
-        return match bytes.starts_with(&348i32.to_le_bytes()) {
-            true => Err(Mistake::TruncatedHeader { found: bytes.len() }),
-            false => Err(Mistake::WrongFormat { format, start: start_of(&bytes) }),
+        return if bytes.starts_with(&348i32.to_le_bytes()) {
+            Err(Mistake::TruncatedHeader { found: bytes.len() })
+        } else {
+            Err(Mistake::WrongFormat { format, start: start_of(&bytes) })
         };
     }
     let magic = &bytes[HEADER - 4..];

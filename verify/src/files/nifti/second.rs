@@ -26,9 +26,10 @@ pub fn header(bytes: &[u8]) -> Result<(NiftiHeader, bool), Mistake> {
             return Err(Mistake::WrongFormat { format, start: start_of(magic) });
         }
     };
-    let (order, endianness) = match bytes.starts_with(&(HEADER as i32).to_le_bytes()) {
-        true => (ByteOrder::Little, Endianness::Little),
-        false => (ByteOrder::Big, Endianness::Big),
+    let (order, endianness) = if bytes.starts_with(&(HEADER as i32).to_le_bytes()) {
+        (ByteOrder::Little, Endianness::Little)
+    } else {
+        (ByteOrder::Big, Endianness::Big)
     };
     let number = |at: usize, scalar: Scalar| scalar.read(&bytes[at..], order);
     let code = |at: usize| number(at, Scalar::I32) as i16;

@@ -45,13 +45,14 @@ fn finite(data: Vec<(Vector3, Vector3)>) -> Result<Vec<(Vector3, Vector3)>, Mist
 
 fn from_vtu(bytes: &[u8], name: &str) -> Result<Vec<(Vector3, Vector3)>, Mistake> {
     let (points, values) = (vtu::parse(bytes)?, vtu::point_data(bytes, name)?);
-    match points.len() == values.len() {
-        true => Ok(points.into_iter().zip(values).collect()),
-        false => Err(Mistake::VectorCount {
+    if points.len() == values.len() {
+        Ok(points.into_iter().zip(values).collect())
+    } else {
+        Err(Mistake::VectorCount {
             name: name.to_string(),
             points: points.len(),
             values: values.len(),
-        }),
+        })
     }
 }
 

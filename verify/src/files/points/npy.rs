@@ -47,9 +47,10 @@ pub fn numbers(
     let expected = count.saturating_mul(columns).saturating_mul(scalar.size());
     let found = data.len();
     if found != expected {
-        return Err(match found < expected {
-            true => Mistake::Truncated { expected, found },
-            false => Mistake::Excess { expected },
+        return Err(if found < expected {
+            Mistake::Truncated { expected, found }
+        } else {
+            Mistake::Excess { expected }
         });
     }
     let values: Vec<f64> = bytes::numbers(data, scalar, order).collect();

@@ -12,8 +12,9 @@ pub fn from_rows(values: &[f64], columns: usize) -> Vec<Vector3> {
 /// Points from three coordinates each, of which the file states the number.
 pub fn from_stated(values: &[f64], points: usize) -> Result<Vec<Vector3>, Mistake> {
     let (expected, found) = (points.saturating_mul(3), values.len());
-    match expected == found {
-        true => Ok(from_rows(values, 3)),
-        false => Err(Mistake::CoordinateCount { points, expected, found }),
+    if expected == found {
+        Ok(from_rows(values, 3))
+    } else {
+        Err(Mistake::CoordinateCount { points, expected, found })
     }
 }

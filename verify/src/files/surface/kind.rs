@@ -77,9 +77,10 @@ fn content(bytes: &[u8]) -> Option<Content> {
     if let Some(at) = start.find("<VTKFile") {
         let tag = start[at..].split('>').next().unwrap_or_default();
         let other = "extract its surface and save that as PolyData (.vtp), as ParaView does";
-        return match tag.contains("PolyData\"") || !tag.contains("type=") {
-            true => is(Kind::Vtp),
-            false => Some(Content::Other("a VTK file of another type than PolyData", other)),
+        return if tag.contains("PolyData\"") || !tag.contains("type=") {
+            is(Kind::Vtp)
+        } else {
+            Some(Content::Other("a VTK file of another type than PolyData", other))
         };
     }
     let solid = start.trim_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case("solid"));

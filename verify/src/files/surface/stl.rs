@@ -12,9 +12,10 @@ use std::io::Cursor;
 
 /// Reads a surface; STL states no unit.
 pub fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
-    let surface = match is_text(bytes) {
-        true => shared(&stl_text::corners(bytes)?, unit),
-        false => binary(bytes, unit)?,
+    let surface = if is_text(bytes) {
+        shared(&stl_text::corners(bytes)?, unit)
+    } else {
+        binary(bytes, unit)?
     };
     if surface.triangles.is_empty() {
         return Err(Mistake::NoTriangles);

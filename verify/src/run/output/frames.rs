@@ -101,10 +101,7 @@ pub fn write_frames(
     let positions = &prepared.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
     let order = order(&problem.motion);
-    let body = match record.frames.is_empty() {
-        true => None,
-        false => BodyFrames::new(problem, prepared)?,
-    };
+    let body = if record.frames.is_empty() { None } else { BodyFrames::new(problem, prepared)? };
     let (mut at, mut last) = (Vec::new(), None);
     for (number, frame) in record.frames.iter().enumerate() {
         let is_last = number + 1 == record.frames.len();

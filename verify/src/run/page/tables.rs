@@ -84,9 +84,12 @@ pub fn reactions(result: &Json) -> Vec<Value> {
 
 /// What was asked, what was done; what differs by more than it may comes first.
 pub fn audit(result: &Json) -> Vec<Value> {
-    let figure = |json: &Json| match json.is_array() {
-        true => vector(&components(json)),
-        false => json.as_f64().map_or("–".into(), four_digits),
+    let figure = |json: &Json| {
+        if json.is_array() {
+            vector(&components(json))
+        } else {
+            json.as_f64().map_or("–".into(), four_digits)
+        }
     };
     let row = |row: &Json| {
         context! {

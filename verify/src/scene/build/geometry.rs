@@ -195,12 +195,11 @@ impl Builder<'_> {
             let mut present: Vec<u32> = map.labels.iter().copied().filter(|&l| l > 0).collect();
             present.sort_unstable();
             present.dedup();
-            let swapped = match present.iter().all(|label| label % 256 == 0) {
-                true => {
-                    "; if they are no multiples of 256 where they come from, the byte order of \
+            let swapped = if present.iter().all(|label| label % 256 == 0) {
+                "; if they are no multiples of 256 where they come from, the byte order of \
                          its header is wrong"
-                }
-                false => "",
+            } else {
+                ""
             };
             present.truncate(20);
             let message = format!("label {label} does not occur; the map has {present:?}{swapped}");

@@ -45,11 +45,12 @@ pub fn build(
     let probes = builder.probes(format);
     let outputs = builder.outputs(&format.output, &format.time);
     // The files that a case names are read again only where they can be used.
-    let problem_hash = match builder.mistakes.is_empty() {
-        true => problem_hash(document.text(), base_dir)
+    let problem_hash = if builder.mistakes.is_empty() {
+        problem_hash(document.text(), base_dir)
             .inspect_err(|reason| builder.mistake("", reason))
-            .unwrap_or_default(),
-        false => String::new(),
+            .unwrap_or_default()
+    } else {
+        String::new()
     };
     let Builder { notes, mistakes, hash, .. } = builder;
     match problem {

@@ -93,9 +93,10 @@ impl Builder<'_> {
         let Some((min, max)) = section.bounding_box() else { return };
         let edges = max - min;
         let smallest = edges.iter().copied().fold(f64::INFINITY, f64::min);
-        let unit = match comes_from_a_file(&section) {
-            true => "; is the `unit` of its file (\"m\" or \"mm\") right?",
-            false => "",
+        let unit = if comes_from_a_file(&section) {
+            "; is the `unit` of its file (\"m\" or \"mm\") right?"
+        } else {
+            ""
         };
         if spacing > smallest {
             let message = format!(

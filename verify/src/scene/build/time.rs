@@ -87,9 +87,10 @@ impl Builder<'_> {
     }
 
     pub fn probes(&mut self, format: &CaseFormat) -> Vec<Probe> {
-        let regions: Vec<&str> = match format.region.is_empty() {
-            true => vec!["body"],
-            false => format.region.iter().map(|region| region.name.as_str()).collect(),
+        let regions: Vec<&str> = if format.region.is_empty() {
+            vec!["body"]
+        } else {
+            format.region.iter().map(|region| region.name.as_str()).collect()
         };
         let spacing = format.discretisation.spacing;
         let mut probes = Vec::new();
@@ -190,10 +191,8 @@ impl Builder<'_> {
         });
         let Some((name, position, distance)) = outside.next() else { return };
         let place_of = position.iter().map(|x| in_few_digits(*x)).collect::<Vec<_>>().join(", ");
-        let distance = match distance < FAR {
-            true => format!("{distance:.3}"),
-            false => in_few_digits(distance),
-        };
+        let distance =
+            if distance < FAR { format!("{distance:.3}") } else { in_few_digits(distance) };
         let found = format!("({place_of}) m lies {distance} m outside the body");
         let message = match (probes.len(), outside.count()) {
             (1, _) => found,

@@ -32,9 +32,10 @@ fn change(document: &mut DocumentMut, setting: &Setting) -> Result<(), EditError
             let recipe = table(document.as_item_mut(), &["discretisation"])?;
             refuse_given(recipe, "jitter")?;
             set(recipe, "cloud", Value::from(if jitter == 0.0 { "regular" } else { "jittered" }));
-            match jitter == 0.0 {
-                true => ["jitter", "seed"].iter().for_each(|key| drop(recipe.remove(key))),
-                false => set(recipe, "jitter", Value::from(jitter)),
+            if jitter == 0.0 {
+                ["jitter", "seed"].iter().for_each(|key| drop(recipe.remove(key)))
+            } else {
+                set(recipe, "jitter", Value::from(jitter))
             }
             Ok(())
         }

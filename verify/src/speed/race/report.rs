@@ -59,12 +59,13 @@ fn figure(field: &Field, label: &str, unit: &str, cost: CostOf) -> Figure {
         }
     }
     let error_unit = field.challenge.unit();
-    let known = match field.uncertainty > 0.0 {
-        true => format!(
+    let known = if field.uncertainty > 0.0 {
+        format!(
             "Errors below the error bar of the reference, {} {error_unit}, are not significant.",
             four_digits(field.uncertainty)
-        ),
-        false => "The solution is known exactly.".to_string(),
+        )
+    } else {
+        "The solution is known exactly.".to_string()
     };
     Figure::Plot(Plot {
         title: format!("{}: error against {label}", field.challenge.title()),

@@ -129,9 +129,10 @@ fn ladder(source: &Source, spacings: &[Spacing]) -> Result<Vec<f64>> {
         }
     });
     let metres: Vec<f64> = metres.collect::<Result<_>>()?;
-    match metres.windows(2).all(|pair| pair[0] > pair[1]) {
-        true => Ok(metres),
-        false => bail!("spacings must go from coarse to fine"),
+    if metres.windows(2).all(|pair| pair[0] > pair[1]) {
+        Ok(metres)
+    } else {
+        bail!("spacings must go from coarse to fine")
     }
 }
 

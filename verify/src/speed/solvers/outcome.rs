@@ -42,10 +42,7 @@ pub struct LastWords(String);
 
 impl std::fmt::Display for LastWords {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.0.is_empty() {
-            true => Ok(()),
-            false => write!(out, ": {}", self.0),
-        }
+        if self.0.is_empty() { Ok(()) } else { write!(out, ": {}", self.0) }
     }
 }
 

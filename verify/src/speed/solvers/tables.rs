@@ -249,9 +249,10 @@ fn run_row(case: &CaseRuns, run: &SolverRun) -> Vec<Cell> {
 fn memory_cell(usage: Option<Usage>) -> Cell {
     let Some(usage) = usage else { return label("–") };
     let megabytes = usage.peak_memory_bytes as f64 / 1e6;
-    match usage.peak_memory_bytes <= usage.least_memory_bytes {
-        true => label(format!("≤ {}", four_digits(megabytes))),
-        false => Cell::Number(megabytes),
+    if usage.peak_memory_bytes <= usage.least_memory_bytes {
+        label(format!("≤ {}", four_digits(megabytes)))
+    } else {
+        Cell::Number(megabytes)
     }
 }
 

@@ -77,9 +77,10 @@ fn add_checks(study: &mut Study, compared: &Compared) {
     for group in Group::ALL {
         let Some((limit, reason)) = limit(&compared.case.name, group) else { continue };
         let Some(difference) = compared.of(group) else { continue };
-        let (kind, source) = match limit > TARGET {
-            true => (Kind::Regression, reason),
-            false => (Kind::Reference, "2 % of the largest value"),
+        let (kind, source) = if limit > TARGET {
+            (Kind::Regression, reason)
+        } else {
+            (Kind::Reference, "2 % of the largest value")
         };
         let mut check = Check::new(
             &format!("comparison/{}/{}", compared.case.name, group.name()),

@@ -134,9 +134,10 @@ fn add_checks(study: &mut Study, stated: &[(&str, Fault)], record: &FaultRecord)
 fn row(tested: &TestedFault) -> Vec<Cell> {
     let mut files: Vec<&str> = tested.changes.iter().map(|change| change.file.as_str()).collect();
     files.dedup();
-    let ends = match tested.unfinished.is_empty() {
-        true => String::new(),
-        false => format!("; did not end: {}", tested.unfinished.join(", ")),
+    let ends = if tested.unfinished.is_empty() {
+        String::new()
+    } else {
+        format!("; did not end: {}", tested.unfinished.join(", "))
     };
     let first: Vec<&str> = tested.checks.iter().take(NAMED).map(String::as_str).collect();
     vec![

@@ -146,10 +146,7 @@ impl Patch {
     /// Area of a triangle of places; of an interval its length.
     fn size(&self, [a, b, c]: &Cell) -> f64 {
         let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
-        match self.chart.is_curve() {
-            true => u[0].abs(),
-            false => 0.5 * (u[0] * v[1] - u[1] * v[0]).abs(),
-        }
+        if self.chart.is_curve() { u[0].abs() } else { 0.5 * (u[0] * v[1] - u[1] * v[0]).abs() }
     }
 
     /// Points of the surface and their vector areas \[m\], \[m²\].

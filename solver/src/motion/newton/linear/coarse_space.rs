@@ -20,9 +20,10 @@ pub(super) struct Stiffness {
 impl Stiffness {
     pub fn new(model: &Model, most: f64) -> Stiffness {
         let (d, nodes) = (model.components, model.positions.len());
-        let diagonal = match most.is_finite() {
-            true => stiffness_diagonal(&model.blocks, d, nodes, most),
-            false => model.stiffness.clone(),
+        let diagonal = if most.is_finite() {
+            stiffness_diagonal(&model.blocks, d, nodes, most)
+        } else {
+            model.stiffness.clone()
         };
         Stiffness { diagonal, most }
     }

@@ -38,8 +38,9 @@ pub(super) fn bar(canvas: &mut Canvas, scale: &ColourScale, from: [f64; 2], righ
 /// Without zeros after the decimal point.
 fn short(value: f64) -> String {
     let text = four_digits(value);
-    match text.contains('.') && !text.contains('×') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text,
+    if text.contains('.') && !text.contains('×') {
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        text
     }
 }
