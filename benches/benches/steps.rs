@@ -41,11 +41,11 @@ fn whole_step(criterion: &mut Criterion) {
     step(&mut group, "cube_1k", &small, &one);
     step(&mut group, "cube_30k", &large, &one);
     step(&mut group, "cube_30k_all_threads", &large, &all);
-    group.pair("one thread over all threads", "cube_30k", "cube_30k_all_threads");
+    group.pair("step on one thread over all threads", "cube_30k", "cube_30k_all_threads");
     step(&mut group, "brain_slice_in_its_skull", &slice, &one);
     step(&mut group, "brain_slice_without_obstacles", &free, &one);
     group.pair(
-        "with contact over without",
+        "step with contact over without",
         "brain_slice_in_its_skull",
         "brain_slice_without_obstacles",
     );
