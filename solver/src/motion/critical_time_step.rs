@@ -155,7 +155,7 @@ const PIECE: usize = 1024;
 /// Removes from a vector its components along an orthonormal basis. Twice is
 /// enough: round-off of one pass is removed by the second. Overlaps are summed piece
 /// by piece, in the order of the pieces on any number of threads.
-fn orthogonalise(vector: &mut [f64], basis: &[Vec<f64>]) {
+pub(super) fn orthogonalise(vector: &mut [f64], basis: &[Vec<f64>]) {
     let pass = |vector: &mut [f64], known: &[f64]| -> Vec<f64> {
         let piece = |(index, piece): (usize, &mut [f64])| {
             let range = index * PIECE..index * PIECE + piece.len();
@@ -202,7 +202,7 @@ fn starting_vector(tangent: &mut Tangent, earlier: Option<&CriticalStep>) -> Vec
 }
 
 /// Largest eigenvalue of the tridiagonal matrix and its unit eigenvector.
-fn largest_ritz_pair(diagonal: &[f64], off_diagonal: &[f64]) -> (f64, Vec<f64>) {
+pub(super) fn largest_ritz_pair(diagonal: &[f64], off_diagonal: &[f64]) -> (f64, Vec<f64>) {
     let n = diagonal.len();
     let matrix = nalgebra::DMatrix::from_fn(n, n, |i, j| match i.abs_diff(j) {
         0 => diagonal[i],
@@ -247,7 +247,7 @@ fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-fn normalise(a: &mut [f64]) {
+pub(super) fn normalise(a: &mut [f64]) {
     let length = norm(a);
     if length > 0.0 {
         a.iter_mut().for_each(|x| *x /= length);

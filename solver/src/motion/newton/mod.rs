@@ -7,6 +7,7 @@ mod drift;
 mod equilibrate;
 mod free_space;
 mod increment;
+mod inf_sup;
 mod linear;
 mod load_path;
 mod pressures;
@@ -15,3 +16,4 @@ mod taken;
 
 pub(crate) use adjoint::Balanced;
 pub(crate) use equilibrate::equilibrate;
+pub use inf_sup::{InfSup, inf_sup};

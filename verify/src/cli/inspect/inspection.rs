@@ -10,6 +10,7 @@ use mtled::error::Error;
 use mtled::model::zero_energy::{ZeroEnergyModes, zero_energy_modes};
 use mtled::motion::critical_time_step::{CriticalStep, critical_time_step};
 use mtled::motion::internal_force::Workspace;
+use mtled::motion::newton::{InfSup, inf_sup};
 use rayon::prelude::*;
 
 /// Bodies with more nodes than this are searched for zero-energy modes only on request.
@@ -54,6 +55,8 @@ pub struct Inspection<'a> {
     pub peak: Option<u64>,
     /// None where they were not searched for.
     pub modes: Option<ZeroEnergyModes>,
+    /// None where it was not looked for, or no pressure of a patch counts.
+    pub inf_sup: Option<InfSup>,
 }
 
 /// Examines a case without running it.
@@ -89,6 +92,7 @@ pub fn examine<'a>(
         critical,
         peak,
         modes,
+        inf_sup: searched.then(|| inf_sup(model)).flatten(),
     })
 }
 

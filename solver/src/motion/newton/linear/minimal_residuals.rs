@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::motion::newton::free_space::FreeSpace;
 
 /// Iterations after which a correction is taken as it is.
-const MOST: usize = 1000;
+pub(crate) const MOST: usize = 1000;
 
 impl Solver {
     /// MINRES (Paige, Saunders 1975) with the preconditioner of displacements and the Schur

@@ -11,4 +11,5 @@ mod system;
 
 pub(super) use conjugate_gradients::Solver;
 pub(super) use guide::Guide;
+pub(super) use minimal_residuals::MOST as MOST_WITH_PRESSURES;
 pub(super) use system::{Correction, Saddle, SaddlePatch, System};
