@@ -48,7 +48,7 @@ fn pull(axis: Vector3) -> Result<f64, Box<dyn std::error::Error>> {
         EssentialCondition::on_surface(name, face(x), u, Amplitude::Constant)
     };
     problem.conditions = vec![held("left", 0.0, 0.0), held("right", 0.04, 0.004)];
-    problem.motion = Motion::Equilibrium(Newton::default());
+    problem.motion = Motion::Newton(Newton::default());
     let mut simulation = Simulation::new(&problem)?;
     simulation.run(&mut Unobserved)?;
     Ok(simulation.reactions(&Vector3::zeros())[1].force.x)

@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         EssentialCondition::on_surface("bottom", face(0.0), Vector3::zeros(), ramp.clone()),
         EssentialCondition::on_surface("top", face(height), shear, ramp),
     ];
-    problem.motion = Motion::Equilibrium(Newton::default());
+    problem.motion = Motion::Newton(Newton::default());
 
     let mut simulation = Simulation::new(&problem)?;
     let summary = simulation.run(&mut Unobserved)?;

@@ -232,8 +232,8 @@ pub enum Error {
         indefinite: bool,
     },
     #[error(
-        "sensitivities are those of a static problem that Newton's method solves: set its motion to Motion::Equilibrium \
-             or Motion::Automatic, without friction on obstacles"
+        "sensitivities are those of a static problem that Newton's method solves: set its motion to Motion::Newton \
+             or Motion::Static, without friction on obstacles"
     )]
     NoEquilibriumToVary,
     #[error(

@@ -106,7 +106,7 @@ impl<'a> Adjoint<'a> {
             return Err(Error::NoEquilibriumToVary);
         }
         let settings = match problem.motion {
-            Motion::Equilibrium(settings) => settings,
+            Motion::Newton(settings) => settings,
             _ => Newton { load_end: problem.motion.end(), tolerance: 1.0 },
         };
         let mut balanced = Balanced::new(model, &settings, state)?;

@@ -199,7 +199,7 @@ fn prescribed_with(
     let mut boundary = condition("boundary", Selector::All, [None; 3]);
     boundary.prescribed = Prescribed::Field(field);
     problem.conditions.push(boundary);
-    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-11 });
+    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-11 });
     let (_, model) = build(&problem);
     let mut state = State::new(&model);
     simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();

@@ -186,7 +186,7 @@ fn pressed_onto(slope: f64, safety_factor: f64) -> (Model, State, Summary) {
         Friction::Frictionless,
     ));
     let step = StepControl { safety_factor, ..StepControl::default() };
-    problem.motion = Motion::Static(Relaxation { step, tolerance: 1e-6, ..Relaxation::default() });
+    problem.motion = Motion::Relaxed(Relaxation { step, tolerance: 1e-6, ..Relaxation::default() });
     let (_, model) = build(&problem);
     let mut state = State::new(&model);
     let summary = simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();

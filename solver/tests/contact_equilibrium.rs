@@ -32,7 +32,7 @@ fn solve(problem: &Problem) -> Solved {
 }
 
 fn newton() -> Motion {
-    Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-9 })
+    Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-9 })
 }
 
 fn contact_force(state: &State) -> Vector3 {
@@ -89,7 +89,7 @@ fn what_obstacles_exert_balances_the_loads() {
 fn nodes_on_planes_of_symmetry_touch_obstacles() {
     let relaxation = Relaxation { tolerance: 1e-6, ..Relaxation::default() };
     // Relaxation holds parameters of nodes, not values.
-    for (motion, deepest) in [(newton(), 1e-9), (Motion::Static(relaxation), 2e-4 * EDGE)] {
+    for (motion, deepest) in [(newton(), 1e-9), (Motion::Relaxed(relaxation), 2e-4 * EDGE)] {
         let mut problem = Problem { motion, ..resting(0.3) };
         for axis in [0, 1] {
             let sideways = [0, 1, 2].map(|k| (k == axis).then_some(0.0));
@@ -150,7 +150,7 @@ fn the_area_of_contact_is_that_of_the_face_and_not_of_the_sides_beside_it() {
 fn no_node_enters_an_obstacle_and_no_obstacle_pulls() {
     let solved = solve(&ball_in_a_ball(Friction::Frictionless));
     let smallest = smallest_gap(&solved);
-    assert!(smallest > -1e-6 * solved.model.contact.skin, "{smallest:e} m");
+    assert!(smallest > -1e-6 * solved.model.contact.mean_spacing, "{smallest:e} m");
     let forces = &solved.state.contact.forces;
     let pulling = forces.iter().filter(|contact| {
         let node = contact.node as usize;
@@ -164,7 +164,7 @@ fn no_node_enters_an_obstacle_and_no_obstacle_pulls() {
 fn newton_and_relaxation_agree_on_a_body_in_contact() {
     let mut problem = resting(0.3);
     let by_newton = solve(&problem);
-    problem.motion = Motion::Static(Relaxation { tolerance: 1e-5, ..Relaxation::default() });
+    problem.motion = Motion::Relaxed(Relaxation { tolerance: 1e-5, ..Relaxation::default() });
     let relaxed = solve(&problem);
     let centre = |solved: &Solved| mean_by_mass(&solved.model, &solved.state.displacement).z;
     let (a, b) = (centre(&by_newton), centre(&relaxed));
@@ -213,7 +213,7 @@ fn ball_in_its_own_outline(tolerance: f64) -> Problem {
     let top = Selector::Inside { shape: top, tolerance: 0.0 };
     problem.conditions.push(condition("top", top, [None, None, Some(-0.05 * EDGE)]));
     problem.obstacles.push(obstacle(ball, ObstacleSide::Inside, Friction::Frictionless));
-    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance });
+    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance });
     problem
 }
 
@@ -286,8 +286,8 @@ fn a_block_that_bulges_against_a_plate_is_compressed_by_all_that_is_prescribed()
         let error = state.displacement_of(node, 3) + 0.3 * EDGE * Vector3::z();
         assert!(error.norm() < 1e-12, "{error:?}");
     }
-    assert!(smallest_gap(&by_newton) > -1e-6 * model.contact.skin);
-    problem.motion = Motion::Static(Relaxation { tolerance: 1e-5, ..Relaxation::default() });
+    assert!(smallest_gap(&by_newton) > -1e-6 * model.contact.mean_spacing);
+    problem.motion = Motion::Relaxed(Relaxation { tolerance: 1e-5, ..Relaxation::default() });
     let sum = |state: &State| state.contact_forces().iter().map(|contact| contact.force).sum();
     let (force, relaxed): (Vector3, Vector3) = (sum(state), sum(&solve(&problem).state));
     assert!(relaxed.x < -0.1, "{relaxed}");

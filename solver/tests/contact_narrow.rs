@@ -25,7 +25,7 @@ fn pressed(shape: Shape, cells: usize) -> Problem {
     top.amplitude = Amplitude::Linear { duration: 1.0 };
     problem.conditions.push(top);
     problem.obstacles.push(solid(shape));
-    problem.motion = Motion::Automatic(Relaxation::default());
+    problem.motion = Motion::Static(Relaxation::default());
     problem
 }
 

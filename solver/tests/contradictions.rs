@@ -63,7 +63,7 @@ fn conditions_that_part_during_the_run_are_refused_with_the_time() {
 fn conditions_that_agree_on_a_face_are_reported_and_the_first_has_the_force() {
     let mut problem = stretched(0.01);
     problem.conditions.push(condition("lid", face(1, EDGE), [Some(0.0), Some(0.01), None]));
-    problem.motion = Motion::Equilibrium(Newton::default());
+    problem.motion = Motion::Newton(Newton::default());
     let (_, model) = build(&problem);
     let expected = Warning::SharedNodes {
         first: "top".into(),
@@ -209,7 +209,7 @@ fn a_traction_on_prescribed_nodes_only_is_reported() {
 fn a_static_load_that_ends_before_its_amplitude_is_reported() {
     let mut problem = stretched(0.01);
     problem.conditions[1].amplitude = Amplitude::Linear { duration: 4.0 };
-    problem.motion = Motion::Static(Relaxation::default());
+    problem.motion = Motion::Relaxed(Relaxation::default());
     let found = warnings(&problem);
     let [Warning::UnfinishedLoad { name, factor, .. }] = &found[..] else { panic!("{found:?}") };
     assert_eq!((name.as_str(), *factor), ("top", 0.25));
@@ -228,7 +228,7 @@ fn the_reaction_of_a_held_volume_carries_the_whole_weight() {
         ..condition("root", part, [Some(0.0); 3])
     }];
     gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
-    problem.motion = Motion::Equilibrium(Newton::default());
+    problem.motion = Motion::Newton(Newton::default());
     let (_, model) = build(&problem);
     let (mut state, mut recorder) = (State::new(&model), Recorder::default());
     simulate(&model, &problem.motion, &mut state, &mut recorder).unwrap();

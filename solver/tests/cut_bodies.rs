@@ -58,7 +58,7 @@ fn ball_on_its_cut(spacing: f64) -> Problem {
         acceleration: (Vector3::z() * -12.5).into(),
         amplitude: Amplitude::Linear { duration: 1.0 },
     }];
-    problem.motion = Motion::Equilibrium(Newton { tolerance: 1e-4, ..Newton::default() });
+    problem.motion = Motion::Newton(Newton { tolerance: 1e-4, ..Newton::default() });
     problem
 }
 
@@ -98,7 +98,7 @@ fn hollow_ball(spacing: f64) -> Problem {
         pressure: 100.0,
         amplitude: Amplitude::Linear { duration: 1.0 },
     }];
-    problem.motion = Motion::Equilibrium(Newton { tolerance: 1e-4, ..Newton::default() });
+    problem.motion = Motion::Newton(Newton { tolerance: 1e-4, ..Newton::default() });
     problem
 }
 

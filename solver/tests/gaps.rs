@@ -21,7 +21,7 @@ fn block(min: [f64; 3], max: [f64; 3]) -> Shape {
 fn problem(body: Shape, spacing: f64) -> Problem {
     let mut problem =
         Problem::new(body, material(neo_hookean(3000.0, 0.3)), Recipe::with_spacing(spacing));
-    problem.motion = Motion::Equilibrium(Newton { tolerance: 1e-6, ..Newton::default() });
+    problem.motion = Motion::Newton(Newton { tolerance: 1e-6, ..Newton::default() });
     problem
 }
 

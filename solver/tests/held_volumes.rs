@@ -38,7 +38,7 @@ fn weighed(body: Shape, conditions: Vec<EssentialCondition>) -> Problem {
         acceleration: (Vector3::z() * -10.0).into(),
         amplitude: Amplitude::Linear { duration: 1.0 },
     }];
-    problem.motion = Motion::Equilibrium(Newton { tolerance: 1e-5, ..Newton::default() });
+    problem.motion = Motion::Newton(Newton { tolerance: 1e-5, ..Newton::default() });
     problem
 }
 

@@ -102,7 +102,7 @@ fn where_relaxation_diverges_the_equilibrium_that_newton_came_to_is_kept() {
         reached > 0.0 && matches!(*then, Error::Inverted { .. } | Error::Diverged { .. }),
         "{then}"
     );
-    let settings = Motion::Equilibrium(Relaxation::default().newton());
+    let settings = Motion::Newton(Relaxation::default().newton());
     let (alone, _) = run_crushed(1e3, settings);
     assert!(kept.displacement.iter().any(|u| *u != 0.0) && kept.displacement == alone.displacement);
 }
@@ -137,13 +137,13 @@ fn run_standing(part: f64, motion: Motion) -> (State, Result<Summary, Error>) {
 }
 
 fn automatic() -> Motion {
-    Motion::Automatic(Relaxation::default())
+    Motion::Static(Relaxation::default())
 }
 
 #[test]
 fn where_both_solvers_fail_the_error_speaks_of_both() {
     let few = Relaxation { load_steps: 10, max_steps: 20, ..Relaxation::default() };
-    let error = run_standing(0.1, Motion::Automatic(few)).1.unwrap_err();
+    let error = run_standing(0.1, Motion::Static(few)).1.unwrap_err();
     assert!(matches!(error, Error::NeitherSolver { .. }), "{error}");
     let text = error.to_string();
     assert!(text.contains("relaxation") && text.contains("newton's method"), "{text}");

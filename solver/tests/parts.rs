@@ -343,7 +343,7 @@ fn dome(spacing: f64, pressure: f64) -> Problem {
         pressure,
         amplitude: Amplitude::Linear { duration: 1.0 },
     }];
-    problem.motion = Motion::Equilibrium(Newton { tolerance: 1e-4, ..Newton::default() });
+    problem.motion = Motion::Newton(Newton { tolerance: 1e-4, ..Newton::default() });
     problem
 }
 

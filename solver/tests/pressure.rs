@@ -207,7 +207,7 @@ fn a_pipe_under_small_pressure_widens_as_lame_says() {
     let exact = |r: f64| {
         p * a * a / (E * (b * b - a * a)) * (1.0 + nu) * ((1.0 - 2.0 * nu) * r + b * b / r)
     };
-    for motion in [Motion::Static(Relaxation::default()), Motion::Equilibrium(newton())] {
+    for motion in [Motion::Relaxed(Relaxation::default()), Motion::Newton(newton())] {
         let found = radial(&problem, motion, 1.4);
         approx::assert_relative_eq!(found, exact(1.4), max_relative = 0.005);
     }
@@ -230,7 +230,7 @@ fn a_pipe_that_widens_by_half_needs_the_pressure_of_the_closed_form() {
     let law = NeoHookeanIsochoric::new(constants, VolumetricTerm::Quadratic);
     let problem = pipe(a, b, SPACING, Law::NeoHookeanIsochoric(law), p);
     let exact = |R: f64| (R * R + c).sqrt() - R;
-    for motion in [Motion::Static(Relaxation::default()), Motion::Equilibrium(newton())] {
+    for motion in [Motion::Relaxed(Relaxation::default()), Motion::Newton(newton())] {
         let found = radial(&problem, motion, 1.4);
         approx::assert_relative_eq!(found, exact(1.4), max_relative = 0.01);
     }

@@ -43,7 +43,7 @@ fn a_condition_that_selects_nothing_is_refused_by_name() {
 #[test]
 fn a_number_that_cannot_be_used_is_refused_by_its_field() {
     let mut problem = square(4);
-    problem.motion = Motion::Static(Relaxation { tolerance: 2.0, ..Relaxation::default() });
+    problem.motion = Motion::Relaxed(Relaxation { tolerance: 2.0, ..Relaxation::default() });
     let error = refusal(&problem);
     assert_eq!(error.to_string(), "motion.tolerance is 2; it must lie in (0, 1)");
     let (_, model) = build(&square(4));
@@ -160,7 +160,7 @@ fn a_node_whose_row_sum_is_negative_is_refused_with_its_place_and_mass() {
     assert!(matches!(error, Error::MasslessNode { mass, .. } if mass < 0.0), "{error}");
     assert!(error.to_string().contains("even_split"), "{error}");
     // Statics need the sum alone.
-    problem.motion = Motion::Equilibrium(Newton::default());
+    problem.motion = Motion::Newton(Newton::default());
     let (discretisation, model) = build(&problem);
     let right = 1000.0 * discretisation.volume();
     assert!((model.lumped_mass.iter().sum::<f64>() / right - 1.0).abs() < 1e-12);
@@ -294,7 +294,7 @@ fn unconverged(load_steps: usize, tolerance: f64, max_steps: usize) -> (f64, f64
     problem.conditions.push(condition("base", face(1, 0.0), [Some(0.0); 3]));
     gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
     let settings = Relaxation { load_steps, tolerance, max_steps, ..Relaxation::default() };
-    problem.motion = Motion::Static(settings);
+    problem.motion = Motion::Relaxed(settings);
     let (result, _, state, _) = failure(&problem);
     let Error::NotConverged { steps, stalled: false, error, tolerance, residual, .. } = result
     else {

@@ -217,8 +217,8 @@ fn a_body_force_field_is_weighted_with_the_mass_where_it_acts() {
 fn static_solutions_do_not_depend_on_the_mass_of_the_relaxation() {
     let problem = collocated(leaning(jittered(square(6), 0.3, 3)));
     let with = |mass: RelaxationMass| {
-        let Motion::Static(settings) = relaxation(1e-8) else { unreachable!() };
-        solve_by(&problem, Motion::Static(Relaxation { mass, ..settings }))
+        let Motion::Relaxed(settings) = relaxation(1e-8) else { unreachable!() };
+        solve_by(&problem, Motion::Relaxed(Relaxation { mass, ..settings }))
     };
     let (stiffness, lumped) = (with(RelaxationMass::Stiffness), with(RelaxationMass::Lumped));
     assert!(stiffness.model.inertia != lumped.model.inertia);

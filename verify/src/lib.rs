@@ -1,6 +1,6 @@
 //! Verification harness of the meshless solver `mtled`: case files
 //! ([`scene`]) become problems, runs ([`run`]) become results, studies
-//! ([`studies`], [`explore`], [`speed`], [`suite`], [`sensitivity`]) become the plain data of [`mtled_checks::study`],
+//! ([`studies`], [`lab`], [`contests`], [`suite`], [`sensitivity`]) become the plain data of [`mtled_checks::study`],
 //! and [`mtled_checks::report`] turns those into pages and files.
 
 // A module uses only modules above it.
@@ -24,8 +24,9 @@ pub mod accuracy;
 pub mod specimens;
 pub mod studies;
 
-pub mod explore;
-pub mod speed;
+pub mod lab;
+
+pub mod contests;
 pub mod suite;
 
 pub mod sensitivity;

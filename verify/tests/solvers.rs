@@ -10,9 +10,9 @@ mod program;
 
 use fake::Arena;
 use mtled_verify::bundled::CASES;
-use mtled_verify::explore::store::Source;
+use mtled_verify::contests::solvers::absolute;
+use mtled_verify::lab::store::Source;
 use mtled_verify::protocol::{Job, Resolution, parse_job};
-use mtled_verify::speed::solvers::absolute;
 use program::{interrupt, mtled, program};
 use serde_json::Value;
 use std::path::Path;

@@ -161,7 +161,7 @@ fn reactions_of_one_condition_that_balance_each_other_are_not_doubted() {
     };
     problem.conditions[0].part = face(0.08);
     problem.conditions[0].prescribed = Prescribed::Field(Field::of(dent));
-    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-3 });
+    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-3 });
     assert_eq!(doubts(&run(&problem)).iter().filter(|kind| **kind == Kind::Forces).count(), 0);
 }
 

@@ -25,7 +25,7 @@ pub fn raise_masses(
 ) -> Result<Model, Error> {
     let factor = match &problem.motion {
         Motion::Dynamic { step, .. } => step.mass_scaling,
-        Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => 1.0,
+        Motion::Static(_) | Motion::Relaxed(_) | Motion::Newton(_) => 1.0,
     };
     if factor <= 1.0 {
         return Ok(model);

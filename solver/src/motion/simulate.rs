@@ -32,15 +32,15 @@ pub fn simulate(
             }
             integrate(model, *end, *step, *damping, state, observer)
         }
-        Motion::Automatic(settings) => {
+        Motion::Static(settings) => {
             refuse_unheld(model, settings.load_end)?;
             solve_static(model, settings, state, observer)
         }
-        Motion::Static(settings) => {
+        Motion::Relaxed(settings) => {
             refuse_unheld(model, settings.load_end)?;
             relax(model, settings, state, observer)
         }
-        Motion::Equilibrium(settings) => {
+        Motion::Newton(settings) => {
             refuse_unheld(model, settings.load_end)?;
             equilibrate(model, settings, state, observer)
         }

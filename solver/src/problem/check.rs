@@ -193,10 +193,10 @@ impl Motion {
                 found.not_negative("damping", *damping);
                 found.part("step", step.check());
             }
-            Motion::Automatic(relaxation) | Motion::Static(relaxation) => {
+            Motion::Static(relaxation) | Motion::Relaxed(relaxation) => {
                 found.0.extend(relaxation.check());
             }
-            Motion::Equilibrium(newton) => {
+            Motion::Newton(newton) => {
                 found.positive("load_end", newton.load_end);
                 found.tolerance("tolerance", newton.tolerance);
             }
@@ -245,8 +245,8 @@ mod tests {
     #[test]
     fn what_is_recommended_has_no_mistakes() {
         assert_eq!(Recipe::with_spacing(0.1).check(), []);
-        assert_eq!(Motion::Automatic(Relaxation::default()).check(), []);
-        assert_eq!(Motion::Equilibrium(Newton::default()).check(), []);
+        assert_eq!(Motion::Static(Relaxation::default()).check(), []);
+        assert_eq!(Motion::Newton(Newton::default()).check(), []);
         assert_eq!(Motion::dynamic(1.0, 0.0).check(), []);
     }
 
@@ -292,8 +292,8 @@ mod tests {
         };
         let of_relaxation = ["load_end", "load_steps", "max_steps", "tolerance"];
         let expected = [&of_relaxation[..], &of_step].concat();
-        assert_eq!(fields(&Motion::Static(relaxation).check()), expected);
-        let newton = Motion::Equilibrium(Newton { load_end: -1.0, tolerance: 1.0 });
+        assert_eq!(fields(&Motion::Relaxed(relaxation).check()), expected);
+        let newton = Motion::Newton(Newton { load_end: -1.0, tolerance: 1.0 });
         assert_eq!(fields(&newton.check()), ["load_end", "tolerance"]);
     }
 

@@ -61,7 +61,7 @@ impl Problem {
             conditions: Vec::new(),
             loads: Loads::default(),
             obstacles: Vec::new(),
-            motion: Motion::Automatic(Relaxation::default()),
+            motion: Motion::Static(Relaxation::default()),
         }
     }
 
@@ -92,9 +92,9 @@ impl Problem {
     /// Whether Newton's method is what is tried at first.
     pub fn by_newton(&self) -> bool {
         match self.motion {
-            Motion::Automatic(_) => !sticks(&self.obstacles),
-            Motion::Equilibrium(_) => true,
-            Motion::Static(_) | Motion::Dynamic { .. } => false,
+            Motion::Static(_) => !sticks(&self.obstacles),
+            Motion::Newton(_) => true,
+            Motion::Relaxed(_) | Motion::Dynamic { .. } => false,
         }
     }
 }

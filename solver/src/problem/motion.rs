@@ -15,11 +15,11 @@ pub enum Motion {
     /// To a static solution by what suits the scene: Newton's method, unless a body sticks to
     /// obstacles, where the way to the solution matters; relaxation with these settings there
     /// and where Newton's method fails.
-    Automatic(Relaxation),
-    /// Dynamic relaxation to a static solution.
     Static(Relaxation),
+    /// Dynamic relaxation to a static solution.
+    Relaxed(Relaxation),
     /// Newton's method to a static solution.
-    Equilibrium(Newton),
+    Newton(Newton),
 }
 
 impl Motion {
@@ -27,25 +27,25 @@ impl Motion {
     pub fn end(&self) -> f64 {
         match self {
             Motion::Dynamic { end, .. } => *end,
-            Motion::Automatic(Relaxation { load_end, .. })
-            | Motion::Static(Relaxation { load_end, .. })
-            | Motion::Equilibrium(Newton { load_end, .. }) => *load_end,
+            Motion::Static(Relaxation { load_end, .. })
+            | Motion::Relaxed(Relaxation { load_end, .. })
+            | Motion::Newton(Newton { load_end, .. }) => *load_end,
         }
     }
 
     /// Settings of relaxation, where it may be what solves a static problem.
     pub fn relaxation(&self) -> Option<&Relaxation> {
         match self {
-            Motion::Automatic(relaxation) | Motion::Static(relaxation) => Some(relaxation),
-            Motion::Dynamic { .. } | Motion::Equilibrium(_) => None,
+            Motion::Static(relaxation) | Motion::Relaxed(relaxation) => Some(relaxation),
+            Motion::Dynamic { .. } | Motion::Newton(_) => None,
         }
     }
 
     /// As [`Motion::relaxation`], to be changed.
     pub fn relaxation_mut(&mut self) -> Option<&mut Relaxation> {
         match self {
-            Motion::Automatic(relaxation) | Motion::Static(relaxation) => Some(relaxation),
-            Motion::Dynamic { .. } | Motion::Equilibrium(_) => None,
+            Motion::Static(relaxation) | Motion::Relaxed(relaxation) => Some(relaxation),
+            Motion::Dynamic { .. } | Motion::Newton(_) => None,
         }
     }
 

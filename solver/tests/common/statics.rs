@@ -8,7 +8,7 @@ use mtled::motion::summary::Summary;
 pub const TOLERANCE: f64 = 1e-5;
 
 pub fn relaxation(tolerance: f64) -> Motion {
-    Motion::Static(Relaxation {
+    Motion::Relaxed(Relaxation {
         load_end: 1.0,
         load_steps: 200,
         tolerance,
@@ -19,7 +19,7 @@ pub fn relaxation(tolerance: f64) -> Motion {
 }
 
 pub fn newton() -> Motion {
-    Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-10 })
+    Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-10 })
 }
 pub struct Solved {
     pub discretisation: Discretisation,

@@ -2,9 +2,9 @@
 
 mod case;
 mod common;
-mod explore;
 mod init;
 mod inspect;
+mod lab;
 mod load;
 mod manual;
 mod messages;
@@ -24,7 +24,7 @@ mod warp;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use common::{ARGUMENTS, COULD_NOT_RUN, Common, Format, STOPPED, arguments};
-use explore::{budget, runs, tune};
+use lab::{budget, runs, tune};
 use std::ffi::OsString;
 use std::process::ExitCode;
 use streams::or_reader_has_ended;

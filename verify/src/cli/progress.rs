@@ -1,7 +1,7 @@
 //! Progress bars on a terminal, and a line of progress now and then elsewhere.
 
 use super::common::{Common, STOPPED};
-use crate::explore::store::{Planned, Progress, Stopped};
+use crate::lab::store::{Planned, Progress, Stopped};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use mtled_checks::escape::printable;
 use std::sync::Mutex;

@@ -4,12 +4,12 @@ use super::common::Common;
 use super::streams::{print_data, print_text};
 use crate::accuracy::ReferenceSolution;
 use crate::bundled::unpack;
-use crate::explore::store::Source;
+use crate::contests::solvers::{Spacing, absolute, solve_job};
+use crate::lab::store::Source;
 use crate::protocol::{
     Job, Resolution, SoundReply, answer_schema, job_schema, parse_job, read_reply,
 };
 use crate::scene::{one_error, read_case};
-use crate::speed::solvers::{Spacing, absolute, solve_job};
 use anyhow::{Context, Result, bail};
 use clap::{Subcommand, ValueEnum};
 use mtled_checks::input::read_text;

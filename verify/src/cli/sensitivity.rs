@@ -3,7 +3,7 @@
 use super::common::{Common, INCONCLUSIVE, STOPPED};
 use super::load::SetArgs;
 use super::progress::progress_bar;
-use crate::explore::store::Source;
+use crate::lab::store::Source;
 use crate::run::{audit_doubts, ensure_fits};
 use crate::sensitivity::{Unmeasured, measure, to_json, to_text};
 use anyhow::{Context, Result};

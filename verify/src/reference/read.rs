@@ -101,7 +101,7 @@ fn check(case: &Case, file: &ReferenceFile) -> Result<(), ReferenceError> {
 fn check_times(case: &Case, times: &[f64]) -> Result<(), ReferenceError> {
     let refuse = |reason: String| Err(ReferenceError::Times { case: case.name.clone(), reason });
     match &case.problem.motion {
-        Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => {
+        Motion::Static(_) | Motion::Relaxed(_) | Motion::Newton(_) => {
             let load_end = case.problem.motion.end();
             if times != [load_end] {
                 return refuse(format!("must be [{load_end}], the end of loading"));

@@ -162,7 +162,7 @@ pub fn outcome_of(error: &Error) -> &'static str {
 fn method(case: &Case) -> &'static str {
     match case.problem.motion {
         Motion::Dynamic { .. } => "dynamic",
-        Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => "static",
+        Motion::Static(_) | Motion::Relaxed(_) | Motion::Newton(_) => "static",
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::answers::{Asked, AskedError, NoAnswer, asked};
 use super::numbers::{Number, numbers};
-use crate::explore::store::Source;
+use crate::lab::store::Source;
 use crate::machine::cpu_seconds;
 use crate::run::{Prepared, interrupted, located, prepare_to_run};
 use crate::scene::{Case, Diagnostic, NotAnOverride, Override, parse_overridden};
@@ -179,8 +179,8 @@ pub fn measure(
 
 /// Newton's method in place of relaxation; refuses motions, and obstacles that hold.
 fn by_newton(case: &mut Case) -> Result<(), Unmeasured> {
-    if let Motion::Static(relaxation) = case.problem.motion {
-        case.problem.motion = Motion::Automatic(relaxation);
+    if let Motion::Relaxed(relaxation) = case.problem.motion {
+        case.problem.motion = Motion::Static(relaxation);
     }
     let holds = |obstacle: &Obstacle| obstacle.friction == Friction::NoSlip;
     let (key, reason) = if let Motion::Dynamic { .. } = case.problem.motion {

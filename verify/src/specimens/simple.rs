@@ -80,7 +80,7 @@ pub fn bonded_face(axis: usize, at: f64, by: f64, amplitude: Amplitude) -> Essen
 
 /// Dynamic relaxation under loads that grow over 1 s in `load_steps` steps.
 pub fn relaxation(load_steps: usize, tolerance: f64) -> Motion {
-    Motion::Static(Relaxation {
+    Motion::Relaxed(Relaxation {
         load_steps,
         tolerance,
         max_steps: 100_000,

@@ -2,9 +2,9 @@
 
 use super::read::{CaseFormat, SuiteFormat};
 use crate::accuracy::{Group, ReferenceSolution, own_reference_text};
-use crate::explore::label::percent;
-use crate::explore::store::{Job, RunOutcome, RunRecord, Source, Task, TaskRunner};
-use crate::explore::sweep::{REFINEMENT, ReferenceSource, find_reference};
+use crate::lab::label::percent;
+use crate::lab::store::{Job, RunOutcome, RunRecord, Source, Task, TaskRunner};
+use crate::lab::sweep::{REFINEMENT, ReferenceSource, find_reference};
 use crate::scene::{Knob, Setting, read_text};
 use anyhow::{Context, Result, bail};
 use mtled_checks::report::four_digits;

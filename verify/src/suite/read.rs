@@ -1,8 +1,8 @@
 //! The suite of a user's own cases: a TOML file that names them and what is asked of each.
 
 use crate::accuracy::{Group, ReferenceSolution};
-use crate::explore::store::Source;
-use crate::explore::sweep::{REFINEMENT, ReferenceSource};
+use crate::lab::store::Source;
+use crate::lab::sweep::{REFINEMENT, ReferenceSource};
 use crate::scene::{Diagnostic, Document, Override, deserialise, one_error, read_text};
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};

@@ -2,7 +2,7 @@
 
 use super::read::{Suite, SuiteCase};
 use super::study::{CaseRuns, case_study};
-use crate::explore::store::{Job, RunRecord, Task, TaskRunner};
+use crate::lab::store::{Job, RunRecord, Task, TaskRunner};
 use crate::scene::{Knob, Setting};
 use anyhow::Result;
 use mtled_checks::study::Study;

@@ -2,8 +2,8 @@
 
 use super::read::{Suite, SuiteCase};
 use crate::accuracy::{Difference, Group};
-use crate::explore::label::percent;
-use crate::explore::store::{RunOutcome, RunRecord};
+use crate::lab::label::percent;
+use crate::lab::store::{RunOutcome, RunRecord};
 use crate::reference::{Family, Quantity, is_dynamic, quantities};
 use mtled_checks::report::four_digits;
 use mtled_checks::study::{Better, Bound, Cell, Check, Kind, Study, Table, number, text};

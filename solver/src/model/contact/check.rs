@@ -137,7 +137,7 @@ impl ContactPlan {
     /// node\] \[m\] because conditions hold them in the way in which the obstacle would push.
     pub fn penetrations(&self, positions: &[Vector3], u: &[f64]) -> Vec<Warning> {
         let components = u.len() / positions.len();
-        let spacing = vec![self.skin; positions.len()];
+        let spacing = vec![self.mean_spacing; positions.len()];
         let warning = |obstacle: &Obstacle| {
             let gaps = self.held.iter().map(|&node| {
                 let node = node as usize;

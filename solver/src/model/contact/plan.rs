@@ -22,8 +22,8 @@ pub struct ContactPlan {
     pub held: Vec<u32>,
     /// Which components obstacles may push \[node\]\[component\].
     free: Vec<Components>,
-    /// Candidates are searched again when the body may have moved so far \[m\].
-    pub skin: f64,
+    /// Mean nodal spacing \[m\]; candidates are searched again when the body may have moved so far.
+    pub mean_spacing: f64,
     /// Widths of obstacles that nodes alone may miss \[obstacle\] \[m\].
     pub(super) narrow: Vec<Option<f64>>,
     /// The body whose surface they may enter between nodes; none where there are no such obstacles.
@@ -66,7 +66,7 @@ impl ContactPlan {
         let count = |node: u32| free[node as usize].iter().filter(|free| **free).count();
         let nodes = boundary().filter(|node| count(*node) > 0).collect();
         let held = boundary().filter(|node| count(*node) < components).collect();
-        let skin = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
+        let mean_spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
         let section = |obstacle: &Obstacle| -> Result<Obstacle, Error> {
             let shape = obstacle.shape.section(&problem.dimension)?;
             Ok(Obstacle { shape, ..obstacle.clone() })
@@ -75,9 +75,9 @@ impl ContactPlan {
             problem.obstacles.iter().map(section).collect::<Result<_, _>>()?;
         let around = problem.body.bounding_box();
         let narrow: Vec<Option<f64>> =
-            obstacles.iter().map(|obstacle| narrow(obstacle, around, skin)).collect();
+            obstacles.iter().map(|obstacle| narrow(obstacle, around, mean_spacing)).collect();
         let outside = narrow.iter().any(Option::is_some).then(|| Outside::new(problem));
-        Ok(ContactPlan { obstacles, nodes, held, free, skin, narrow, outside })
+        Ok(ContactPlan { obstacles, nodes, held, free, mean_spacing, narrow, outside })
     }
 
     /// Which components of a node obstacles may push.
@@ -99,7 +99,7 @@ impl ContactPlan {
             for &node in &self.nodes {
                 let X = positions[node as usize];
                 let x = X + vector_at(u, node as usize, components);
-                if gap(obstacle, &x) < CLOSED * self.skin {
+                if gap(obstacle, &x) < CLOSED * self.mean_spacing {
                     match obstacle.friction {
                         Friction::Frictionless => {
                             closed.push((X, normal(obstacle, &x, self.free(node))));

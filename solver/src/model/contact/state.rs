@@ -53,7 +53,7 @@ impl ContactState {
         let components = step.displacement.len() / positions.len();
         let increment = largest_increment * (components as f64).sqrt();
         self.travelled += increment;
-        let search = !self.searched || self.travelled > plan.skin;
+        let search = !self.searched || self.travelled > plan.mean_spacing;
         if search {
             self.search(plan, positions, step.displacement, increment);
         }
@@ -120,14 +120,14 @@ impl ContactState {
         }
     }
 
-    /// Lists the nodes with a gap below twice the skin, before the last step too.
+    /// Lists the nodes with a gap below twice the mean spacing, before the last step too.
     fn search(&mut self, plan: &ContactPlan, positions: &[Vector3], u: &[f64], increment: f64) {
         let components = u.len() / positions.len();
         self.candidates.clear();
         for (index, obstacle) in plan.obstacles.iter().enumerate() {
             for &node in &plan.nodes {
                 let x = positions[node as usize] + vector_at(u, node as usize, components);
-                if gap(obstacle, &x) < 2.0 * plan.skin + increment {
+                if gap(obstacle, &x) < 2.0 * plan.mean_spacing + increment {
                     self.candidates.push((index as u32, node));
                 }
             }

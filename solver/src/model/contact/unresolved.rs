@@ -33,7 +33,7 @@ impl ContactPlan {
     ) -> Result<(), Error> {
         for (index, obstacle) in self.obstacles.iter().enumerate() {
             let samples = self.samples(index, bounding_box(positions));
-            let deep = |y: &Vector3| body.signed_distance(y) < -DEEP * self.skin;
+            let deep = |y: &Vector3| body.signed_distance(y) < -DEEP * self.mean_spacing;
             if let Some(position) = samples.into_iter().find(deep) {
                 return Err(Error::ObstacleInBody { name: obstacle.name.clone(), position });
             }
@@ -47,7 +47,7 @@ impl ContactPlan {
         let least = self.narrow.iter().flatten().copied().reduce(f64::min);
         let Some((outside, width)) = self.outside.as_ref().zip(least) else { return Vec::new() };
         // Where the surface has no panels, the set-up has refused or warned.
-        let Ok(between) = outside.places(discretisation, self.skin, width) else {
+        let Ok(between) = outside.places(discretisation, self.mean_spacing, width) else {
             return Vec::new();
         };
         let now = between.current(u, u.len() / discretisation.cloud.positions.len());
@@ -59,7 +59,7 @@ impl ContactPlan {
             let depths = now.iter().map(|x| -gap(obstacle, x)).enumerate();
             let (place, depth) = depths.fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
             let name = obstacle.name.clone();
-            if depth > DEEP * self.skin {
+            if depth > DEEP * self.mean_spacing {
                 let position = between.positions[place];
                 warnings.push(Warning::SurfaceInObstacle { name, position, depth });
             } else if let Some(position) = self.swallowed(index, discretisation, u) {
@@ -77,7 +77,7 @@ impl ContactPlan {
         let (now, hash) = self.moved(positions, u);
         let is_inside = |y: &Vector3| {
             let (mut nearest, mut sum, mut count) = ((f64::INFINITY, 0), Vector3::zeros(), 0.0);
-            hash.visit(y, AROUND * self.skin, |node, _| {
+            hash.visit(y, AROUND * self.mean_spacing, |node, _| {
                 let way = now[node] - y;
                 let distance = way.norm();
                 sum += way / distance.max(f64::MIN_POSITIVE);
@@ -88,9 +88,9 @@ impl ContactPlan {
                 true
             });
             let X = || y - vector_at(u, nearest.1, d);
-            nearest.0 < self.skin
+            nearest.0 < self.mean_spacing
                 && sum.norm() < ONE_SIDED * count
-                && body.signed_distance(&X()) < -INSIDE * self.skin
+                && body.signed_distance(&X()) < -INSIDE * self.mean_spacing
         };
         let around = bounding_box(&now);
         let narrow = (0..self.obstacles.len()).filter(|index| self.narrow[*index].is_some());
@@ -118,8 +118,8 @@ impl ContactPlan {
                 X = y - discretisation.rows_at(&[X]).ok()?.interpolate(0, u, d);
             }
             let x = X + discretisation.rows_at(&[X]).ok()?.interpolate(0, u, d);
-            let found = (x - y).norm() < FOUND * self.skin;
-            (found && body.signed_distance(&X) < -DEEP * self.skin).then_some(X)
+            let found = (x - y).norm() < FOUND * self.mean_spacing;
+            (found && body.signed_distance(&X) < -DEEP * self.mean_spacing).then_some(X)
         };
         self.samples(index, bounding_box(&now)).iter().find_map(origin)
     }
@@ -129,7 +129,7 @@ impl ContactPlan {
         let d = u.len() / positions.len();
         let nodes = positions.iter().enumerate();
         let now: Vec<Vector3> = nodes.map(|(node, X)| X + vector_at(u, node, d)).collect();
-        let mut hash = PointHash::new(self.skin, self.skin);
+        let mut hash = PointHash::new(self.mean_spacing, self.mean_spacing);
         now.iter().for_each(|x| hash.insert(*x));
         (now, hash)
     }

@@ -81,7 +81,7 @@ impl ActiveContacts {
             for &node in &model.contact.nodes {
                 let (x, free) = (place(model, node, u), model.contact.free(node));
                 let depth = -gap(shape, &x);
-                let entered = depth > ENTERED * model.contact.skin
+                let entered = depth > ENTERED * model.contact.mean_spacing
                     && !known.contains(&(obstacle, node))
                     && normal(shape, &x, free) != Vector3::zeros();
                 if entered {
@@ -143,7 +143,7 @@ impl ActiveContacts {
         forces: &[ContactForce],
         only_resisting: bool,
     ) -> Vec<(u32, Matrix3)> {
-        let step = SLIDING_STEP * model.contact.skin;
+        let step = SLIDING_STEP * model.contact.mean_spacing;
         let mut found = Vec::new();
         for (contact, force) in self.contacts.iter().zip(forces) {
             if contact.anchor.is_some() {
@@ -184,7 +184,7 @@ impl ActiveContacts {
             let Some(width) = contact.width(obstacle) else { continue };
             let known: BTreeSet<u32> =
                 self.contacts.iter().filter(|c| c.obstacle == obstacle).map(|c| c.node).collect();
-            let inside = PASSING * width.min(contact.skin);
+            let inside = PASSING * width.min(contact.mean_spacing);
             for &node in contact.nodes.iter().filter(|node| !known.contains(node)) {
                 let from = place(model, node, u);
                 let way = vector_at(change, node as usize, model.components);

@@ -166,7 +166,8 @@ impl Solver<'_> {
                 return Err(failed);
             }
             let open = self.free.contacts.iter().fold(0.0f64, |a, row| a.max(row.way.abs()));
-            let settled = changes == 0 && open <= CLOSED.max(load.tolerance) * model.contact.skin;
+            let settled =
+                changes == 0 && open <= CLOSED.max(load.tolerance) * model.contact.mean_spacing;
             if settled && course.is_whole() && self.is_balanced(&course.now, load.tolerance) {
                 return Ok(course.now);
             }
@@ -333,7 +334,7 @@ impl Solver<'_> {
             .sum::<f64>()
             .sqrt();
         let stiffness: f64 = self.linear.diagonal().iter().sum();
-        let shift = resultant / (stiffness * FIRST_MOVE * model.contact.skin);
+        let shift = resultant / (stiffness * FIRST_MOVE * model.contact.mean_spacing);
         shift.clamp(SHIFTS.0, SHIFTS.1)
     }
 

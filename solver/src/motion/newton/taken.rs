@@ -55,7 +55,7 @@ impl Solver<'_> {
     /// with obstacles no more than a spacing, lest nodes pass through them.
     pub(super) fn part_of(&self, mut jump: Vec<f64>) -> (Vec<f64>, bool) {
         let contact = &self.model.contact;
-        let part = LARGEST_JUMP * contact.skin / largest(&jump);
+        let part = LARGEST_JUMP * contact.mean_spacing / largest(&jump);
         let whole = contact.obstacles.is_empty() || part >= 1.0;
         if !whole {
             jump.iter_mut().for_each(|jump| *jump *= part);
@@ -98,7 +98,7 @@ impl Solver<'_> {
             };
         }
         let model = self.model;
-        let farthest = LARGEST_MOVE * model.contact.skin / largest(change);
+        let farthest = LARGEST_MOVE * model.contact.mean_spacing / largest(change);
         let length = if model.contact.obstacles.is_empty() { 1.0 } else { farthest.min(safe) };
         if self.floating && farthest < 1.0 && self.shift < SHIFTS.1 {
             return Outcome::TooFar;

@@ -54,7 +54,7 @@ pub fn problem_in(scene: &Scene, frame: &Frame) -> Result<Problem> {
 
 fn motion(scene: &Scene) -> Motion {
     match scene.way {
-        Way::Newton => Motion::Equilibrium(Newton { load_end: 1.0, tolerance: RESIDUAL }),
+        Way::Newton => Motion::Newton(Newton { load_end: 1.0, tolerance: RESIDUAL }),
         Way::Motion { end, damping } => {
             Motion::dynamic(end * scene.wave_time(), damping / scene.wave_time())
         }

@@ -29,7 +29,7 @@ pub const RELATIONS: &[Relation] = &[
                  hundred times as sensitive as the displacement",
         compare: |subject| {
             is_smooth(&subject.scene)
-                .then(|| relaxed(subject, Motion::Static(relaxation(RelaxationMass::Stiffness))))?
+                .then(|| relaxed(subject, Motion::Relaxed(relaxation(RelaxationMass::Stiffness))))?
         },
     },
     Relation {
@@ -39,7 +39,7 @@ pub const RELATIONS: &[Relation] = &[
         reason: "As before; masses do not act at rest",
         compare: |subject| {
             is_smooth(&subject.scene)
-                .then(|| relaxed(subject, Motion::Static(relaxation(RelaxationMass::Lumped))))?
+                .then(|| relaxed(subject, Motion::Relaxed(relaxation(RelaxationMass::Lumped))))?
         },
     },
     Relation {
@@ -48,9 +48,8 @@ pub const RELATIONS: &[Relation] = &[
         bound: 1e-4,
         reason: "It is Newton's method to 0.01 of the tolerance, 1e-6, or relaxation to it",
         compare: |subject| {
-            is_smooth(&subject.scene).then(|| {
-                relaxed(subject, Motion::Automatic(relaxation(RelaxationMass::Stiffness)))
-            })?
+            is_smooth(&subject.scene)
+                .then(|| relaxed(subject, Motion::Static(relaxation(RelaxationMass::Stiffness))))?
         },
     },
     Relation {
@@ -93,7 +92,7 @@ pub const RELATIONS: &[Relation] = &[
                 let curve = Amplitude::Linear { duration: 100.0 };
                 let mut other = with_curve(subject.problem(), &curve);
                 let tolerance = crate::build::RESIDUAL;
-                other.motion = Motion::Equilibrium(Newton { load_end: 100.0, tolerance });
+                other.motion = Motion::Newton(Newton { load_end: 100.0, tolerance });
                 subject.with(other, &View::default())
             })?
         },

@@ -1,10 +1,10 @@
 //! `mtled init`.
 
 use crate::cli::common::Common;
-use crate::cli::explore::{StoreArgs, seconds};
+use crate::cli::lab::{StoreArgs, seconds};
 use crate::cli::progress::ManyRuns;
 use crate::cli::verify::{OTHER_CLOUDS, report};
-use crate::explore::store::TaskRunner;
+use crate::lab::store::TaskRunner;
 use crate::suite::{Draft, Limits, Suite, draft, find_cases};
 use anyhow::{Context, Result, bail};
 use clap::Args;

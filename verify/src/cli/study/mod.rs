@@ -4,8 +4,8 @@ mod race;
 mod solvers;
 
 use super::common::Common;
-use super::explore::sweep::{SweepArgs, sweep};
-use crate::explore::sweep::Subject;
+use super::lab::sweep::{SweepArgs, sweep};
+use crate::lab::sweep::Subject;
 use anyhow::Result;
 use clap::Subcommand;
 use race::{RaceArgs, race_study};

@@ -4,7 +4,7 @@ use crate::cli::common::Common;
 use crate::cli::publish::{publish, report_of, tables};
 use crate::cli::python::{checkout, installed};
 use crate::cli::streams::print_data;
-use crate::speed::race::{
+use crate::contests::race::{
     Challenge, Code, FINITE_ELEMENT_CODES, Interpreter, RaceOutcome, RaceSettings, race, run_here,
 };
 use anyhow::Result;

@@ -3,8 +3,8 @@
 use crate::bundled::REFERENCES;
 use crate::cli::common::{Common, STOPPED, command_line};
 use crate::cli::publish::{publish, report_of, tables};
-use crate::explore::store::Source;
-use crate::speed::solvers::{Contest, ContestCase, Entrant, Spacing, hold};
+use crate::contests::solvers::{Contest, ContestCase, Entrant, Spacing, hold};
+use crate::lab::store::Source;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use mtled_checks::input::read_text;

@@ -8,7 +8,7 @@ pub use own_suite::{OTHER_CLOUDS, report};
 use own_suite::{OwnRun, run_own};
 
 use super::common::{Common, STOPPED};
-use super::explore::StoreArgs;
+use super::lab::StoreArgs;
 use crate::machine::provenance;
 use crate::studies::workbench::{Suite, Workbench};
 use crate::studies::{Definition, STUDIES};

@@ -2,9 +2,9 @@
 
 use super::gate::{Gate, GateArgs};
 use crate::cli::common::Common;
-use crate::cli::explore::StoreArgs;
+use crate::cli::lab::StoreArgs;
 use crate::cli::progress::ManyRuns;
-use crate::explore::store::TaskRunner;
+use crate::lab::store::TaskRunner;
 use crate::machine::provenance;
 use crate::suite::Suite;
 use anyhow::bail;

@@ -59,10 +59,10 @@ pub fn ratios(problem: &Problem) -> &'static [f64] {
 /// Newton's method, where it is what solves the run or takes the place of a relaxation without
 /// contact.
 fn by_newton(problem: &Problem) -> Option<Motion> {
-    let relaxed = matches!(problem.motion, Motion::Static(_)) && problem.obstacles.is_empty();
+    let relaxed = matches!(problem.motion, Motion::Relaxed(_)) && problem.obstacles.is_empty();
     let serves = problem.by_newton() || relaxed;
     let load_end = problem.motion.end();
-    serves.then_some(Motion::Equilibrium(Newton { load_end, tolerance: TOLERANCE }))
+    serves.then_some(Motion::Newton(Newton { load_end, tolerance: TOLERANCE }))
 }
 
 /// Solves a case with every length of its recipe multiplied by `ratio`; nothing of its

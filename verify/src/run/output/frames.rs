@@ -59,7 +59,7 @@ pub fn lists_frames(collection: &Path) -> bool {
 fn order(motion: &Motion) -> Order {
     match motion {
         Motion::Dynamic { .. } => Order::Time,
-        Motion::Automatic(_) | Motion::Static(_) | Motion::Equilibrium(_) => Order::Number,
+        Motion::Static(_) | Motion::Relaxed(_) | Motion::Newton(_) => Order::Number,
     }
 }
 

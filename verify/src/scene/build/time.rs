@@ -35,8 +35,8 @@ impl Builder<'_> {
             }
             MethodFormat::Static => match format.solver {
                 Some(SolverFormat::Newton) => self.newton(format),
-                Some(SolverFormat::Relaxation) => Motion::Static(relaxation(format)),
-                None | Some(SolverFormat::Auto) => Motion::Automatic(relaxation(format)),
+                Some(SolverFormat::Relaxation) => Motion::Relaxed(relaxation(format)),
+                None | Some(SolverFormat::Auto) => Motion::Static(relaxation(format)),
             },
         };
         self.refused(motion.check(), |field| match field {
@@ -59,7 +59,7 @@ impl Builder<'_> {
             self.mistake(&format!("time.{name}"), message);
         }
         let preset = Newton::default();
-        Motion::Equilibrium(Newton {
+        Motion::Newton(Newton {
             load_end: format.load_end.unwrap_or(preset.load_end),
             tolerance: format.tolerance.unwrap_or(preset.tolerance),
         })

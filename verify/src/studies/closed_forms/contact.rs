@@ -40,15 +40,15 @@ const BALANCE: f64 = 1e-3;
 fn solvers() -> [(&'static str, Motion); 2] {
     let relaxation = Relaxation { tolerance: 1e-5, ..Relaxation::default() };
     [
-        ("newton", Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-6 })),
-        ("relaxation", Motion::Static(relaxation)),
+        ("newton", Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-6 })),
+        ("relaxation", Motion::Relaxed(relaxation)),
     ]
 }
 
 /// Checks of all three.
 pub fn contact(bench: &Workbench, results: &mut Results) -> Result<()> {
     for (solver, motion) in solvers() {
-        let relaxes = matches!(motion, Motion::Static(_));
+        let relaxes = matches!(motion, Motion::Relaxed(_));
         let with = |problem: Problem| Problem { motion: motion.clone(), ..problem };
         block_on_floor(&with(resting_block(bench)?), solver, results)?;
         // In relaxation the ball rolls on its nodes for a hundred thousand steps.

@@ -119,7 +119,7 @@ fn problem(
         prescribed: Prescribed::Field(exact),
         ..EssentialCondition::on_surface("faces", Selector::All, Vector3::zeros(), ramp)
     }];
-    problem.motion = Motion::Equilibrium(Newton { load_end: 1.0, tolerance: 1e-6 });
+    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-6 });
     Ok(problem)
 }
 

@@ -117,10 +117,10 @@ fn jittered(bench: &Workbench, mut case: Case) -> Case {
 
 fn compare(case: &Case, name: &'static str, label: &'static str) -> Result<Compared> {
     let Some(&settings) = case.problem.motion.relaxation() else { bail!("the case is not static") };
-    let motion = Motion::Equilibrium(Newton { load_end: settings.load_end, tolerance: RESIDUAL });
+    let motion = Motion::Newton(Newton { load_end: settings.load_end, tolerance: RESIDUAL });
     let problem = Problem { motion, ..case.problem.clone() };
     let newton = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
-    let preset = Motion::Automatic(Relaxation { tolerance: PRESET, ..settings });
+    let preset = Motion::Static(Relaxation { tolerance: PRESET, ..settings });
     let problem = Problem { motion: preset, ..case.problem.clone() };
     let automatic = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
     let relax = |mass| -> Result<Relaxed> {
@@ -128,7 +128,7 @@ fn compare(case: &Case, name: &'static str, label: &'static str) -> Result<Compa
         settings.tolerance = TOLERANCE;
         settings.load_steps = LOAD_STEPS;
         settings.mass = mass;
-        let problem = Problem { motion: Motion::Static(settings), ..case.problem.clone() };
+        let problem = Problem { motion: Motion::Relaxed(settings), ..case.problem.clone() };
         let mut trace = Trace { exact: &newton.state.displacement, history: Vec::new() };
         let solved = integrate(&problem, prepare(&problem)?, &mut trace)?;
         Ok(Relaxed { solved, history: trace.history })

@@ -129,7 +129,7 @@ fn problems(bench: &Workbench) -> anyhow::Result<Vec<(&'static str, &'static str
         ..twisted.conditions[1].clone()
     };
     let mut indented = bench.case("indented_block")?.problem;
-    indented.motion = Motion::Static(Relaxation::default());
+    indented.motion = Motion::Relaxed(Relaxation::default());
     let mut all = vec![
         ("compressed", "compressed by 50 %, ν = 0.3", block(0.3, -0.5)?),
         ("stretched", "stretched by 70 %, ν = 0.49", block(0.49, 0.7)?),

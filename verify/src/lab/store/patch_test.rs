@@ -1,0 +1,39 @@
+//! The affine patch test on the body and recipe of any case.
+#![allow(non_snake_case)]
+
+use super::record::Figures;
+use crate::accuracy::patch::{AffineField, affine_gradient};
+use crate::run::{integrate, prepare_to_run};
+use mtled::algebra::tensor::{Matrix3, Vector3};
+use mtled::error::Error;
+use mtled::motion::observe::Unobserved;
+use mtled::problem::{Loads, Motion, Newton, Problem};
+
+/// The body and recipe of a case, all of its first material, whose whole boundary
+/// follows u = H X, reached at t = 1 s.
+pub fn with_affine_boundary(problem: &Problem, H: Matrix3) -> Problem {
+    let mut problem = problem.clone();
+    let material = problem.regions[0].material;
+    problem.regions.iter_mut().for_each(|region| region.material = material);
+    problem.loads = Loads::default();
+    problem.obstacles.clear();
+    problem.conditions = vec![AffineField { H, centre: Vector3::zeros() }.on_boundary()];
+    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-12 });
+    problem
+}
+
+/// Largest errors of the displacement and its gradient at the quadrature points, over the
+/// largest displacement and over |H| \[–\]: as small as the tolerance of consistent
+/// gradients, some per cent with plain ones.
+pub fn patch_errors(problem: &Problem) -> Result<Figures, Error> {
+    let H = affine_gradient(problem.dimension.components());
+    let problem = with_affine_boundary(problem, H);
+    let prepared = prepare_to_run(&problem)?;
+    let solved = integrate(&problem, prepared, &mut Unobserved)?;
+    let field = AffineField { H, centre: Vector3::zeros() };
+    let errors = field.errors(&solved.prepared, &solved.state.displacement);
+    Ok(Figures::from([
+        ("patch_displacement_error".into(), errors.displacement / errors.largest),
+        ("patch_gradient_error".into(), errors.gradient / H.norm()),
+    ]))
+}
