@@ -16,6 +16,17 @@ pub fn provenance() -> Provenance {
     }
 }
 
+/// Does work on so many threads of its own. A thread of another pool that waited for them would take
+/// up other work meanwhile, upon the same stack, and so on until that overflows.
+pub fn on_threads<T: Send>(
+    threads: usize,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T, rayon::ThreadPoolBuildError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let done = std::thread::scope(|scope| scope.spawn(|| pool.install(work)).join());
+    Ok(done.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+}
+
 /// CPU seconds of this process so far, all threads.
 pub fn cpu_seconds() -> f64 {
     cpu_time::ProcessTime::now().as_duration().as_secs_f64()
@@ -110,6 +121,22 @@ fn civil_date(mut days: i64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_thread_that_waits_for_threads_of_its_own_takes_up_nothing_else() {
+        use rayon::prelude::*;
+        use std::cell::Cell;
+        thread_local!(static DEPTH: Cell<usize> = const { Cell::new(0) });
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let deepest = |_: usize| {
+            DEPTH.set(DEPTH.get() + 1);
+            let slow = || std::thread::sleep(std::time::Duration::from_millis(1));
+            on_threads(1, slow).unwrap();
+            DEPTH.replace(DEPTH.get() - 1)
+        };
+        let depth = pool.install(|| (0..50).into_par_iter().with_max_len(1).map(deepest).max());
+        assert_eq!(depth, Some(1));
+    }
 
     #[test]
     fn days_become_dates() {

@@ -56,6 +56,11 @@ pub fn ratios(problem: &Problem) -> &'static [f64] {
     }
 }
 
+/// Whether the coarser clouds are solved by Newton's method.
+pub fn is_by_newton(problem: &Problem) -> bool {
+    by_newton(problem).is_some()
+}
+
 /// Newton's method, where it is what solves the run or takes the place of a relaxation without
 /// contact.
 fn by_newton(problem: &Problem) -> Option<Motion> {

@@ -2,6 +2,7 @@
 
 use crate::accuracy::{Difference, Group, SAMPLES, difference, values};
 use crate::bundled::CASES;
+use crate::machine::on_threads;
 use crate::reference::{Mesh, ReferenceFile, ReferenceValues, agreements, is_dynamic};
 use crate::run::{Solved, solve_case};
 use crate::scene::Case;
@@ -47,10 +48,8 @@ pub fn compare_all(bench: &Workbench) -> Vec<Result<Compared>> {
     results.into_iter().map(|(_, result)| result).collect()
 }
 
-/// On a thread of its own: a thread of the studies would run other studies while it waits.
 fn compare(bench: &Workbench, name: &str) -> Result<Compared> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    pool.install(|| compare_here(bench, name))
+    on_threads(1, || compare_here(bench, name))?
 }
 
 fn compare_here(bench: &Workbench, name: &str) -> Result<Compared> {

@@ -1,6 +1,7 @@
 //! The answers of a case beside their error bars and what is known of them.
 
 use super::subjects::{Set, Subject};
+use crate::machine::on_threads;
 use crate::reference::agreement::rms_of_points;
 use crate::reference::{Family, quantities};
 use crate::run::{Estimated, NoErrorBar, Recording, Work, error_bars, numbers, solve_case};
@@ -79,8 +80,7 @@ impl Answer {
 
 /// Solves a subject and estimates its errors on one thread, whose time is measured.
 pub fn answered(subject: &Subject) -> Result<Answered> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    pool.install(|| {
+    on_threads(1, || {
         let start = ThreadTime::now();
         let (solved, record) = solve_case(&subject.case)?;
         let run_seconds = start.elapsed().as_secs_f64();
@@ -97,7 +97,7 @@ pub fn answered(subject: &Subject) -> Result<Answered> {
             work: work as f64 / visits,
             run_seconds,
         })
-    })
+    })?
 }
 
 fn answers(subject: &Subject, record: &Recording, bars: &Estimated) -> Vec<Answer> {

@@ -1,6 +1,7 @@
 //! Conservation of energy over many steps, its balance, and the same bits on
 //! any number of threads.
 
+use crate::machine::on_threads;
 use crate::run::{integrate, prepare};
 use crate::specimens::simple::{SIZE, block_shape, bonded_face, free_body, recipe, tissue};
 use crate::studies::motion::vibration::{Log, Vibration, vibrate};
@@ -280,12 +281,11 @@ fn determinism(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
 
 /// Bits of the final displacements after a short run, and the number of blocks.
 fn final_bits(problem: &Problem, threads: usize) -> anyhow::Result<(usize, Vec<u64>)> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    pool.install(|| {
+    on_threads(threads, || {
         let prepared = prepare(problem)?;
         let blocks = prepared.model.blocks.len();
         let solved = integrate(problem, prepared, &mut Unobserved)?;
         let bits = solved.state.displacement.iter().map(|u| u.to_bits()).collect();
         Ok((blocks, bits))
-    })
+    })?
 }

@@ -2,6 +2,7 @@
 //! contact and damping.
 #![allow(non_snake_case)]
 
+use crate::machine::on_threads;
 use crate::run::{integrate, prepare};
 use crate::specimens::simple::{SIZE, bonded_face, recipe};
 use crate::studies::single_parts::model::cube;
@@ -49,12 +50,11 @@ pub fn threads(bench: &Workbench, study: &mut Study) -> Result<()> {
 }
 
 fn force_on(threads: usize, model: &Model, u: &[f64]) -> Result<Vec<f64>> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    Ok(pool.install(|| {
+    Ok(on_threads(threads, || {
         let mut f = vec![0.0; u.len()];
         internal_force(model, u, &mut Workspace::new(model), &mut f);
         f
-    }))
+    })?)
 }
 
 /// A component that is prescribed alone has its value after one step.
