@@ -2,6 +2,7 @@
 
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::edit::values::replace;
+use crate::scene::format::CaseFormat;
 use crate::scene::key_path::{entry, is_within, joined, joined_index, names, segments};
 use crate::scene::nearest::nearest;
 use serde::{Deserialize, Serialize};
@@ -182,6 +183,9 @@ fn write(root: &mut Item, segments: &[String], value: Value) -> Result<String, R
                     table.insert(segment, Item::Value(value));
                     return Ok(path);
                 }
+                if here.is_empty() && is_list(segment) {
+                    return Err(no_list(segment));
+                }
                 refuse_unlikely(table, segment, &path)?;
                 table.insert(segment, Item::Value(InlineTable::new().into()));
             }
@@ -200,6 +204,19 @@ fn write(root: &mut Item, segments: &[String], value: Value) -> Result<String, R
 
 fn no_keys(path: &str) -> Refused {
     Refused::key(path, "is a value and has no keys".into())
+}
+
+/// Whether a case has a list of tables under a key.
+fn is_list(key: &str) -> bool {
+    let schema = schemars::schema_for!(CaseFormat);
+    schema.get("properties").is_some_and(|keys| keys[key]["type"] == "array")
+}
+
+fn no_list(key: &str) -> Refused {
+    let message = format!(
+        "is a list of which this case has no entry; set whole entries: {key}=[{{ name = \"…\", … }}]"
+    );
+    Refused::key(key, message)
 }
 
 /// Refuses the name of a table that is most likely a slip of the finger, and one among named
@@ -305,6 +322,8 @@ method = "static"
             ("materal.tissue.density=1", "materal", "did you mean `material`?"),
             ("material.tisue.density=1", "material.tisue", "did you mean `tissue`?"),
             ("material.skin.density=1", "material.skin", "this case, which has tissue"),
+            ("obstacle.floor.offset=1", "obstacle", "a list of which this case has no entry"),
+            ("probe[0].name=a", "probe", "set whole entries: probe=[{ name"),
             ("title.x=1", "title", "is a value and has no keys"),
             ("time=3", "time", "is a table, and `3` is none"),
             ("prescribe=3", "prescribe", "is a list of tables"),
