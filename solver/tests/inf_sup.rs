@@ -111,3 +111,26 @@ fn bodies_without_projection_and_bodies_that_float_have_no_inf_sup_value() {
     plain.recipe.volumetric_projection = VolumetricProjection::None;
     assert_eq!(inf_sup(&build(&plain).1), None);
 }
+
+/// On clouds that nobody chose: random ones.
+#[test]
+fn the_inf_sup_value_does_not_depend_on_the_stiffness_and_is_moderate_on_random_clouds() {
+    for seed in 0..10 {
+        let problem = on_its_base(soft(jittered(cube(4), 0.3, seed)));
+        let value = inf_sup(&build(&problem).1).unwrap().value;
+        let stiffer = ElasticConstants::from_young_poisson(3e6, 0.49).unwrap();
+        let law = NeoHookeanIsochoric::new(stiffer, VolumetricTerm::Quadratic);
+        let other = with_law(problem, Law::NeoHookeanIsochoric(law));
+        let other = inf_sup(&build(&other).1).unwrap().value;
+        assert!((value / other - 1.0).abs() < 1e-6, "cloud {seed}: {value} and {other}");
+        assert!((0.2..0.7).contains(&value), "cloud {seed}: {value}");
+    }
+}
+
+#[test]
+fn a_layer_whose_nodes_are_all_held_answers_no_pressure() {
+    let mut problem = on_its_base(soft(cube(1)));
+    problem.conditions.push(condition("top", face(2, EDGE), [Some(0.0); 3]));
+    let found = inf_sup(&build(&problem).1).unwrap();
+    assert!(found.value == 0.0 && found.converged, "{found:?}");
+}

@@ -3,7 +3,7 @@
 
 use super::free_space::FreeSpace;
 use super::linear::{MOST_WITH_PRESSURES, Saddle, SaddlePatch, Solver, System};
-use crate::algebra::packed::{axpy, dot};
+use crate::algebra::packed::{axpy, dot, largest};
 use crate::algebra::random::noise;
 use crate::model::rigid_motions::free_rigid_motions;
 use crate::model::{Model, ModuliAtRest};
@@ -25,6 +25,8 @@ const MOST_STEPS: usize = 40;
 /// Free part of the forces of a constant pressure below which it is one that no displacement
 /// answers, since the body is held all around \[–\].
 const ENCLOSED: f64 = 0.02;
+/// Part of a motion that is left where all of it is held, by round-off \[–\].
+const STILL: f64 = 1e-9;
 
 /// What a cloud does to the pressures of its patches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,6 +51,10 @@ pub fn inf_sup(model: &Model) -> Option<InfSup> {
     }
     let mut workspace = Workspace::new(model);
     let mut schur = Schur::new(model, &rest, &mut workspace)?;
+    if !schur.moves() {
+        let pressures = schur.pressures;
+        return Some(InfSup { value: 0.0, converged: true, pressures, products: 0 });
+    }
     let mut noise = noise();
     let mut first: Vec<f64> = schur.scales.iter().map(|_| noise()).collect();
     schur.mask(&mut first);
@@ -128,13 +134,19 @@ impl<'a, 'w> Schur<'a, 'w> {
         };
         schur.leave_out_unseen();
         schur.pressures = schur.scales.iter().filter(|scale| **scale > 0.0).count();
-        schur.find_enclosed(constant);
+        if schur.moves() {
+            schur.find_enclosed(constant);
+        }
         (schur.pressures > 0).then_some(schur)
     }
 
-    fn tangent(&mut self) -> Tangent<'_> {
-        let own = OwnPressures::zero(self.model, SHEAR_ALONE);
-        Tangent::new(self.model, self.rest, 0.0, self.workspace).with_pressures(Some(own))
+    /// Whether the conditions leave any motion free.
+    fn moves(&mut self) -> bool {
+        let mut noise = noise();
+        let mut any: Vec<f64> = self.rest.iter().map(|_| noise()).collect();
+        let all = largest(&any);
+        self.free.project(&mut any);
+        largest(&any) > STILL * all
     }
 
     /// Functions of a basis that are 0 at all points of their patch, as across a plane.
@@ -142,7 +154,7 @@ impl<'a, 'w> Schur<'a, 'w> {
         let mut noise = noise();
         let any: Vec<f64> = self.rest.iter().map(|_| noise()).collect();
         let none = vec![0.0; self.scales.len()];
-        let (_, volumes) = self.tangent().saddle_times(&any, &none);
+        let (_, volumes) = at_rest(self.model, self.rest, self.workspace).saddle_times(&any, &none);
         let unseen = volumes.iter().map(|volume| *volume == 0.0);
         self.scales
             .iter_mut()
@@ -154,7 +166,8 @@ impl<'a, 'w> Schur<'a, 'w> {
     /// Finds out whether a constant pressure \[Pa·m^(3/2)\] has forces on what is free.
     fn find_enclosed(&mut self, constant: Vec<f64>) {
         let still = vec![0.0; self.rest.len()];
-        let (forces, _) = self.tangent().saddle_times(&still, &constant);
+        let (forces, _) =
+            at_rest(self.model, self.rest, self.workspace).saddle_times(&still, &constant);
         let all = self.model.accelerations(&forces);
         let mut free = all.clone();
         self.free.project(&mut free);
@@ -187,9 +200,7 @@ impl<'a, 'w> Schur<'a, 'w> {
         let scaled = |(x, d): (&f64, &f64)| if *d > 0.0 { -x / d } else { 0.0 };
         let residual = right.iter().zip(&self.scales).map(scaled).collect();
         let (size, saddle) = (self.rest.len(), Saddle { residual, patches: self.patches.clone() });
-        let own = OwnPressures::zero(self.model, SHEAR_ALONE);
-        let tangent =
-            Tangent::new(self.model, self.rest, 0.0, self.workspace).with_pressures(Some(own));
+        let tangent = at_rest(self.model, self.rest, self.workspace);
         let system = System {
             tangent,
             residual: vec![0.0; size],
@@ -209,4 +220,10 @@ impl<'a, 'w> Schur<'a, 'w> {
         self.mask(&mut image);
         image
     }
+}
+
+/// The tangent A.
+fn at_rest<'a>(model: &'a Model, rest: &'a [f64], workspace: &'a mut Workspace) -> Tangent<'a> {
+    let own = OwnPressures::zero(model, SHEAR_ALONE);
+    Tangent::new(model, rest, 0.0, workspace).with_pressures(Some(own))
 }
