@@ -47,12 +47,25 @@ def _add_solving(commands) -> None:
     command.add_argument("--out", type=Path, required=True)
     command.set_defaults(run=_solve)
 
+    command = commands.add_parser("fibres", help="solve a box with fibres on several meshes")
+    command.add_argument("case", type=Path)
+    command.add_argument("--size", type=float, action="append", dest="sizes", required=True)
+    command.add_argument("--out", type=Path, required=True)
+    command.set_defaults(run=_fibres)
+
     command = commands.add_parser("solve-mesh", help="solve one mesh in this process")
     command.add_argument("case", type=Path)
     command.add_argument("--code", choices=CODES, required=True)
     command.add_argument("--mesh", type=int, choices=(*LEVELS, FINEST), required=True)
     command.add_argument("--out", type=Path, required=True)
     command.set_defaults(run=_solve_mesh)
+
+
+def _fibres(options) -> None:
+    # Needs FEniCSx.
+    from .fibres import solve_on_meshes
+
+    solve_on_meshes(options.case, options.sizes, options.out)
 
 
 def _add_race(commands) -> None:

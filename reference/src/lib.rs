@@ -39,6 +39,35 @@ bundled! {
     "uniaxial_bar"
 }
 
+/// A body with fibres, and what FEniCSx answers on it.
+#[derive(Debug)]
+pub struct WithFibres {
+    /// Name of its files.
+    pub name: &'static str,
+    /// Text of the case file.
+    pub case: &'static str,
+    /// Answers on meshes of falling size.
+    pub reference: &'static str,
+}
+
+/// Includes the files of a body with fibres.
+macro_rules! with_fibres {
+    ($($name:literal)*) => {
+        /// The bodies in `fibres`.
+        pub static FIBRES: &[WithFibres] = &[$(WithFibres {
+            name: $name,
+            case: include_str!(concat!("../fibres/", $name, ".toml")),
+            reference: include_str!(concat!("../fibres/", $name, ".json")),
+        }),*];
+    };
+}
+
+with_fibres! {
+    "land_1"
+    "muscle_bar"
+    "muscle_block"
+}
+
 /// (file, bytes) of the label maps in `brain`.
 pub static LABEL_MAPS: &[(&str, &[u8])] = &[
     ("brain.nrrd", include_bytes!("../brain/brain.nrrd")),

@@ -2,7 +2,7 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::GeometryError;
-use crate::problem::Mistake;
+use crate::problem::{Mistake, NoDirection};
 
 /// An equilibrium that a body leaves at the slightest touch, or has left by itself.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +57,9 @@ pub enum Error {
     NoQuadraturePoints,
     #[error("no region contains the point ({}): let the last region contain everything", show(.position))]
     PointWithoutRegion { position: Vector3 },
+    /// Fibres or sheets without a direction.
+    #[error(transparent)]
+    NoDirection(#[from] NoDirection),
     #[error("quadrature point {point} at ({}) has {support_size} nodes in its support and needs {smallest}: \
              raise the dilation, or add nodes there", show(.position))]
     SmallSupport { point: usize, position: Vector3, support_size: usize, smallest: usize },

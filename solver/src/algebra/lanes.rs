@@ -129,6 +129,8 @@ pub trait Lanes<S: Simd>: Real {
     /// As [`Number::PER_BLOCK`].
     const PER_BLOCK: usize;
     fn load(simd: S, parts: &Parts<SimdBlock>, entry: usize, piece: usize) -> Self;
+    /// A number that does not change.
+    fn fixed(simd: S, block: &SimdBlock, piece: usize) -> Self;
     fn store(self, parts: &mut Parts<SimdBlock>, entry: usize, piece: usize);
 }
 
@@ -142,6 +144,11 @@ macro_rules! lanes_of_values {
             #[inline(always)]
             fn load(simd: S, parts: &Parts<SimdBlock>, entry: usize, piece: usize) -> Self {
                 Number::read(simd, &parts.values[entry], piece)
+            }
+
+            #[inline(always)]
+            fn fixed(simd: S, block: &SimdBlock, piece: usize) -> Self {
+                Number::read(simd, block, piece)
             }
 
             #[inline(always)]
@@ -164,6 +171,12 @@ impl<S: Simd, N: Number<S>> Lanes<S> for Dual<N> {
             value: N::read(simd, &parts.values[entry], piece),
             slope: N::read(simd, &parts.slopes[entry], piece),
         }
+    }
+
+    #[inline(always)]
+    fn fixed(simd: S, block: &SimdBlock, piece: usize) -> Self {
+        let value = N::read(simd, block, piece);
+        Dual { value, slope: value * 0.0 }
     }
 
     #[inline(always)]

@@ -21,6 +21,10 @@ pub trait Real:
     fn times_plus(self, a: Self, b: Self) -> Self;
     /// Natural logarithm.
     fn ln(self) -> Self;
+    /// Exponential function.
+    fn exp(self) -> Self;
+    /// Another number where this one is not negative, else 0.
+    fn where_not_negative(self, other: Self) -> Self;
     /// |x|^(−2/3).
     fn power_minus_two_thirds(self) -> Self;
     /// g(A) = Σ_k g(a_k) n_k ⊗ n_k of a symmetric tensor (method book, eq. 3.17).
@@ -42,6 +46,16 @@ impl Real for f64 {
     #[inline(always)]
     fn ln(self) -> f64 {
         f64::ln(self)
+    }
+
+    #[inline(always)]
+    fn exp(self) -> f64 {
+        f64::exp(self)
+    }
+
+    #[inline(always)]
+    fn where_not_negative(self, other: f64) -> f64 {
+        if self >= 0.0 { other } else { 0.0 }
     }
 
     #[inline(always)]
@@ -73,6 +87,21 @@ impl<S: Simd> Real for f64x8<S> {
             #[inline(always)]
             |lane| self[lane].ln(),
         )
+    }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        f64x8::from_fn(
+            self.simd,
+            #[inline(always)]
+            |lane| self[lane].exp(),
+        )
+    }
+
+    #[inline(always)]
+    fn where_not_negative(self, other: Self) -> Self {
+        let zero = f64x8::splat(self.simd, 0.0);
+        self.simd_ge(zero).select(other, zero)
     }
 
     /// y = x^(−1/3) from a third of the exponent, which is right to 3.5 %, then two
@@ -126,6 +155,20 @@ impl<R: Real + Plain> Real for Dual<R> {
     #[inline(always)]
     fn ln(self) -> Self {
         Dual { value: self.value.ln(), slope: self.slope / self.value }
+    }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        Dual { value, slope: value * self.slope }
+    }
+
+    #[inline(always)]
+    fn where_not_negative(self, other: Self) -> Self {
+        Dual {
+            value: self.value.where_not_negative(other.value),
+            slope: self.value.where_not_negative(other.slope),
+        }
     }
 
     #[inline(always)]

@@ -56,11 +56,17 @@ pub fn dot<R: Real>(a: &[R; 3], b: &[R; 3]) -> R {
 /// C = FᵀF (method book, eq. 2.4).
 #[inline(always)]
 pub fn right_cauchy_green<R: Real>(F: &Tensor<R>) -> Tensor<R> {
-    let transpose = map(
-        #[inline(always)]
-        |i, j| F[j][i],
-    );
+    let transpose = transposed(F);
     times_symmetric(&transpose, &transpose)
+}
+
+/// Aᵀ.
+#[inline(always)]
+pub fn transposed<R: Real>(a: &Tensor<R>) -> Tensor<R> {
+    map(
+        #[inline(always)]
+        |i, j| a[j][i],
+    )
 }
 
 /// A Bᵀ, which is A B for a symmetric B.

@@ -185,7 +185,9 @@ fn a_soft_layer_of_one_spacing_is_doubted_and_one_of_four_is_not() {
         let part = cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, thickness]);
         let part = Selector::Inside { shape: part, tolerance: 0.0 };
         problem.body = cuboid([0.0; 3], [0.08, 0.08, 0.16]);
-        problem.regions.insert(0, Region { name: "soft".into(), part, material: tissue(300.0) });
+        problem
+            .regions
+            .insert(0, Region { name: "soft".into(), part, material: tissue(300.0), fibres: None });
         problem.loads = Default::default();
         problem.loads.body_forces = block().loads.body_forces;
         problem.loads.body_forces[0].acceleration = Vector3::new(0.0, 0.0, -0.2).into();

@@ -27,6 +27,16 @@ pub enum MaterialError {
         "the Mooney-Rivlin rubber with A = {a} Pa, B = {b} Pa, ν = {poisson_ratio} has D = {d} Pa < 0 and loses its stiffness in tension; use ν ≥ {smallest:.4} or a neo-Hookean law"
     )]
     UnstableRubber { a: f64, b: f64, poisson_ratio: f64, d: f64, smallest: f64 },
+    #[error("{name} is {value}; it must not be negative")]
+    Negative { name: &'static str, value: f64 },
+    #[error("kappa is {value}; it must lie in 0 ≤ κ ≤ 1/3, from aligned fibres to none")]
+    Dispersion { value: f64 },
+    #[error("angle is {value}; it must be finite")]
+    Angle { value: f64 },
+    #[error(
+        "Yeoh's law with C1 = {c1} Pa, C2 = {c2} Pa, C3 = {c3} Pa loses its stiffness at large stretches; C1 + 2 C2 x + 3 C3 x² must be positive for all x ≥ 0: C3 ≥ 0, and C2 > -√(3 C1 C3)"
+    )]
+    UnstableYeoh { c1: f64, c2: f64, c3: f64 },
     #[error("terms has {count} entries; Ogden's law takes one to three")]
     OgdenTerms { count: usize },
     #[error("alpha is {value}; it must be finite and not 0")]

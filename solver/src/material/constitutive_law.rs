@@ -28,6 +28,9 @@ impl<R: Real> Deformation<R> {
 /// What the internal force needs of a law; the loops over the stresses are
 /// compiled once per law.
 pub trait ConstitutiveLaw: Copy + Send + Sync {
+    /// Whether F is given in the fibre frame, F Q with the directions of fibres, sheets and their
+    /// normals as columns of Q, and P as P Q.
+    const HAS_FIBRES: bool = false;
     /// Strain energy per reference volume ψ \[Pa\].
     fn strain_energy(&self, F: &Matrix3) -> f64;
     /// First Piola–Kirchhoff stress P \[Pa\].

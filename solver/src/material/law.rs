@@ -4,6 +4,9 @@
 use crate::algebra::tensor::{Matrix3, tensor};
 use crate::material::constants::ElasticConstants;
 use crate::material::constitutive_law::{ConstitutiveLaw, Deformation};
+use crate::material::isochoric::{
+    Demiray, Guccione, HolzapfelGasserOgden, HolzapfelOgden, Isochoric, ShapeEnergy, Yeoh,
+};
 use crate::material::linear_elastic::LinearElastic;
 use crate::material::mooney_rivlin::MooneyRivlin;
 use crate::material::neo_hookean_isochoric::NeoHookeanIsochoric;
@@ -23,6 +26,16 @@ pub enum Law {
     NeoHookeanIsochoric(NeoHookeanIsochoric),
     /// Ogden's law with the isochoric split.
     Ogden(Ogden),
+    /// Yeoh's rubber.
+    Yeoh(Isochoric<Yeoh>),
+    /// Isotropic tissue that stiffens exponentially.
+    Demiray(Isochoric<Demiray>),
+    /// Transversely isotropic muscle.
+    Guccione(Isochoric<Guccione>),
+    /// Arteries: two families of dispersed fibres.
+    HolzapfelGasserOgden(Isochoric<HolzapfelGasserOgden>),
+    /// Muscle with fibres and sheets.
+    HolzapfelOgden(Isochoric<HolzapfelOgden>),
     /// Linear in the Green–Lagrange strain.
     StVenantKirchhoff(StVenantKirchhoff),
     /// Hooke's law for small rotations.
@@ -40,6 +53,11 @@ macro_rules! with_law {
             $crate::material::Law::NeoHookeanLogJ($law) => $body,
             $crate::material::Law::NeoHookeanIsochoric($law) => $body,
             $crate::material::Law::Ogden($law) => $body,
+            $crate::material::Law::Yeoh($law) => $body,
+            $crate::material::Law::Demiray($law) => $body,
+            $crate::material::Law::Guccione($law) => $body,
+            $crate::material::Law::HolzapfelGasserOgden($law) => $body,
+            $crate::material::Law::HolzapfelOgden($law) => $body,
             $crate::material::Law::StVenantKirchhoff($law) => $body,
             $crate::material::Law::LinearElastic($law) => $body,
             $crate::material::Law::Own($law) => $body,
@@ -87,6 +105,23 @@ impl Law {
             _ => Some(1.0 - 1.5 * c.shear_modulus / c.lame_modulus())
                 .filter(|s| *s > 1e-9)
                 .unwrap_or(0.0),
+        }
+    }
+
+    /// Whether it depends on the directions of fibres, so that F must be given in their frame.
+    pub fn has_fibres(&self) -> bool {
+        fn of<L: ConstitutiveLaw>(_: &L) -> bool {
+            L::HAS_FIBRES
+        }
+        with_law!(self, law => of(law))
+    }
+
+    /// Whether it depends on the directions of sheets too.
+    pub fn has_sheets(&self) -> bool {
+        match self {
+            Law::HolzapfelGasserOgden(law) => law.shape().has_sheets(),
+            Law::HolzapfelOgden(law) => law.shape().has_sheets(),
+            _ => false,
         }
     }
 

@@ -3,6 +3,7 @@
 
 mod constants;
 mod constitutive_law;
+mod isochoric;
 mod law;
 mod linear_elastic;
 mod mooney_rivlin;
@@ -15,6 +16,9 @@ mod volumetric_term;
 
 pub use constants::{ElasticConstants, MaterialError};
 pub use constitutive_law::{ConstitutiveLaw, Deformation};
+pub use isochoric::{
+    Constant, Demiray, Guccione, HolzapfelGasserOgden, HolzapfelOgden, Isochoric, ShapeEnergy, Yeoh,
+};
 pub(crate) use law::with_law;
 pub use law::{Law, Material};
 pub use linear_elastic::LinearElastic;

@@ -1,6 +1,7 @@
 #![allow(non_snake_case)]
 
 use super::*;
+use crate::algebra::random::Random;
 use crate::algebra::real::Dual;
 use crate::algebra::tensor::{Matrix3, Vector3, map, rotation};
 use proptest::prelude::*;
@@ -28,6 +29,14 @@ fn laws() -> Vec<(&'static str, Law)> {
             "Ogden, three terms",
             ogden(&[(300.0, 1.3), (40.0, 5.0), (90.0, -2.0)], 0.45, VolumetricTerm::SimoTaylor),
         ),
+        ("Yeoh", yeoh([400.0, -20.0, 60.0]).unwrap()),
+        ("Demiray", isochoric(&[1000.0, 2.0], Law::Demiray).unwrap()),
+        ("Guccione", isochoric(&[2000.0, 8.0, 2.0, 4.0], Law::Guccione).unwrap()),
+        (
+            "Holzapfel, Gasser, Ogden",
+            isochoric(&[7640.0, 996.6e3, 5.0, 0.226, 0.7], Law::HolzapfelGasserOgden).unwrap(),
+        ),
+        ("Holzapfel, Ogden", isochoric(&MUSCLE, Law::HolzapfelOgden).unwrap()),
         ("St Venant-Kirchhoff", Law::StVenantKirchhoff(StVenantKirchhoff::new(constants))),
         ("linear elastic", Law::LinearElastic(LinearElastic::new(constants))),
         ("Demiray's, of the caller's own", Law::Own(OwnLaw::new(Demiray).unwrap())),
@@ -45,6 +54,23 @@ impl StrainEnergy for Demiray {
         let (first, log) = (C[0][0] + C[1][1] + C[2][2] - 3.0, third.ln() * 0.5);
         ((first * 2.0).exp() - 1.0) * (1000.0 / 4.0) - log * 1000.0 + log * log * 1000.0
     }
+}
+
+/// The constants of Holzapfel and Ogden (2009, table 1) for simple shear.
+const MUSCLE: [f64; 8] = [59.0, 8.023, 18472.0, 16.026, 2481.0, 11.12, 216.0, 11.436];
+
+/// A law of the isochoric tensor, a hundred times stiffer against a change of volume.
+fn isochoric<W: ShapeEnergy>(
+    constants: &[f64],
+    law: fn(Isochoric<W>) -> Law,
+) -> Result<Law, MaterialError> {
+    let shape = W::new(constants)?;
+    let bulk_modulus = 100.0 * shape.shear_modulus();
+    Ok(law(Isochoric::new(shape, bulk_modulus, VolumetricTerm::SimoTaylor)?))
+}
+
+fn yeoh(constants: [f64; 3]) -> Result<Law, MaterialError> {
+    isochoric(&constants, Law::Yeoh)
 }
 
 /// Ogden's law with terms (μ \[Pa\], α).
@@ -121,6 +147,9 @@ fn the_tangent_at_rest_has_the_stated_moduli() {
     let step = 1e-6;
     for (name, law) in laws() {
         let c = law.constants();
+        if law.has_fibres() {
+            continue;
+        }
         let shear = Matrix3::new(0.0, step, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         let tau = (law.first_piola_kirchhoff(&(Matrix3::identity() + shear))[(0, 1)]
             - law.first_piola_kirchhoff(&(Matrix3::identity() - shear))[(0, 1)])
@@ -179,6 +208,12 @@ fn tangents_are_derivatives_of_stresses_also_where_stretches_are_equal() {
         stretched([0.7, 1.0, 1.4]) * turn,
     ] {
         for (name, law) in laws() {
+            let switches = matches!(law, Law::HolzapfelGasserOgden(_) | Law::HolzapfelOgden(_));
+            let shape = F.transpose() * F / F.determinant().cbrt().powi(2);
+            if switches && (shape - Matrix3::identity()).norm() < 1e-12 {
+                // There fibres begin to carry, and the slope is that in tension.
+                continue;
+            }
             let step = 1e-5;
             let at = |along: f64| law.first_piola_kirchhoff(&(F + direction * along));
             let difference = (at(step) - at(-step)) / (2.0 * step);
@@ -242,4 +277,94 @@ fn terms_of_ogden_that_give_no_stiffness_are_refused() {
     assert!(refusal(&[term(1.0, 2.0); 4]).contains("4 entries"));
     assert!(refusal(&[term(1.0, 2.0), term(-1.0, 4.0)]).contains("mu is -1"));
     assert!(refusal(&[term(1.0, 0.0)]).contains("alpha is 0"));
+}
+
+#[test]
+fn no_direction_of_a_law_with_fibres_is_stiffer_at_rest_than_stated() {
+    let mut random = Random(3);
+    for (name, law) in laws().into_iter().filter(|(_, law)| law.has_fibres()) {
+        let c = law.constants();
+        let mut stiffest: f64 = 0.0;
+        for _ in 0..300 {
+            let strain = Matrix3::from_fn(|_, _| random.vector(1).x);
+            let strain = strain + strain.transpose();
+            let strain = strain - Matrix3::from_diagonal_element(strain.trace() / 3.0);
+            let F = Matrix3::identity() + strain * (1e-4 / strain.norm());
+            // ψ = μ ε:ε, and of second order in U too.
+            let shape = law.strain_energy(&F) - law.bulk_energy(F.determinant());
+            stiffest = stiffest.max(shape / 1e-8);
+        }
+        let ratio = stiffest / c.shear_modulus;
+        assert!((0.3..1.01).contains(&ratio), "{name}: {ratio}");
+    }
+}
+
+#[test]
+fn fibres_in_tension_carry_and_compressed_ones_do_not() {
+    let along = |stretch: f64| {
+        let lateral = 1.0 / stretch.sqrt();
+        Matrix3::from_diagonal(&Vector3::new(stretch, lateral, lateral))
+    };
+    let muscle = isochoric(&MUSCLE, Law::HolzapfelOgden).unwrap();
+    let passive = isochoric(&[59.0, 8.023, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Law::HolzapfelOgden);
+    let pull = |law: &Law, stretch: f64| {
+        let sigma = law.cauchy(&along(stretch));
+        sigma[(0, 0)] - sigma[(2, 2)]
+    };
+    let ground = passive.unwrap();
+    // σ₁₁ − σ₃₃ of the fibres is 2 Ī₄ a_f (Ī₄ − 1) e^(b_f (Ī₄ − 1)²).
+    let fourth = 1.1f64.powi(2);
+    let expected =
+        2.0 * fourth * 18472.0 * (fourth - 1.0) * (16.026 * (fourth - 1.0).powi(2)).exp();
+    let fibres = pull(&muscle, 1.1) - pull(&ground, 1.1);
+    approx::assert_relative_eq!(fibres, expected, max_relative = 1e-12);
+    // In compression along the fibres the sheets are stretched, the normals are not loaded.
+    let P = muscle.first_piola_kirchhoff(&along(0.9));
+    let twin = ground.first_piola_kirchhoff(&along(0.9));
+    assert!(P[(1, 1)] > twin[(1, 1)] + 100.0);
+    approx::assert_relative_eq!(
+        (P - twin)[(0, 0)] * 0.9,
+        -(P - twin)[(1, 1)] * 0.9f64.powf(-0.5) / 2.0,
+        max_relative = 1e-9
+    );
+}
+
+#[test]
+fn laws_with_fibres_become_known_ones_without_them() {
+    let F = deformation([0.2, -0.1, 0.3, 0.05, -0.15, 0.1, 0.0, 0.25, 0.1]);
+    let twins = [
+        (
+            isochoric(&[500.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Law::HolzapfelOgden),
+            isochoric(&[500.0, 3.0], Law::Demiray),
+        ),
+        (
+            // Fibres in all directions alike: E = (Ī₁ − 3)/3.
+            isochoric(&[500.0, 900.0, 2.0, 1.0 / 3.0, 0.3], Law::HolzapfelGasserOgden),
+            isochoric(&[500.0, 900.0, 2.0, 1.0 / 3.0, 1.1], Law::HolzapfelGasserOgden),
+        ),
+        (yeoh([250.0, 0.0, 0.0]), isochoric(&[500.0, 1e-9], Law::Demiray)),
+    ];
+    for (law, twin) in twins {
+        let (P, expected) =
+            (law.unwrap().first_piola_kirchhoff(&F), twin.unwrap().first_piola_kirchhoff(&F));
+        assert!((P - expected).norm() < 1e-8 * expected.norm(), "{P} {expected}");
+    }
+}
+
+#[test]
+fn constants_with_which_a_body_would_lose_its_stiffness_are_refused() {
+    let message = |made: Result<Law, MaterialError>| made.unwrap_err().to_string();
+    assert!(message(yeoh([0.0, 1.0, 1.0])).contains("C1 is 0"));
+    assert!(message(yeoh([400.0, -300.0, 60.0])).contains("C2 > -√(3 C1 C3)"));
+    assert!(message(yeoh([400.0, 1.0, -1e-3])).contains("C3 ≥ 0"));
+    assert!(yeoh([400.0, -260.0, 60.0]).is_ok());
+    assert!(message(isochoric(&[1.0, 8.0, 0.0, 4.0], Law::Guccione)).contains("b_t is 0"));
+    let arteries =
+        |kappa, angle| isochoric(&[1.0, 1.0, 1.0, kappa, angle], Law::HolzapfelGasserOgden);
+    assert!(message(arteries(0.4, 0.0)).contains("kappa is 0.4"));
+    assert!(message(arteries(0.1, f64::NAN)).contains("angle is NaN"));
+    let muscle =
+        |a_s, b_s| isochoric(&[1.0, 1.0, 1.0, 1.0, a_s, b_s, 0.0, 0.0], Law::HolzapfelOgden);
+    assert!(message(muscle(1.0, 0.0)).contains("b_s is 0"));
+    assert!(message(muscle(-1.0, 1.0)).contains("a_s is -1"));
 }

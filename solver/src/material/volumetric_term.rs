@@ -4,9 +4,10 @@
 use crate::algebra::real::Real;
 
 /// The volumetric energy U(J) of a law with an isochoric split (method book, eq. 3.5).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum VolumetricTerm {
     /// U = K/2 (J − 1)².
+    #[default]
     Quadratic,
     /// U = K/4 (J² − 1 − 2 ln J) (Simo, Taylor 1991).
     SimoTaylor,

@@ -316,7 +316,8 @@ fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut LocalVecto
         jacobians.clear();
         for lane in lanes.clone() {
             let F = deformation_gradient::<D>(block, lane, local);
-            energy += block.quadrature_weights[lane] * block.law.strain_energy(&F);
+            let own = block.as_the_law_needs(&F, lane);
+            energy += block.quadrature_weights[lane] * block.law.strain_energy(&own);
             jacobians.push(F.determinant());
         }
         if let Some(projection) = &block.projection {

@@ -39,6 +39,12 @@ pub enum Wrong {
     Jitter(f64),
     #[error("is {0}; it must be 1 to 5")]
     GaussPoints(usize),
+    #[error("is missing; the law needs the direction of its fibres")]
+    NoFibres,
+    #[error("has no sheets; the law needs their direction")]
+    NoSheets,
+    #[error("belongs to laws with fibres; remove it")]
+    UnusedFibres,
     #[error("is empty; it needs rows of time and factor")]
     Empty,
     #[error("has time {after} after {before}; times must increase")]
@@ -55,6 +61,10 @@ pub(crate) fn refuse(mistakes: Vec<Mistake>) -> Result<(), Mistake> {
 pub(super) struct Mistakes(pub(super) Vec<Mistake>);
 
 impl Mistakes {
+    pub(super) fn add(&mut self, field: &str, wrong: Option<Wrong>) {
+        self.0.extend(wrong.map(|wrong| Mistake { field: field.to_string(), wrong }));
+    }
+
     fn add_if(&mut self, is_wrong: bool, field: &str, wrong: Wrong) {
         if is_wrong {
             self.0.push(Mistake { field: field.to_string(), wrong });

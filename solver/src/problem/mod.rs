@@ -1,9 +1,11 @@
 //! What is to be solved: plain data, read from a case file or written by hand.
+#![allow(non_snake_case)]
 
 mod amplitude;
 mod check;
 mod conditions;
 pub mod defaults;
+mod fibres;
 mod motion;
 mod recipe;
 
@@ -16,12 +18,14 @@ pub use conditions::{
     BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed, Pressure,
     Traction,
 };
+pub use fibres::{Fibres, NoDirection};
 pub use motion::{Motion, Newton, Relaxation, RelaxationMass, StepControl};
 pub use recipe::{
     BackgroundGrid, Basis, Cloud, Enforcement, GradientStorage, Gradients, InsideRule, MassRule,
     MaterialBorders, Recipe, Refinement, VolumetricProjection, WeightFunction,
 };
 
+use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::{Selector, Shape};
 use crate::material::Material;
 use check::Mistakes;
@@ -56,7 +60,12 @@ impl Problem {
         Problem {
             dimension: Dimension::Three,
             body,
-            regions: vec![Region { name: "body".into(), part: Selector::All, material }],
+            regions: vec![Region {
+                name: "body".into(),
+                part: Selector::All,
+                material,
+                fibres: None,
+            }],
             recipe,
             conditions: Vec::new(),
             loads: Loads::default(),
@@ -71,6 +80,15 @@ impl Problem {
         let mut found = Mistakes::default();
         for (n, region) in self.regions.iter().enumerate() {
             found.positive(&format!("regions[{n}].material.density"), region.material.density);
+            let (law, fibres) = (region.material.law, region.fibres.as_ref());
+            let has_sheets = fibres.is_some_and(|fibres| fibres.sheet.is_some());
+            let wrong = match () {
+                () if law.has_fibres() && fibres.is_none() => Some(Wrong::NoFibres),
+                () if law.has_sheets() && !has_sheets => Some(Wrong::NoSheets),
+                () if !law.has_fibres() && fibres.is_some() => Some(Wrong::UnusedFibres),
+                () => None,
+            };
+            found.add(&format!("regions[{n}].fibres"), wrong);
         }
         found.part("recipe", self.recipe.check());
         let loads = &self.loads;
@@ -108,4 +126,17 @@ pub struct Region {
     pub part: Selector,
     /// Its law and density.
     pub material: Material,
+    /// Where its law needs them, and only there.
+    pub fibres: Option<Fibres>,
+}
+
+impl Region {
+    /// The fibre frame at a reference position; of a law without fibres any does, and none is
+    /// computed.
+    ///
+    /// # Errors
+    /// [`NoDirection`] where there is none.
+    pub fn frame(&self, X: &Vector3) -> Result<Option<Matrix3>, NoDirection> {
+        self.fibres.as_ref().map(|fibres| fibres.frame(X)).transpose()
+    }
 }

@@ -1,5 +1,6 @@
 //! Small problems for the tests: a cube and a square in plane strain.
 #![allow(dead_code)] // Every test binary uses only a part of this.
+#![allow(non_snake_case)]
 
 use mtled::algebra::tensor::Vector3;
 pub use mtled::algebra::tensor::vector_at;
@@ -33,7 +34,23 @@ pub fn objective_laws() -> Vec<Law> {
         Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(constants(), VolumetricTerm::Quadratic)),
         ogden(),
         Law::StVenantKirchhoff(StVenantKirchhoff::new(constants())),
+        Law::Demiray(isochoric(&[1000.0, 2.0])),
+        Law::Guccione(isochoric(&[2000.0, 8.0, 2.0, 4.0])),
+        Law::HolzapfelOgden(isochoric(&[900.0, 2.0, 1800.0, 3.0, 500.0, 2.0, 200.0, 4.0])),
     ]
+}
+
+/// A law of the isochoric tensor, twenty times as stiff against a change of volume.
+pub fn isochoric<W: ShapeEnergy>(constants: &[f64]) -> Isochoric<W> {
+    let shape = W::new(constants).unwrap();
+    Isochoric::new(shape, 20.0 * shape.shear_modulus(), VolumetricTerm::SimoTaylor).unwrap()
+}
+
+/// Fibres that turn from place to place, for laws that need some.
+pub fn turning_fibres(law: &Law) -> Option<Fibres> {
+    let fibre = |X: &Vector3| Vector3::new((30.0 * X.y).cos(), (30.0 * X.y).sin(), 4.0 * X.x);
+    let sheet = Some(Vector3::new(0.3, -0.2, 1.0).into());
+    law.has_fibres().then(|| Fibres { fibre: Field::of(fibre), sheet })
 }
 
 /// Brain tissue of Miller, Chinzei 2002, of ν = 0.49.
@@ -61,6 +78,7 @@ fn body(dimension: Dimension, cells: usize) -> Problem {
             name: "tissue".into(),
             part: Selector::All,
             material: material(neo_hookean(3000.0, 0.3)),
+            fibres: None,
         }],
         recipe: Recipe {
             cloud: Cloud::Regular { spacing },
@@ -100,13 +118,15 @@ pub fn square(cells: usize) -> Problem {
 }
 
 pub fn with_law(mut problem: Problem, law: Law) -> Problem {
+    problem.regions[0].fibres = turning_fibres(&law);
     problem.regions[0].material = material(law);
     problem
 }
 
 /// The half x < EDGE/2 made of another law.
 pub fn with_stiff_half(mut problem: Problem, law: Law) -> Problem {
-    let half = Region { name: "half".into(), part: half_space(), material: material(law) };
+    let (fibres, material) = (turning_fibres(&law), material(law));
+    let half = Region { name: "half".into(), part: half_space(), material, fibres };
     problem.regions.insert(0, half);
     problem
 }

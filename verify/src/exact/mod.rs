@@ -7,6 +7,7 @@ pub mod hertz;
 pub mod homogeneous;
 pub mod inclusion;
 mod jet;
+pub mod land;
 pub mod manufactured;
 mod published;
 pub mod shell;

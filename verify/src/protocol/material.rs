@@ -2,9 +2,12 @@
 
 use super::geometry::Selection;
 use crate::scene::Case;
-use crate::scene::format::{CaseFormat, LawFormat, MaterialFormat, VolumetricFormat};
+use crate::scene::format::{
+    CaseFormat, DirectionFormat, LawFormat, MaterialFormat, VolumetricFormat,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A part of the body with one material. Where regions overlap, the first one counts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -38,6 +41,41 @@ pub struct Material {
     pub mooney_rivlin_pa: Option<[f64; 4]>,
     /// Rows of μᵢ [Pa] and αᵢ [–] of ogden, else null.
     pub ogden_terms: Option<Vec<[f64; 2]>>,
+    /// Constants of the other laws by the names in the formula, SI; empty without.
+    #[serde(default)]
+    pub constants: BTreeMap<String, f64>,
+    /// Directions of the fibres, else null.
+    #[serde(default)]
+    pub fibres: Option<Direction>,
+    /// Directions in the sheets of the fibres, else null.
+    #[serde(default)]
+    pub sheets: Option<Direction>,
+}
+
+/// A direction at every place, of any length.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Direction {
+    /// The same everywhere.
+    Uniform { direction: [f64; 3] },
+    /// Formulas of the reference position x, y, z [m], as of a displacement.
+    Formula { x: String, y: String, z: String },
+    /// Vectors at scattered points, in a file that the case names.
+    Data,
+}
+
+impl Direction {
+    fn new(format: &DirectionFormat) -> Direction {
+        match (format.direction, &format.formula) {
+            (Some(direction), _) => Direction::Uniform { direction },
+            (None, Some(formula)) => Direction::Formula {
+                x: formula.x.clone(),
+                y: formula.y.clone(),
+                z: formula.z.clone().unwrap_or_else(|| "0".into()),
+            },
+            (None, None) => Direction::Data,
+        }
+    }
 }
 
 impl Material {
@@ -61,9 +99,15 @@ impl Material {
             poisson_ratio: constants.poisson_ratio(),
             mooney_rivlin_pa: rubber,
             ogden_terms: terms.map(|rows| rows.iter().map(|row| [row.mu, row.alpha]).collect()),
+            constants: format.constants.clone().unwrap_or_default(),
+            fibres: format.fibres.as_ref().map(Direction::new),
+            sheets: format.sheets.as_ref().map(Direction::new),
         }
     }
 }
+
+/// The isochoric tensor in formulas.
+const BAR: &str = "Cbar = J^(-2/3) C, I1bar = tr Cbar";
 
 /// The formula of a law.
 fn strain_energy(law: LawFormat, volumetric: Option<VolumetricFormat>) -> String {
@@ -78,6 +122,23 @@ fn strain_energy(law: LawFormat, volumetric: Option<VolumetricFormat>) -> String
         LawFormat::Ogden => format!(
             "sum_i 2 mu_i/alpha_i^2 (l1^alpha_i + l2^alpha_i + l3^alpha_i - 3) + {volumetric}, \
              l_k = J^(-1/3) lambda_k"
+        ),
+        LawFormat::Yeoh => format!("C1 x + C2 x^2 + C3 x^3 + {volumetric}, {BAR}, x = I1bar - 3"),
+        LawFormat::Demiray => format!("mu/2b (exp(b (I1bar - 3)) - 1) + {volumetric}, {BAR}"),
+        LawFormat::Guccione => format!(
+            "C/2 (exp Q - 1) + {volumetric}, Q = b_f E11^2 + b_t (E22^2 + E33^2 + 2 E23^2) + \
+             2 b_fs (E12^2 + E13^2), E = (Cbar - 1)/2 with axis 1 along the fibres, {BAR}"
+        ),
+        LawFormat::HolzapfelGasserOgden => format!(
+            "mu/2 (I1bar - 3) + k1/2k2 sum_i (exp(k2 E_i^2) - 1) + {volumetric}, E_i = max(0, kappa \
+             (I1bar - 3) + (1 - 3 kappa) (m_i.Cbar m_i - 1)), m_i at +- angle [rad] from the fibres \
+             towards the sheets, kappa and angle 0 if left out, {BAR}"
+        ),
+        LawFormat::HolzapfelOgden => format!(
+            "a/2b (exp(b (I1bar - 3)) - 1) + a_f/2b_f (exp(b_f max(0, Cbar11 - 1)^2) - 1) + a_s/2b_s \
+             (exp(b_s max(0, Cbar22 - 1)^2) - 1) + a_fs/2b_fs (exp(b_fs Cbar12^2) - 1) + {volumetric}, axis \
+             1 along the fibres, 2 in the sheets normal to them, terms of constants that are left out \
+             are 0, {BAR}"
         ),
         LawFormat::StVenantKirchhoff => "lambda/2 (tr E)^2 + mu E:E".into(),
         LawFormat::LinearElastic => "lambda/2 (tr eps)^2 + mu eps:eps".into(),

@@ -83,6 +83,13 @@ pub const STUDIES: &[Definition] = &[
         body: comparison::benchmarks::benchmarks,
     },
     Definition {
+        id: "fibres",
+        title: "Bodies with fibres",
+        claim: "Muscle bends, twists and shears as two codes and eleven groups say, its fibres straight, \
+                turning or curved.",
+        body: comparison::fibres::fibres,
+    },
+    Definition {
         id: "manufactured",
         title: "Manufactured solutions",
         claim: "Fields of finite strain are recovered from their body forces and boundary values; \

@@ -68,10 +68,28 @@ impl Scattered {
 
     /// The vector at the position `X` \[m\].
     pub fn at(&self, X: &Vector3) -> Vector3 {
+        self.fitted(X, |index| self.values[index])
+    }
+
+    /// The axis at the position `X` \[m\], of data whose lengths and signs do not count, such as
+    /// directions of fibres: the data around are turned to the side of the nearest. 0 out of reach.
+    pub fn axis_at(&self, X: &Vector3) -> Vector3 {
+        let nearest = self.search.nearest(X, usize::MAX, 1);
+        let Some(&(_, nearest)) = nearest.first().filter(|near| near.0 <= self.reach) else {
+            return Vector3::zeros();
+        };
+        let side = self.values[nearest];
+        self.fitted(X, |index| {
+            let axis = self.values[index].try_normalize(0.0).unwrap_or_default();
+            if axis.dot(&side) < 0.0 { -axis } else { axis }
+        })
+    }
+
+    fn fitted(&self, X: &Vector3, datum: impl Fn(usize) -> Vector3) -> Vector3 {
         let near = self.search.nearest(X, usize::MAX, NEAREST);
         let farthest = near.last().map_or(0.0, |near| near.0);
         if farthest == 0.0 {
-            return near.first().map_or(Vector3::zeros(), |near| self.values[near.1]);
+            return near.first().map_or(Vector3::zeros(), |near| datum(near.1));
         }
         // The farthest point counts a little, or four points would be three.
         let weight = |distance: f64| {
@@ -83,7 +101,7 @@ impl Scattered {
             let w = weight(distance);
             total += w;
             offset += w * (self.positions[index] - X);
-            value += w * self.values[index];
+            value += w * datum(index);
         }
         let (offset, value) = (offset / total, value / total);
         let (mut scatter, mut slope) = (Matrix3::zeros(), Matrix3::zeros());
@@ -91,7 +109,7 @@ impl Scattered {
             let w = weight(distance) / total;
             let t = self.positions[index] - X - offset;
             scatter += w * t * t.transpose();
-            slope += w * (self.values[index] - value) * t.transpose();
+            slope += w * (datum(index) - value) * t.transpose();
         }
         value - slope * pseudo_inverse(scatter, FLAT * scatter.trace()) * offset
     }
@@ -143,6 +161,21 @@ mod tests {
         for X in cloud(50, false).iter().map(|X| 0.8 * X) {
             assert!((field.at(&X) - smooth(&X)).norm() < 0.03);
         }
+    }
+
+    #[test]
+    fn axes_do_not_depend_on_lengths_and_signs_and_end_out_of_reach() {
+        let axis = |X: &Vector3| Vector3::new(X.x.cos(), X.x.sin(), 0.0);
+        let mut random = Random(3);
+        let points = cloud(3000, false);
+        let any = |X: &Vector3| (*X, axis(X) * (random.vector(1).x + 0.1));
+        let data: Vec<_> = points.iter().map(any).collect();
+        let field = Scattered::new(&data, 0.1).unwrap();
+        for X in cloud(50, false).iter().map(|X| 0.8 * X) {
+            assert!(field.axis_at(&X).cross(&axis(&X)).norm() < 0.01, "{X}");
+            assert!((field.axis_at(&X).norm() - 1.0).abs() < 0.01, "{X}");
+        }
+        assert_eq!(field.axis_at(&Vector3::repeat(3.0)), Vector3::zeros());
     }
 
     #[test]

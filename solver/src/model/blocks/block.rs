@@ -1,8 +1,10 @@
 //! A block of quadrature points.
+#![allow(non_snake_case)]
 
 use super::local_vectors::{Place, QUAD, stride};
 use super::stored_gradients::{GradientQuad, StoredGradients, with_gradients};
-use crate::algebra::lanes::LANES;
+use crate::algebra::lanes::{LANES, SimdBlock};
+use crate::algebra::tensor::Matrix3;
 use crate::material::Law;
 use crate::model::projection::Projection;
 use std::ops::Range;
@@ -18,6 +20,8 @@ use std::ops::Range;
 pub struct Block {
     /// The constitutive law.
     pub law: Law,
+    /// Fibre frames Q by rows \[SIMD block\]; nothing where the law has no fibres.
+    pub frames: Vec<[SimdBlock; 9]>,
     /// Global quadrature points.
     pub points: Range<usize>,
     /// Global node of each local one.
@@ -100,9 +104,21 @@ impl Block {
         self.points.start + self.lanes[lane] as usize
     }
 
+    /// A deformation gradient at the point in a lane as the law needs it: in the fibre frame, where
+    /// it has fibres.
+    pub fn as_the_law_needs(&self, F: &Matrix3, lane: usize) -> Matrix3 {
+        match self.frames.get(lane / LANES) {
+            Some(frame) => {
+                F * Matrix3::from_row_iterator(frame.iter().map(|entry| entry.0[lane % LANES]))
+            }
+            None => *F,
+        }
+    }
+
     /// Bytes that one evaluation of the internal force reads.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.places[..])
+            + size_of_val(&self.frames[..])
             + with_gradients!(&self.grad_phi, grad_phi => size_of_val(&grad_phi[..]))
     }
 }

@@ -4,13 +4,14 @@ use super::block::{Block, Chunk};
 use super::local_vectors::most_nodes;
 use super::numbering::Numbering;
 use super::packing::{Packed, pack};
-use crate::algebra::lanes::LANES;
+use crate::algebra::lanes::{LANES, SimdBlock};
+use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::Discretisation;
 use crate::discretisation::patches::orthonormal_basis;
 use crate::discretisation::rows::Rows;
 use crate::error::Error;
 use crate::model::projection::{BasisBlock, Projection};
-use crate::problem::{Problem, VolumetricProjection};
+use crate::problem::{Problem, Region, VolumetricProjection};
 use std::ops::Range;
 
 /// Points of a chunk where nothing is projected: their gradients stay in the first
@@ -46,7 +47,7 @@ pub fn blocks(problem: &Problem, discretisation: &Discretisation) -> Result<Vec<
             let position = discretisation.quadrature.positions[start];
             return Err(Error::LargeSupports { point: start, position, most });
         }
-        blocks.push(block(problem, first..last, discretisation, &numbering));
+        blocks.push(block(problem, first..last, discretisation, &numbering)?);
         numbering.clear();
         first = last;
     }
@@ -58,11 +59,12 @@ fn block(
     patches: Range<usize>,
     discretisation: &Discretisation,
     numbering: &Numbering,
-) -> Block {
+) -> Result<Block, Error> {
     let starts = &discretisation.patches[patches.start..=patches.end];
     let points = starts[0]..starts[starts.len() - 1];
     let region = discretisation.quadrature.regions[points.start] as usize;
-    let law = problem.regions[region].material.law;
+    let region = &problem.regions[region];
+    let law = region.material.law;
     let fraction = match problem.recipe.volumetric_projection {
         VolumetricProjection::Patches => law.projected_fraction(),
         VolumetricProjection::None => 0.0,
@@ -87,8 +89,9 @@ fn block(
     let weights = &discretisation.quadrature.weights;
     let Packed { starts: slots, places, grad_phi } =
         pack(&discretisation.supports, &lanes, numbering, components, single);
-    Block {
+    Ok(Block {
         law,
+        frames: frames(region, &lanes, &discretisation.quadrature.positions)?,
         nodes: numbering.nodes().to_vec(),
         lanes: lanes.iter().map(|q| q.map_or(0, |q| (q - points.start) as u32)).collect(),
         starts: slots,
@@ -98,7 +101,27 @@ fn block(
         chunks,
         projection: projected.then(|| projection(fraction, starts, &order, discretisation)),
         points,
+    })
+}
+
+/// The fibre frames of the points in some lanes; padding has any.
+fn frames(
+    region: &Region,
+    lanes: &[Option<usize>],
+    positions: &[Vector3],
+) -> Result<Vec<[SimdBlock; 9]>, Error> {
+    if !region.material.law.has_fibres() {
+        return Ok(Vec::new());
     }
+    let mut frames = vec![[SimdBlock::default(); 9]; lanes.len() / LANES];
+    for (lane, point) in lanes.iter().enumerate() {
+        let frame = point.map(|q| region.frame(&positions[q])).transpose()?.flatten();
+        let rows = frame.unwrap_or_else(Matrix3::identity).transpose();
+        for (entry, value) in frames[lane / LANES].iter_mut().zip(rows.iter()) {
+            entry.0[lane % LANES] = *value;
+        }
+    }
+    Ok(frames)
 }
 
 /// The points of some patches, those of each by the size of their supports: the largest first,

@@ -131,10 +131,11 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
             }
         });
         let projection = block.projection.as_ref();
+        let frames = block.frames.get(groups.clone()).unwrap_or(&[]);
         with_law!(&block.law, law => {
             if is_known {
                 let work = (&mut *deformation, &mut *stress, &mut *jacobian);
-                tangents.multiply::<S, R, _>(simd, law, groups.clone(), work);
+                tangents.multiply::<S, R, _>(simd, (law, frames), groups.clone(), work);
             }
             if let Some(projection) = projection {
                 jacobians::<S, R>(simd, count, deformation, jacobian);
@@ -146,9 +147,9 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
             let results = (&mut *stress, &mut *jacobian, is_known);
             // In a plane half of a law is not needed; a derivative is, rarely enough.
             if D == 2 && !R::SLOPES {
-                stresses::<S, R, _, 2>(simd, law, count, deformation, pressure, results)
+                stresses::<S, R, _, 2>(simd, (law, frames), count, deformation, pressure, results)
             } else {
-                stresses::<S, R, _, 3>(simd, law, count, deformation, pressure, results)
+                stresses::<S, R, _, 3>(simd, (law, frames), count, deformation, pressure, results)
             }
         });
         for (lane, value) in lanes.clone().zip(jacobian.values.iter().flat_map(|block| block.0)) {

@@ -4,7 +4,8 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::lanes::{Lanes, Parts, SimdBlock};
-use crate::algebra::tensor::{Tensor, map};
+use crate::algebra::real::Real;
+use crate::algebra::tensor::{Tensor, map, times_symmetric, transposed};
 use crate::material::{ConstitutiveLaw, Deformation};
 use crate::model::projection::{OwnPressure, PatchMoments, Projection};
 use fearless_simd::Simd;
@@ -47,10 +48,10 @@ pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
 }
 
 /// J and P of the first `count` SIMD blocks; with a projected pressure p, P + p cof F, J being known.
-/// The slopes of P may be known, and stand in place of the result then.
+/// A law with fibres has a frame for each SIMD block. The slopes of P may be known, and stand in place of the result then.
 pub fn stresses<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
     simd: S,
-    law: &L,
+    (law, frames): (&L, &[[SimdBlock; 9]]),
     count: usize,
     deformation: &Parts<SimdBlock>,
     pressures: Option<&Parts<SimdBlock>>,
@@ -63,9 +64,13 @@ pub fn stresses<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
                 for piece in 0..R::PER_BLOCK {
                     let F = load_tensor::<S, R>(simd, deformation, group, piece);
                     let state: Deformation<R> = Deformation::new(F);
-                    let mut P = match is_known {
-                        true => load_tensor::<S, R>(simd, stress, group, piece),
-                        false => law.first_piola_kirchhoff(&state),
+                    let frame = if L::HAS_FIBRES { frames.get(group) } else { None };
+                    let mut P = match (is_known, frame) {
+                        (true, _) => load_tensor::<S, R>(simd, stress, group, piece),
+                        (false, Some(rows)) => {
+                            in_frame(law, &F, &frame_at::<S, R>(simd, rows, piece))
+                        }
+                        (false, None) => law.first_piola_kirchhoff(&state),
                     };
                     match pressures {
                         None => state.J.store(jacobians, group, piece),
@@ -86,6 +91,21 @@ pub fn stresses<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
             }
         },
     );
+}
+
+/// P at F of a law with fibres: P'(F Q) Qᵀ with the fibre frame Q (method book, eq. 3.22).
+#[inline(always)]
+fn in_frame<R: Real, L: ConstitutiveLaw>(law: &L, F: &Tensor<R>, Q: &Tensor<R>) -> Tensor<R> {
+    let own = Deformation::new(times_symmetric(F, &transposed(Q)));
+    times_symmetric(&law.first_piola_kirchhoff(&own), Q)
+}
+
+#[inline(always)]
+fn frame_at<S: Simd, R: Lanes<S>>(simd: S, rows: &[SimdBlock; 9], piece: usize) -> Tensor<R> {
+    map(
+        #[inline(always)]
+        |i, j| R::fixed(simd, &rows[3 * i + j], piece),
+    )
 }
 
 #[inline(always)]

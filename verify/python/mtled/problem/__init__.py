@@ -20,7 +20,7 @@ from .conditions import (
     Table,
     Traction,
 )
-from .recipe import Grid, Material, OgdenTerm, Recipe, RefineCell, RefineSpacing, Region
+from .recipe import Direction, Grid, Material, OgdenTerm, Recipe, RefineCell, RefineSpacing, Region
 from .shapes import (
     Box,
     Cylinder,
@@ -50,6 +50,7 @@ __all__ = [
     "Cylinder",
     "Data",
     "Difference",
+    "Direction",
     "Displacement",
     "Distance",
     "Dynamic",

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from .conditions import Data, Formula
 from .kinds import Path
 
 
@@ -15,6 +16,15 @@ class OgdenTerm:
 
     mu_pa: float
     alpha: float
+
+
+@dataclass
+class Direction:
+    """A direction at every place: one of the three. Its length does not count."""
+
+    direction: Sequence[float] | None = None
+    formula: Formula | None = None
+    data: Data | None = None
 
 
 @dataclass
@@ -31,6 +41,9 @@ class Material:
     A_pa: float | None = None
     B_pa: float | None = None
     terms: Sequence[OgdenTerm] | None = None
+    constants: Mapping[str, float] | None = None
+    fibres: Direction | None = None
+    sheets: Direction | None = None
     volumetric: str | None = None
 
 

@@ -7,14 +7,20 @@ use crate::run::{integrate, prepare_to_run};
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
 use mtled::motion::observe::Unobserved;
-use mtled::problem::{Loads, Motion, Newton, Problem};
+use mtled::problem::{Fibres, Loads, Motion, Newton, Problem, Region};
 
 /// The body and recipe of a case, all of its first material, whose whole boundary
 /// follows u = H X, reached at t = 1 s.
 pub fn with_affine_boundary(problem: &Problem, H: Matrix3) -> Problem {
     let mut problem = problem.clone();
-    let material = problem.regions[0].material;
-    problem.regions.iter_mut().for_each(|region| region.material = material);
+    let Region { material, fibres, .. } = problem.regions[0].clone();
+    for region in &mut problem.regions {
+        region.material = material;
+        // Fibres that turn from place to place do not keep an affine deformation.
+        region.fibres = fibres
+            .as_ref()
+            .map(|_| Fibres { fibre: Vector3::x().into(), sheet: Some(Vector3::y().into()) });
+    }
     problem.loads = Loads::default();
     problem.obstacles.clear();
     problem.conditions = vec![AffineField { H, centre: Vector3::zeros() }.on_boundary()];

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::node_fields::NodeFields;
-use crate::display::{DisplayMesh, display_mesh};
+use crate::display::{DisplayMesh, Mesh, display_mesh};
 use crate::picture::{Body, Field};
 use crate::run::contact::contact_gaps;
 use crate::run::prepare::Prepared;
@@ -26,6 +26,27 @@ pub struct BodyFrames {
     rows: Rows,
     /// Distance between nodes at the vertices \[m\].
     spacing: Vec<f64>,
+    /// Unit vectors along the fibres at the vertices \[–\], 0 in regions without; nothing where the
+    /// body has none.
+    fibres: Option<Vec<f64>>,
+}
+
+/// The reference directions of fibres at the vertices of a mesh.
+fn fibres(problem: &Problem, mesh: &Mesh) -> Option<Vec<f64>> {
+    if problem.regions.iter().all(|region| region.fibres.is_none()) {
+        return None;
+    }
+    let mut directions = vec![0.0; 3 * mesh.vertices.len()];
+    for (cell, region) in mesh.iter().zip(&mesh.regions) {
+        for &vertex in cell {
+            let at = 3 * vertex as usize;
+            let frame = problem.regions[*region as usize].frame(&mesh.vertices[vertex as usize]);
+            if let Ok(Some(frame)) = frame {
+                directions[at..at + 3].copy_from_slice(frame.column(0).as_slice());
+            }
+        }
+    }
+    Some(directions)
 }
 
 impl BodyFrames {
@@ -41,7 +62,8 @@ impl BodyFrames {
         let rows = rows_near(&discretisation.approximation, &display.mesh.vertices);
         let spacing = interpolated(&rows, &discretisation.cloud.spacing, 1);
         let points = display.mesh.vertices.iter().map(|X| (*X).into()).collect();
-        Ok(Some(BodyFrames { display, points, rows, spacing }))
+        let fibres = fibres(problem, &display.mesh);
+        Ok(Some(BodyFrames { display, points, rows, spacing, fibres }))
     }
 
     /// The fields of a frame: displacement of the approximation at the vertices, all others
@@ -77,6 +99,9 @@ impl BodyFrames {
         }
         if let Some(mode) = mode {
             point_data.push(single("unstable_mode", 3, vectors(&self.rows, mode, components)));
+        }
+        if let Some(fibres) = &self.fibres {
+            point_data.push(single("fibre", 3, fibres.clone()));
         }
         if let Some(bars) = &fields.error_bar {
             point_data.push(single("displacement_error_bar", 1, self.not_negative(bars)));

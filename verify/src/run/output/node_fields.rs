@@ -37,7 +37,7 @@ impl NodeFields {
     ) -> Result<NodeFields> {
         let u = &frame.displacement;
         let displacement = field_at_nodes(prepared, u)?;
-        let (jacobian, stress, strain) = averaged(problem, prepared, u);
+        let (jacobian, stress, strain) = averaged(problem, prepared, u)?;
         let (plan, discretisation) = (&prepared.model.contact, &prepared.discretisation);
         let contact_pressure = prepared
             .contact_surface(problem)?
@@ -60,10 +60,13 @@ pub fn field_at_nodes(prepared: &Prepared, u: &[f64]) -> Result<Vec<f64>> {
     Ok((0..rows.len()).flat_map(value).collect())
 }
 
+/// J, stresses and strains at the nodes.
+type Averages = (Vec<f64>, Vec<f64>, Vec<f64>);
+
 /// J \[–\], Cauchy stress by rows \[Pa\], projected pressure included, and Green–Lagrange strain
 /// \[–\], averaged over the quadrature points that a node supports, weighted by volume times φ
 /// where positive.
-fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> Result<Averages> {
     let discretisation = &prepared.discretisation;
     let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
     let nodes = discretisation.cloud.positions.len();
@@ -72,8 +75,11 @@ fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec
     let projected = projected_mean_stress(&prepared.model, u);
     for (point, mean_stress) in projected.into_iter().enumerate() {
         let F = rows.deformation_gradient(point, u, prepared.model.components);
-        let law = &problem.regions[quadrature.regions[point] as usize].material.law;
-        let sigma = law.cauchy(&F) + Matrix3::from_diagonal_element(mean_stress);
+        let region = &problem.regions[quadrature.regions[point] as usize];
+        // The Cauchy stress is the same in every frame of the material.
+        let frame = region.frame(&quadrature.positions[point])?;
+        let own = frame.map_or(F, |frame| F * frame);
+        let sigma = region.material.law.cauchy(&own) + Matrix3::from_diagonal_element(mean_stress);
         let E = 0.5 * (F.transpose() * F - Matrix3::identity());
         let E = [E.m11, E.m22, E.m33, E.m12, E.m23, E.m13];
         for entry in rows.row(point) {
@@ -99,5 +105,5 @@ fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec
         stress[9 * node..9 * node + 9].iter_mut().for_each(|value| *value /= total[node]);
         strain[6 * node..6 * node + 6].iter_mut().for_each(|value| *value /= total[node]);
     }
-    (jacobian, stress, strain)
+    Ok((jacobian, stress, strain))
 }

@@ -6,23 +6,20 @@ use mtled::geometry::Selector;
 use mtled::material::{
     ElasticConstants, Law, LinearElastic, Material, MaterialError, MooneyRivlin,
     NeoHookeanIsochoric, NeoHookeanLogJ, Ogden, OgdenTerm, OgdenTerms, StVenantKirchhoff,
-    VolumetricTerm,
 };
-use mtled::problem::Region;
+use mtled::problem::{Fibres, Region};
 use std::collections::BTreeMap;
 
 const PAIRS: &str = "young_modulus and poisson_ratio, lame_modulus and shear_modulus, \
                      or shear_modulus and bulk_modulus";
 
-/// Constants that ogden takes one of.
-const OF_OGDEN: [&str; 2] = ["poisson_ratio", "bulk_modulus"];
-
 impl Builder<'_> {
     /// Regions with their materials; one region for a body of one material.
     pub fn regions(&mut self, format: &CaseFormat) -> Vec<Region> {
-        let materials: BTreeMap<&str, Option<Material>> = (format.material.iter())
-            .map(|(name, material)| (name.as_str(), self.material(name, material)))
-            .collect();
+        let materials: BTreeMap<&str, Option<(Material, Option<Fibres>)>> =
+            (format.material.iter())
+                .map(|(name, material)| (name.as_str(), self.material(name, material)))
+                .collect();
         if materials.is_empty() {
             self.mistake("material", "is empty; the body needs a [material.NAME]");
         }
@@ -31,11 +28,12 @@ impl Builder<'_> {
                 let message = "has several entries; say with [[region]] where each of them is";
                 self.mistake("material", message);
             }
-            let material = materials.values().next().copied().flatten();
-            return Vec::from_iter(material.map(|material| Region {
+            let material = materials.values().next().cloned().flatten();
+            return Vec::from_iter(material.map(|(material, fibres)| Region {
                 name: "body".to_string(),
                 part: Selector::All,
                 material,
+                fibres,
             }));
         }
         let rows = format.region.iter().enumerate();
@@ -46,22 +44,39 @@ impl Builder<'_> {
             if !known.contains(&region.material.as_str()) {
                 self.unknown_name(&format!("{key}.material"), "material", &region.material, &known);
             }
-            let material = materials.get(region.material.as_str()).copied().flatten()?;
-            Some(Region { name: region.name.clone(), part: part?, material })
+            let known = materials.get(region.material.as_str()).cloned().flatten();
+            let (material, fibres) = known?;
+            Some(Region { name: region.name.clone(), part: part?, material, fibres })
         })
         .collect()
     }
 
-    fn material(&mut self, name: &str, format: &MaterialFormat) -> Option<Material> {
+    fn material(
+        &mut self,
+        name: &str,
+        format: &MaterialFormat,
+    ) -> Option<(Material, Option<Fibres>)> {
         let key = format!("material.{name}");
         self.positive(&format!("{key}.density"), format.density);
         self.keys_of_law(&key, format);
         let law = match format.law {
             LawFormat::MooneyRivlin => Law::MooneyRivlin(self.rubber(&key, format)?),
             LawFormat::Ogden => Law::Ogden(self.ogden(&key, format)?),
+            LawFormat::Yeoh => Law::Yeoh(self.isochoric(&key, "yeoh", format)?),
+            LawFormat::Demiray => Law::Demiray(self.isochoric(&key, "demiray", format)?),
+            LawFormat::Guccione => Law::Guccione(self.isochoric(&key, "guccione", format)?),
+            LawFormat::HolzapfelGasserOgden => {
+                Law::HolzapfelGasserOgden(self.isochoric(&key, "holzapfel_gasser_ogden", format)?)
+            }
+            LawFormat::HolzapfelOgden => {
+                Law::HolzapfelOgden(self.isochoric(&key, "holzapfel_ogden", format)?)
+            }
             _ => law(format, self.constants(&key, format)?),
         };
-        Some(Material { density: format.density, law })
+        let before = self.count();
+        let fibres = self.fibres(&key, format, &law);
+        let material = Material { density: format.density, law };
+        (self.count() == before).then_some((material, fibres))
     }
 
     /// Refuses keys that belong to another law.
@@ -79,13 +94,19 @@ impl Builder<'_> {
                 self.mistake(&format!("{key}.{name}"), message);
             }
         }
+        let named = has_named_constants(format.law);
         let split = matches!(format.law, LawFormat::NeoHookeanIsochoric | LawFormat::Ogden);
-        if format.volumetric.is_some() && !split {
-            let message = "belongs to law = \"neo_hookean_isochoric\" or \"ogden\"";
+        if format.volumetric.is_some() && !split && !named {
+            let message =
+                "belongs to law = \"neo_hookean_isochoric\" or \"ogden\", or one with constants";
             self.mistake(&format!("{key}.volumetric"), message);
         }
         if format.terms.is_some() && format.law != LawFormat::Ogden {
             self.mistake(&format!("{key}.terms"), "belongs to law = \"ogden\"");
+        }
+        if format.constants.is_some() && !named {
+            let message = "belongs to yeoh, demiray and laws with fibres";
+            self.mistake(&format!("{key}.constants"), message);
         }
     }
 
@@ -102,29 +123,47 @@ impl Builder<'_> {
             self.accept(&format!("{key}.terms[{n}]"), OgdenTerms::new(&[*term]))?;
         }
         let terms = self.accept(key, OgdenTerms::new(&terms))?;
+        let shear = Some(terms.shear_modulus());
+        let bulk_modulus = self.bulk_modulus(key, ("ogden", "terms"), format, shear)?;
+        let volumetric = format.volumetric.map(Into::into).unwrap_or_default();
+        self.accept(key, Ogden::new(terms, bulk_modulus, volumetric))
+    }
+
+    /// The bulk modulus \[Pa\] of a law by its name and what it takes besides; from Poisson's ratio
+    /// where there is a shear modulus \[Pa\].
+    pub(super) fn bulk_modulus(
+        &mut self,
+        key: &str,
+        (law, takes): (&str, &str),
+        format: &MaterialFormat,
+        shear: Option<f64>,
+    ) -> Option<f64> {
         let given: Vec<(&str, f64)> = (constants_given(format).into_iter())
             .filter_map(|(name, value)| Some((name, value?)))
             .collect();
-        let bulk_modulus = match given[..] {
-            [("bulk_modulus", bulk_modulus)] => bulk_modulus,
-            [("poisson_ratio", nu)] => {
-                let mu = terms.shear_modulus();
-                self.accept(key, ElasticConstants::from_shear_poisson(mu, nu))?.bulk_modulus
+        match (&given[..], shear) {
+            ([("bulk_modulus", bulk_modulus)], _) => return Some(*bulk_modulus),
+            ([("poisson_ratio", nu)], Some(shear)) => {
+                let constants = ElasticConstants::from_shear_poisson(shear, *nu);
+                return Some(self.accept(key, constants)?.bulk_modulus);
             }
-            _ => {
-                let wrong = given.iter().find(|(name, _)| !OF_OGDEN.contains(name));
-                let (name, message) = match (wrong, given.is_empty()) {
-                    (Some((name, _)), _) => (*name, "does not belong to ogden, which takes terms"),
-                    (None, true) => ("poisson_ratio", "is missing; ogden takes terms"),
-                    (None, false) => ("bulk_modulus", "cannot be used; ogden takes terms"),
-                };
-                let message = format!("{message} and either poisson_ratio or bulk_modulus");
-                self.mistake(&format!("{key}.{name}"), message);
-                return None;
+            _ => {}
+        }
+        let fits =
+            |name: &str| name == "bulk_modulus" || name == "poisson_ratio" && shear.is_some();
+        let wrong = given.iter().find(|(name, _)| !fits(name));
+        let kinds =
+            if shear.is_some() { "either poisson_ratio or bulk_modulus" } else { "bulk_modulus" };
+        let missing = kinds.split(' ').nth(1).unwrap_or(kinds);
+        let (name, message) = match (wrong, given.is_empty()) {
+            (Some((name, _)), _) => {
+                (*name, format!("does not belong to {law}, which takes {takes}"))
             }
+            (None, true) => (missing, format!("is missing; {law} takes {takes}")),
+            (None, false) => ("bulk_modulus", format!("cannot be used; {law} takes {takes}")),
         };
-        let volumetric = format.volumetric.map_or(VolumetricTerm::Quadratic, Into::into);
-        self.accept(key, Ogden::new(terms, bulk_modulus, volumetric))
+        self.mistake(&format!("{key}.{name}"), format!("{message} and {kinds}"));
+        None
     }
 
     fn rubber(&mut self, key: &str, format: &MaterialFormat) -> Option<MooneyRivlin> {
@@ -172,10 +211,15 @@ impl Builder<'_> {
     }
 
     /// Turns a refusal of the solver into a mistake at the parameter.
-    fn accept<T>(&mut self, key: &str, made: Result<T, MaterialError>) -> Option<T> {
+    pub(super) fn accept<T>(&mut self, key: &str, made: Result<T, MaterialError>) -> Option<T> {
         made.map_err(|error| {
             let name = match error {
-                MaterialError::NotPositive { name, .. } => name,
+                MaterialError::NotPositive { name, .. } | MaterialError::Negative { name, .. } => {
+                    name
+                }
+                MaterialError::Dispersion { .. } => "kappa",
+                MaterialError::Angle { .. } => "angle",
+                MaterialError::UnstableYeoh { .. } => "C1",
                 MaterialError::BulkModulus { .. } => "lame_modulus",
                 MaterialError::OgdenTerms { .. } => "terms",
                 MaterialError::OgdenExponent { .. } => "alpha",
@@ -200,17 +244,32 @@ fn constants_given(format: &MaterialFormat) -> [(&'static str, Option<f64>); 5] 
     ]
 }
 
-/// A law of two constants; mooney_rivlin and ogden are made elsewhere.
+/// Whether a law takes constants by their names.
+fn has_named_constants(law: LawFormat) -> bool {
+    match law {
+        LawFormat::Yeoh
+        | LawFormat::Demiray
+        | LawFormat::Guccione
+        | LawFormat::HolzapfelGasserOgden
+        | LawFormat::HolzapfelOgden => true,
+        LawFormat::MooneyRivlin
+        | LawFormat::NeoHookeanLogJ
+        | LawFormat::NeoHookeanIsochoric
+        | LawFormat::Ogden
+        | LawFormat::StVenantKirchhoff
+        | LawFormat::LinearElastic => false,
+    }
+}
+
+/// A law of two constants; the others are made elsewhere.
 fn law(format: &MaterialFormat, constants: ElasticConstants) -> Law {
     match format.law {
         LawFormat::NeoHookeanIsochoric => {
-            let volumetric = format.volumetric.map_or(VolumetricTerm::Quadratic, Into::into);
+            let volumetric = format.volumetric.map(Into::into).unwrap_or_default();
             Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(constants, volumetric))
         }
         LawFormat::StVenantKirchhoff => Law::StVenantKirchhoff(StVenantKirchhoff::new(constants)),
         LawFormat::LinearElastic => Law::LinearElastic(LinearElastic::new(constants)),
-        LawFormat::NeoHookeanLogJ | LawFormat::MooneyRivlin | LawFormat::Ogden => {
-            Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants))
-        }
+        _ => Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants)),
     }
 }

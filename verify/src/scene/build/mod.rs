@@ -3,6 +3,7 @@
 
 mod builder;
 mod conditions;
+mod fibres;
 mod field;
 mod geometry;
 mod material;

@@ -68,7 +68,7 @@ pub struct RotationFormat {
     pub angle: f64,
 }
 
-/// A displacement at amplitude 1 [m] as formulas of the reference position x, y, z [m], such
+/// A displacement at amplitude 1 [m], or a direction [–], as formulas of the reference position x, y, z [m], such
 /// as "0.02*sin(PI*x/0.1)": + - * / ^, parentheses, sqrt, exp, ln, sin, cos, tan, asin, acos,
 /// atan, sinh, cosh, tanh, abs, PI.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -85,7 +85,7 @@ pub struct FormulaFormat {
     pub factor: f64,
 }
 
-/// Displacements at amplitude 1 at scattered points, such as measured ones. Between them the
+/// Displacements at amplitude 1 at scattered points, such as measured ones, or directions. Between them the
 /// linear function counts that fits the nearest 16 best.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -1,12 +1,16 @@
 //! Constitutive laws and their parameters.
 
 use crate::scene::format::choice::choice;
+use crate::scene::format::fibres::DirectionFormat;
 use mtled::material::VolumetricTerm;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// A constitutive law with its parameters: exactly one pair of elastic constants; A, B and
-/// poisson_ratio for mooney_rivlin; terms and poisson_ratio or bulk_modulus for ogden.
+/// poisson_ratio for mooney_rivlin; terms and poisson_ratio or bulk_modulus for ogden; constants and
+/// poisson_ratio or bulk_modulus for yeoh and demiray; constants, bulk_modulus and directions for
+/// laws with fibres.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialFormat {
@@ -32,7 +36,14 @@ pub struct MaterialFormat {
     pub b: Option<f64>,
     /// One to three terms of ogden; left out for other laws.
     pub terms: Option<Vec<OgdenTermFormat>>,
-    /// Volumetric energy of neo_hookean_isochoric and ogden; "quadratic" if left out.
+    /// Constants of yeoh, demiray and laws with fibres by their names in the formula [Pa, rad or –],
+    /// such as { mu = 1000.0, b = 2.0 }; left out for other laws.
+    pub constants: Option<BTreeMap<String, f64>>,
+    /// Directions of the fibres; left out for laws without.
+    pub fibres: Option<DirectionFormat>,
+    /// Directions that lie in the sheets of the fibres; left out for laws without.
+    pub sheets: Option<DirectionFormat>,
+    /// Volumetric energy of neo_hookean_isochoric, ogden and laws with constants; "quadratic" if left out.
     pub volumetric: Option<VolumetricFormat>,
 }
 
@@ -57,6 +68,20 @@ choice! {
         "neo_hookean_isochoric" NeoHookeanIsochoric,
         /// ψ = Σ 2μ/α² (λ̄₁^α + λ̄₂^α + λ̄₃^α − 3) + U(J), λ̄ = J^(−1/3) λ.
         "ogden" Ogden,
+        /// ψ = C1 x + C2 x² + C3 x³ + U(J), x = Ī₁ − 3 [Pa]; C2 and C3 are 0 if left out.
+        "yeoh" Yeoh,
+        /// ψ = mu/2b (exp(b (Ī₁ − 3)) − 1) + U(J).
+        "demiray" Demiray,
+        /// ψ = C/2 (exp Q − 1) + U(J), Q = b_f E₁₁² + b_t (E₂₂² + E₃₃² + 2 E₂₃²) + 2 b_fs (E₁₂² + E₁₃²),
+        /// Ē in the frame of the fibres.
+        "guccione" Guccione,
+        /// ψ = mu/2 (Ī₁ − 3) + k1/2k2 Σ (exp(k2 E²) − 1) + U(J), E = ⟨kappa (Ī₁ − 3) + (1 − 3 kappa)(Ī₄ − 1)⟩
+        /// of two families of fibres at ± angle [rad] from `fibres` towards `sheets`; kappa and angle
+        /// are 0 if left out.
+        "holzapfel_gasser_ogden" HolzapfelGasserOgden,
+        /// ψ = a/2b (exp(b (Ī₁ − 3)) − 1) + a_f/2b_f (exp(b_f ⟨Ī₄f − 1⟩²) − 1) + a_s/2b_s (exp(b_s ⟨Ī₄s − 1⟩²) − 1)
+        /// + a_fs/2b_fs (exp(b_fs Ī₈²) − 1) + U(J); terms of sheets are left out with their constants.
+        "holzapfel_ogden" HolzapfelOgden,
         /// ψ = λ/2 (tr E)² + μ E:E.
         "st_venant_kirchhoff" StVenantKirchhoff,
         /// ψ = λ/2 (tr ε)² + μ ε:ε, small displacements only.
@@ -65,7 +90,7 @@ choice! {
 }
 
 choice! {
-    /// Volumetric energy U(J) of neo_hookean_isochoric and ogden.
+    /// Volumetric energy U(J) of neo_hookean_isochoric, ogden and laws with constants.
     VolumetricFormat for VolumetricTerm {
         /// U = K/2 (J−1)².
         "quadratic" Quadratic,

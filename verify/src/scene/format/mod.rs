@@ -4,6 +4,7 @@
 mod case;
 mod choice;
 mod conditions;
+mod fibres;
 mod geometry;
 mod material;
 mod recipe;
@@ -14,6 +15,7 @@ pub use conditions::{
     AmplitudeFormat, BeyondFormat, DataFormat, DisplacementFormat, ExtentFormat, FormulaFormat,
     FrictionFormat, ObstacleFormat, PrescribeFormat, RotationFormat, SideFormat,
 };
+pub use fibres::DirectionFormat;
 pub use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
 pub use material::{LawFormat, MaterialFormat, VolumetricFormat};
 pub use recipe::{

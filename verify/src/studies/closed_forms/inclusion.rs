@@ -111,6 +111,7 @@ fn problem(
         name: "ball".into(),
         part: Selector::Inside { shape, tolerance: 0.0 },
         material: material(ball.stiffness_ratio)?,
+        fibres: None,
     };
     problem.regions.insert(0, own);
     let ramp = Amplitude::Linear { duration: 1.0 };

@@ -274,6 +274,7 @@ fn column_problem(
             name: "column".into(),
             part: Selector::All,
             material: Material { density, law: Law::LinearElastic(LinearElastic::new(constants)) },
+            fibres: None,
         }],
         conditions: vec![
             roller("foot", foot, [Some(0.0), None, None]),

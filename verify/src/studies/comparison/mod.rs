@@ -7,6 +7,7 @@ mod cost_figures;
 mod costs;
 mod cut;
 mod cut_drawings;
+pub mod fibres;
 pub mod held_patches;
 mod limits;
 mod tables;

@@ -244,6 +244,7 @@ fn inclusions(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Resu
                 name: "inclusion".into(),
                 part: Selector::Inside { shape, tolerance: 0.0 },
                 material: nearly_incompressible(3000.0 * factor)?,
+                fibres: None,
             };
             problem.regions.insert(0, region);
             Ok(problem)
