@@ -43,6 +43,20 @@ fn newton_reaches_the_solution_of_relaxation_with_its_reactions() {
 }
 
 #[test]
+fn a_tolerance_below_round_off_ends_in_an_equilibrium_that_says_so() {
+    // Strains of 1e-7: F = 1 + Grad u has round-off of 1e-9 of them.
+    let mut problem = collocated(leaning(jittered(cube(4), 0.2, 1)));
+    problem.loads = Loads::default();
+    let aside = Prescribed::Displacement([Some(1e-7 * EDGE), Some(0.0), None]);
+    problem.conditions[1].prescribed = aside;
+    let by = |tolerance| solve_by(&problem, Motion::Newton(Newton { load_end: 1.0, tolerance }));
+    let counts = by(1e-14).summary.newton.unwrap();
+    assert!(counts.up_to_round_off && counts.increments == 1, "{counts:?}");
+    assert!(counts.residual > 1e-14 && counts.residual < 1e-8, "{counts:?}");
+    assert!(!by(1e-6).summary.newton.unwrap().up_to_round_off);
+}
+
+#[test]
 fn from_a_relaxed_state_newton_needs_one_increment() {
     let mut solved = solve(&collocated(leaning(jittered(cube(4), 0.2, 1))));
     let before = solved.state.displacement.clone();

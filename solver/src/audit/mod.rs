@@ -72,7 +72,7 @@ pub fn audit(
     state: &State,
 ) -> Result<Audit, Error> {
     let cloud = &discretisation.cloud;
-    let spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
+    let spacing = cloud.mean_spacing();
     let body = problem.body.section(&problem.dimension)?;
     let divided = Divided {
         body: &body,

@@ -50,6 +50,8 @@ pub struct Model {
     pub bodies: Vec<u32>,
     /// Diagonal of the box around all nodes \[m\].
     pub extent: f64,
+    /// Mean nodal spacing \[m\].
+    pub mean_spacing: f64,
     /// Reference positions of the quadrature points \[point\] \[m\].
     pub point_positions: Vec<Vector3>,
     /// φ at the nodes, row by row, only for Newton's method.
@@ -105,6 +107,7 @@ impl Model {
             initial_velocity: initial_velocity(problem, discretisation)?,
             point_positions: quadrature.positions.clone(),
             extent: (upper - lower).norm(),
+            mean_spacing: cloud.mean_spacing(),
             lumped_mass,
             nodal_rows: if problem.by_newton() {
                 Some(discretisation.rows_at(&discretisation.cloud.positions)?)

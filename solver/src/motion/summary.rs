@@ -136,6 +136,8 @@ pub struct NewtonCounts {
     pub evaluations: usize,
     /// Largest unbalanced nodal force over the largest nodal force \[–\].
     pub residual: f64,
+    /// Whether the residual is above what was asked, and round-off as large.
+    pub up_to_round_off: bool,
     /// What has decided on the pressures of patches.
     pub pressures: PatchPressures,
 }

@@ -265,7 +265,11 @@ fn energies_json(record: &Recording) -> Value {
 
 /// How a static run ended.
 fn ending(summary: &Summary) -> &'static str {
-    if summary.stopped { "stopped before convergence" } else { "converged" }
+    match summary.newton {
+        _ if summary.stopped => "stopped before convergence",
+        Some(newton) if newton.up_to_round_off => "converged up to round-off, not to the tolerance",
+        _ => "converged",
+    }
 }
 
 /// The main results, a line each, with their error bars.

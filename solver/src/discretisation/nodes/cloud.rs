@@ -19,6 +19,11 @@ pub struct NodeCloud {
 }
 
 impl NodeCloud {
+    /// Mean nodal spacing \[m\].
+    pub fn mean_spacing(&self) -> f64 {
+        self.spacing.iter().sum::<f64>() / self.spacing.len() as f64
+    }
+
     /// Nodes of which the first `boundary` lie on the boundary.
     pub(super) fn boundary_first(
         positions: Vec<Vector3>,

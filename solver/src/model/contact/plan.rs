@@ -66,7 +66,7 @@ impl ContactPlan {
         let count = |node: u32| free[node as usize].iter().filter(|free| **free).count();
         let nodes = boundary().filter(|node| count(*node) > 0).collect();
         let held = boundary().filter(|node| count(*node) < components).collect();
-        let mean_spacing = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
+        let mean_spacing = cloud.mean_spacing();
         let section = |obstacle: &Obstacle| -> Result<Obstacle, Error> {
             let shape = obstacle.shape.section(&problem.dimension)?;
             Ok(Obstacle { shape, ..obstacle.clone() })

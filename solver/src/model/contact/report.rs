@@ -46,7 +46,7 @@ impl ContactSurface {
     /// Of the body of a problem with obstacles.
     pub fn new(problem: &Problem, discretisation: &Discretisation) -> Result<Self, Error> {
         let cloud = &discretisation.cloud;
-        let mean = cloud.spacing.iter().sum::<f64>() / cloud.spacing.len() as f64;
+        let mean = cloud.mean_spacing();
         let panels = problem.body.boundary_panels(PANEL * mean, &problem.dimension)?;
         let boundary: Vec<u32> = (0..cloud.positions.len() as u32)
             .filter(|&node| cloud.on_boundary[node as usize])

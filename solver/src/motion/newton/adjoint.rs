@@ -42,7 +42,7 @@ impl<'a> Balanced<'a> {
     pub fn new(model: &'a Model, settings: &Newton, state: &State) -> Result<Balanced<'a>, Error> {
         let mut buffers = Buffers::new(model, false);
         let mut solver = Solver::new(model, settings, state, &mut buffers);
-        let load = Load { fraction: 1.0, tolerance: BALANCED };
+        let load = Load { fraction: 1.0, part: 0.0, tolerance: BALANCED };
         let found = solver.solve(&state.displacement, load, &mut buffers, &mut Unobserved);
         let now = found.map_err(|unsolved| Error::NoEquilibrium {
             reached: 1.0,

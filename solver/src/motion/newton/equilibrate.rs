@@ -82,7 +82,8 @@ struct Loading<'a, 'm> {
 impl Loading<'_, '_> {
     fn load_at(&self, fraction: f64) -> Load {
         let passing = self.tolerance.max(PASSING_TOLERANCE);
-        Load { fraction, tolerance: if fraction == 1.0 { self.tolerance } else { passing } }
+        let tolerance = if fraction == 1.0 { self.tolerance } else { passing };
+        Load { fraction, part: fraction - self.reached, tolerance }
     }
 
     /// Tries the next part of the load.

@@ -12,11 +12,14 @@ use crate::motion::observe::{Continue, Observer};
 use crate::motion::step::Buffers;
 use crate::motion::tangent::Tangent;
 
-/// Corrections in one increment of the load; more where pressures follow, and where contacts
-/// have to be found.
+/// Corrections in one increment of the load; more where pressures follow, and in small increments
+/// where contacts have to be found. A large one is halved instead: corrections that wander for long
+/// may end in an equilibrium that the load does not lead to.
 const MOST_ITERATIONS: usize = 20;
 const MOST_ITERATIONS_WITH_PRESSURES: usize = 40;
 const MOST_ITERATIONS_IN_CONTACT: usize = 100;
+/// Increment above which it is large \[–\].
+const LARGE: f64 = 0.25;
 /// Residual \[–\] below which more of them follow, as long as each leaves at most this part of it:
 /// where pressures follow a free rim the tangent is not symmetric, and convergence linear.
 const STILL_FALLING: (f64, f64) = (1e-3, 0.7);
@@ -28,6 +31,8 @@ const ENOUGH: f64 = 0.3;
 const FIRST_FORCING: f64 = 0.01;
 /// Round-off of a nodal force over ε K u.
 const ROUND_OFF: f64 = 100.0;
+/// Round-off of a nodal force over ε K h with the nodal spacing h: that of F = 1 + Grad u.
+const ROUND_OFF_AT_REST: f64 = 10.0;
 /// Gap of a closed contact over the mean nodal spacing \[–\].
 const CLOSED: f64 = 1e-6;
 /// Move of a body that only contacts can hold in its first correction, over the mean
@@ -43,6 +48,8 @@ const FALLING: f64 = 0.5;
 pub(super) struct Load {
     /// Of the whole load \[–\].
     pub fraction: f64,
+    /// What is new of it \[–\].
+    pub part: f64,
     /// Of the residual \[–\].
     pub tolerance: f64,
 }
@@ -169,6 +176,7 @@ impl Solver<'_> {
             let settled =
                 changes == 0 && open <= CLOSED.max(load.tolerance) * model.contact.mean_spacing;
             if settled && course.is_whole() && self.is_balanced(&course.now, load.tolerance) {
+                self.counts.up_to_round_off = residual > load.tolerance;
                 return Ok(course.now);
             }
             match self.advance(&mut course, settled, residual, buffers, observer) {
@@ -189,10 +197,11 @@ impl Solver<'_> {
         let imbalance = self.imbalance(start, fraction, buffers);
         self.see_pressures(buffers);
         self.shift = if self.floating { self.first_shift(&imbalance) } else { 0.0 };
-        let most = match self.model.contact.obstacles.is_empty() {
-            true if self.pressures.is_some() => MOST_ITERATIONS_WITH_PRESSURES,
-            true => MOST_ITERATIONS,
-            false => MOST_ITERATIONS_IN_CONTACT,
+        let finds_contacts = !self.model.contact.obstacles.is_empty() && load.part <= LARGE;
+        let most = match self.pressures {
+            _ if finds_contacts => MOST_ITERATIONS_IN_CONTACT,
+            Some(_) => MOST_ITERATIONS_WITH_PRESSURES,
+            None => MOST_ITERATIONS,
         };
         Course {
             load,
@@ -216,7 +225,7 @@ impl Solver<'_> {
         buffers: &mut Buffers,
         observer: &mut dyn Observer,
     ) -> Advance {
-        let (model, Load { fraction, tolerance }) = (self.model, course.load);
+        let (model, Load { fraction, tolerance, .. }) = (self.model, course.load);
         let (mut change, whole) = self.part_of(std::mem::take(&mut course.jump));
         self.free.close_contacts(&mut change);
         let (progress, count) = (progress(residual, tolerance), self.counts.iterations);
@@ -262,7 +271,8 @@ impl Solver<'_> {
 
     fn is_balanced(&self, now: &Equilibrium, tolerance: f64) -> bool {
         let model = self.model;
-        let round_off = ROUND_OFF * f64::EPSILON * largest(&model.stiffness) * largest(&now.u);
+        let of_length = ROUND_OFF * largest(&now.u) + ROUND_OFF_AT_REST * model.mean_spacing;
+        let round_off = f64::EPSILON * largest(&model.stiffness) * of_length;
         now.exact().relative(model) <= tolerance || now.exact().largest(model) <= round_off
     }
 
