@@ -69,6 +69,17 @@ impl std::fmt::Display for CollapsedPoint {
 }
 
 impl Summary {
+    /// How a static run ended, in words.
+    pub fn ending(&self) -> &'static str {
+        match self.newton {
+            _ if self.stopped => "stopped before convergence",
+            Some(newton) if newton.up_to_round_off => {
+                "converged up to round-off, not to the tolerance"
+            }
+            _ => "converged",
+        }
+    }
+
     /// Reasons to doubt a finished run.
     pub fn doubts(&self, model: &Model) -> Vec<String> {
         let collapsed = self.collapsed_point(model).map(|collapsed| collapsed.to_string());

@@ -263,15 +263,6 @@ fn energies_json(record: &Recording) -> Value {
     })
 }
 
-/// How a static run ended.
-fn ending(summary: &Summary) -> &'static str {
-    match summary.newton {
-        _ if summary.stopped => "stopped before convergence",
-        Some(newton) if newton.up_to_round_off => "converged up to round-off, not to the tolerance",
-        _ => "converged",
-    }
-}
-
 /// The main results, a line each, with their error bars.
 pub fn summary_text(
     case: &Case,
@@ -311,7 +302,7 @@ fn run_text(solved: &Solved) -> Vec<String> {
             Some(newton) => format!(
                 "  {}: {} in {} parts of the load, {} products with the tangent, {}, \
                  residual {} of the largest nodal force",
-                ending(s),
+                s.ending(),
                 newton.corrections(),
                 newton.increments,
                 newton.products,
@@ -341,7 +332,7 @@ fn run_text(solved: &Solved) -> Vec<String> {
     if let Some(convergence) = s.relaxation {
         lines.push(format!(
             "  {}: estimated error {} m, residual {} of the largest nodal force",
-            ending(s),
+            s.ending(),
             four_digits(convergence.estimated_error),
             four_digits(convergence.residual)
         ));
