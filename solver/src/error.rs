@@ -57,6 +57,9 @@ pub enum Error {
     NoQuadraturePoints,
     #[error("no region contains the point ({}): let the last region contain everything", show(.position))]
     PointWithoutRegion { position: Vector3 },
+    /// A load or velocity that is no number somewhere; `what` is its list.
+    #[error("{what} {index} is no number at ({}): give a formula that has a value in its whole part", show(.position))]
+    NoValue { what: &'static str, index: usize, position: Vector3 },
     /// Fibres or sheets without a direction.
     #[error(transparent)]
     NoDirection(#[from] NoDirection),

@@ -131,7 +131,7 @@ fn nodes_never_leave_a_cavity_grown_by_its_offset() {
         problem
             .obstacles
             .push(Obstacle { offset: 0.002, ..obstacle(skull, ObstacleSide::Inside, friction) });
-        problem.loads.initial_velocities.push((Selector::All, Vector3::new(1.0, 0.3, 0.0)));
+        problem.loads.initial_velocities.push((Selector::All, Vector3::new(1.0, 0.3, 0.0).into()));
         problem.motion = Motion::Dynamic { end: 0.1, step: StepControl::default(), damping: 0.0 };
         let (_, state) = run_without_penetration(&problem);
         // Without the cavity it would have moved by 0.1 m.
@@ -143,7 +143,7 @@ fn nodes_never_leave_a_cavity_grown_by_its_offset() {
 fn an_obstacle_out_of_reach_changes_no_bit() {
     let mut problem = jittered(cube(3), 0.2, 1);
     gravity(&mut problem, Vector3::new(0.0, 0.0, -9.81));
-    problem.loads.initial_velocities.push((face(0, 0.0), Vector3::x()));
+    problem.loads.initial_velocities.push((face(0, 0.0), Vector3::x().into()));
     let run = |problem: &Problem| {
         let (_, model) = build(problem);
         let mut state = State::new(&model);

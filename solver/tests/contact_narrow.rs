@@ -70,7 +70,10 @@ fn thrown(thickness: f64, speed: f64) -> f64 {
     let (lower, upper) =
         (Vector3::new(-1.0, -1.0, -0.005 - thickness), Vector3::new(1.0, 1.0, -0.005));
     problem.obstacles.push(solid(Shape::Box { min: lower, max: upper }));
-    problem.loads.initial_velocities.push((mtled::geometry::Selector::All, Vector3::z() * -speed));
+    problem
+        .loads
+        .initial_velocities
+        .push((mtled::geometry::Selector::All, (Vector3::z() * -speed).into()));
     problem.motion = Motion::dynamic(0.012 / speed, 0.0);
     let (_, model) = build(&problem);
     let mut state = State::new(&model);

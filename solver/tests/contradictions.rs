@@ -171,7 +171,7 @@ fn an_obstacle_of_which_its_offset_leaves_nothing_is_refused_by_name() {
 fn an_initial_velocity_of_no_node_is_refused_by_its_number() {
     let mut problem = square(4);
     problem.loads.initial_velocities =
-        vec![(Selector::All, Vector3::x()), (face(0, 0.0), Vector3::y())];
+        vec![(Selector::All, Vector3::x().into()), (face(0, 0.0), Vector3::y().into())];
     assert!(matches!(refusal(&problem), Error::EmptyInitialVelocity { index: 1 }));
     problem.loads.initial_velocities.swap(0, 1);
     assert_eq!(warnings(&problem), []);

@@ -207,7 +207,7 @@ fn a_held_volume_that_moves_drags_the_rest_along_with_its_inertia() {
     let velocity = Vector3::x() * 0.5;
     let mut problem = weighed(body, vec![held_volume("foot", inside(below(0.023)), velocity)]);
     problem.loads.body_forces.clear();
-    problem.loads.initial_velocities = vec![(Selector::All, velocity)];
+    problem.loads.initial_velocities = vec![(Selector::All, velocity.into())];
     problem.motion = Motion::dynamic(0.02, 0.0);
     let simulation = solved(&problem);
     for node in 0..simulation.model.positions.len() {

@@ -1,11 +1,13 @@
 //! Time integration against exact solutions and its theoretical order.
+#![allow(non_snake_case)]
 
 mod common;
 
 use common::*;
 use mtled::algebra::tensor::Vector3;
+use mtled::discretisation::Discretisation;
 use mtled::model::Model;
-use mtled::motion::energy::Energies;
+use mtled::motion::energy::{Energies, momenta};
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -63,7 +65,7 @@ fn with_evenly_split_masses_the_centre_of_mass_falls_by_half_g_t_squared() {
 fn a_body_without_forces_keeps_its_velocity() {
     let velocity = Vector3::new(0.3, -0.2, 0.1);
     let mut problem = jittered(cube(3), 0.2, 2);
-    problem.loads.initial_velocities.push((mtled::geometry::Selector::All, velocity));
+    problem.loads.initial_velocities.push((mtled::geometry::Selector::All, velocity.into()));
     let (_, model) = build(&problem);
     let state = run(&model, &dynamic(0.1, 2e-3, 0.0));
     for node in 0..model.positions.len() {
@@ -74,7 +76,7 @@ fn a_body_without_forces_keeps_its_velocity() {
 #[test]
 fn damping_reduces_the_energy_of_a_rigid_motion_exponentially() {
     let mut problem = square(4);
-    problem.loads.initial_velocities.push((mtled::geometry::Selector::All, Vector3::x()));
+    problem.loads.initial_velocities.push((mtled::geometry::Selector::All, Vector3::x().into()));
     let (_, model) = build(&problem);
     let (damping, end, time_step) = (4.0, 0.5, 2e-3);
     let energies = energies_of(&model, &dynamic(end, time_step, damping), State::new(&model));
@@ -107,7 +109,7 @@ fn a_free_body_vibrates_with_a_balance_whose_fluctuation_falls_with_the_step_squ
 fn without_conditions_and_contact_no_work_is_done_by_them() {
     let mut problem = square(5);
     gravity(&mut problem, Vector3::new(1.0, 0.0, 0.0));
-    problem.loads.initial_velocities.push((face(0, 0.0), Vector3::x() * 0.1));
+    problem.loads.initial_velocities.push((face(0, 0.0), (Vector3::x() * 0.1).into()));
     let (_, model) = build(&problem);
     // With steps of changing size.
     let step = StepControl { reevaluate_every: 7, ..StepControl::default() };
@@ -207,4 +209,45 @@ fn a_body_that_is_held_whole_flies_on_from_its_release_with_its_speed() {
             assert!((u - 0.5 * Vector3::x()).norm() < 1e-9, "released at {release} s: {u:?}");
         }
     }
+}
+
+#[test]
+fn a_spinning_body_keeps_its_momenta_while_it_stretches() {
+    let mut problem = jittered(cube(4), 0.2, 5);
+    let spin = |X: &Vector3| Vector3::new(0.3, 0.0, -0.1) + Vector3::new(2.0, -4.0, 9.0).cross(X);
+    problem.loads.initial_velocities.push((mtled::geometry::Selector::All, Field::of(spin)));
+    let (_, model) = build(&problem);
+    let about = Vector3::new(0.1, 0.2, -0.3);
+    let at = |end: f64| momenta(&model, &run(&model, &dynamic(end, 5e-4, 0.0)), &about);
+    let (first, last) = (at(5e-4), at(0.25));
+    let mass: f64 = model.inertia.iter().sum();
+    let middle = spin(&Vector3::repeat(0.5 * EDGE)) * mass;
+    assert!((first.linear - middle).norm() < 1e-3 * middle.norm(), "{first:?}");
+    assert!((last.linear - first.linear).norm() < 1e-12 * first.linear.norm());
+    assert!((last.angular - first.angular).norm() < 1e-12 * first.angular.norm(), "{last:?}");
+}
+
+#[test]
+fn a_load_or_velocity_that_is_no_number_somewhere_is_refused_with_the_place() {
+    let hole = || Field::of(|X| Vector3::x() * (X.x - 0.5 * EDGE).sqrt());
+    let refusal = |change: &dyn Fn(&mut Loads)| {
+        let mut problem = cube(3);
+        change(&mut problem.loads);
+        let discretisation = Discretisation::new(&problem).unwrap();
+        Model::new(&problem, &discretisation).unwrap_err().to_string()
+    };
+    let all = mtled::geometry::Selector::All;
+    let velocity = refusal(&|loads| loads.initial_velocities.push((all.clone(), hole())));
+    assert!(velocity.contains("initial_velocity 0 is no number at (0"), "{velocity}");
+    let amplitude = Amplitude::Constant;
+    let force = refusal(&|loads| {
+        let (part, amplitude) = (all.clone(), amplitude.clone());
+        loads.body_forces.push(BodyForce { part, acceleration: hole(), amplitude });
+    });
+    assert!(force.contains("body_force 0 is no number at (0"), "{force}");
+    let traction = refusal(&|loads| {
+        let (name, part, amplitude) = ("side".into(), all.clone(), amplitude.clone());
+        loads.tractions.push(Traction { name, part, traction: hole(), amplitude });
+    });
+    assert!(traction.contains("traction 0 is no number at (0"), "{traction}");
 }

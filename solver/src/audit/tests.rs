@@ -248,7 +248,7 @@ fn an_obstacle_that_has_been_entered_between_nodes_is_doubted() {
 /// A free block that flies at 1 m/s against a rod of a radius and at a place along x \[m\].
 fn flown_at_a_rod(radius: f64, x: f64, time: f64) -> Simulation {
     let mut problem = falling_on_a_plane();
-    problem.loads.initial_velocities[0].1.z = -1.0;
+    problem.loads.initial_velocities[0].1 = Vector3::new(0.0, 0.0, -1.0).into();
     problem.regions[0].material = tissue(20_000.0);
     problem.obstacles[0].shape = Shape::Cylinder {
         base: Vector3::new(x, -1.0, -0.007),
@@ -319,7 +319,7 @@ fn falling_on_a_plane() -> Problem {
     let mut problem = block();
     problem.loads = Default::default();
     problem.conditions.clear();
-    problem.loads.initial_velocities = vec![(Selector::All, Vector3::new(0.0, 0.0, -0.5))];
+    problem.loads.initial_velocities = vec![(Selector::All, Vector3::new(0.0, 0.0, -0.5).into())];
     problem.obstacles = vec![Obstacle {
         name: "floor".into(),
         shape: Shape::HalfSpace { point: Vector3::new(0.0, 0.0, -0.001), normal: Vector3::z() },

@@ -4,7 +4,7 @@
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::{Discretisation, Rows, Warning};
 use crate::error::Error;
-use crate::geometry::Selector;
+use crate::geometry::{Field, Selector};
 use crate::model::essential::Constraints;
 use crate::model::loaded_part::LoadedPart;
 use crate::model::loaded_volume::LoadedVolume;
@@ -33,32 +33,35 @@ pub fn load_patterns(
     let mut patterns = Vec::new();
     for (index, body_force) in problem.loads.body_forces.iter().enumerate() {
         let mut force = vec![0.0; size];
-        let mut add_points = |positions: &[Vector3], masses: &[f64], rows: &Rows| {
-            for (point, (X, mass)) in positions.iter().zip(masses).enumerate() {
-                let acceleration = body_force.acceleration.at(X);
-                for entry in rows.row(point) {
-                    let nodal_mass = mass * rows.phi[entry];
-                    add(&mut force, d, rows.nodes[entry], &(acceleration * nodal_mass));
+        let mut add_points =
+            |positions: &[Vector3], masses: &[f64], rows: &Rows| -> Result<bool, Error> {
+                for (point, (X, mass)) in positions.iter().zip(masses).enumerate() {
+                    let acceleration = value(&body_force.acceleration, X, ("body_force", index))?;
+                    for entry in rows.row(point) {
+                        let nodal_mass = mass * rows.phi[entry];
+                        add(&mut force, d, rows.nodes[entry], &(acceleration * nodal_mass));
+                    }
                 }
-            }
-            !positions.is_empty()
-        };
+                Ok(!positions.is_empty())
+            };
         let acts = if body_force.part.is_everything() {
-            discretisation.volumes().fold(false, |acts, (quadrature, rows)| {
+            let mut acts = false;
+            for (quadrature, rows) in discretisation.volumes() {
                 let masses: Vec<f64> = masses(quadrature, density).collect();
-                acts | add_points(&quadrature.positions, &masses, rows)
-            })
+                acts |= add_points(&quadrature.positions, &masses, rows)?;
+            }
+            acts
         } else {
             let part = LoadedVolume::new(problem, discretisation, (index, &body_force.part))?;
-            add_points(&part.positions, &part.masses, &part.rows)
+            add_points(&part.positions, &part.masses, &part.rows)?
         };
         if !acts {
             return Err(Error::EmptyBodyForce { index });
         }
         patterns.push(LoadPattern { force, amplitude: body_force.amplitude.clone() });
     }
-    for traction in &problem.loads.tractions {
-        let force = traction_force(problem, discretisation, traction)?;
+    for (index, traction) in problem.loads.tractions.iter().enumerate() {
+        let force = traction_force(problem, discretisation, (index, traction))?;
         patterns.push(LoadPattern { force, amplitude: traction.amplitude.clone() });
     }
     Ok(patterns)
@@ -67,7 +70,7 @@ pub fn load_patterns(
 fn traction_force(
     problem: &Problem,
     discretisation: &Discretisation,
-    traction: &Traction,
+    (index, traction): (usize, &Traction),
 ) -> Result<Vec<f64>, Error> {
     let d = problem.dimension.components();
     let nodes = discretisation.cloud.positions.len();
@@ -78,9 +81,31 @@ fn traction_force(
     let strengths = part.strengths(nodes, |panel| traction.traction.at(&panel.centre));
     let forces = part.rule().scatter(nodes, &strengths);
     for (node, nodal_force) in forces.iter().enumerate() {
+        let position = &discretisation.cloud.positions[node];
+        is_number(nodal_force, position, ("traction", index))?;
         add(&mut force, d, node as u32, nodal_force);
     }
     Ok(force)
+}
+
+/// The value of a field of an entry of a list.
+fn value(
+    field: &Field,
+    position: &Vector3,
+    (what, index): (&'static str, usize),
+) -> Result<Vector3, Error> {
+    let value = field.at(position);
+    is_number(&value, position, (what, index))?;
+    Ok(value)
+}
+
+fn is_number(
+    value: &Vector3,
+    position: &Vector3,
+    (what, index): (&'static str, usize),
+) -> Result<(), Error> {
+    let is_number = value.iter().all(|component| component.is_finite());
+    is_number.then_some(()).ok_or(Error::NoValue { what, index, position: *position })
 }
 
 fn add(force: &mut [f64], components: usize, node: u32, nodal_force: &Vector3) {
@@ -101,8 +126,9 @@ pub fn initial_velocity(
     for (node, position) in discretisation.cloud.positions.iter().enumerate() {
         if let Some(index) = parts.iter().position(|(part, _)| part.contains(position)) {
             used[index] = true;
+            let own = value(&parts[index].1, position, ("initial_velocity", index))?;
             for k in 0..components {
-                velocity[components * node + k] = parts[index].1[k];
+                velocity[components * node + k] = own[k];
             }
         }
     }

@@ -1,5 +1,7 @@
-//! Energies and their balance.
+//! Energies and their balance, and momenta.
+#![allow(non_snake_case)]
 
+use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
 use crate::motion::internal_force::{Workspace, internal_force, strain_energy};
 use crate::motion::state::State;
@@ -21,6 +23,28 @@ pub struct Energies {
     pub contact_energy: f64,
     /// Of a motion: what obstacles have taken for good.
     pub contact_loss: f64,
+}
+
+/// Momenta half a step before the time of the state, like velocities.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Momenta {
+    /// Σ m v \[kg·m/s\].
+    pub linear: Vector3,
+    /// Σ m (x − c) × v about a fixed place c \[kg·m²/s\].
+    pub angular: Vector3,
+}
+
+/// Momenta with the masses of the equation of motion, the angular one about `about` \[m\]. Central
+/// differences keep both of a free body to round-off: (x − ½ Δt v) × v is x × v.
+pub fn momenta(model: &Model, state: &State, about: &Vector3) -> Momenta {
+    let (mut linear, mut angular) = (Vector3::zeros(), Vector3::zeros());
+    for (node, (mass, X)) in model.inertia.iter().zip(&model.positions).enumerate() {
+        let at = |field: &[f64]| vector_at(field, node, model.components);
+        let momentum = *mass * at(&state.velocity);
+        linear += momentum;
+        angular += (X + at(&state.displacement) - about).cross(&momentum);
+    }
+    Momenta { linear, angular }
 }
 
 impl Energies {

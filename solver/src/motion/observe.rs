@@ -3,7 +3,7 @@
 use crate::algebra::tensor::Vector3;
 use crate::model::Model;
 use crate::model::essential::Reaction;
-use crate::motion::energy::{Energies, energies};
+use crate::motion::energy::{Energies, Momenta, energies, momenta};
 use crate::motion::state::State;
 
 /// A run after a step, as an observer sees it; energies and reactions are computed
@@ -23,6 +23,11 @@ impl View<'_> {
     /// Energies half a step ago; two passes over the quadrature points.
     pub fn energies(&self) -> Energies {
         energies(self.model, self.state)
+    }
+
+    /// Momenta half a step ago, the angular one about `about` \[m\].
+    pub fn momenta(&self, about: &Vector3) -> Momenta {
+        momenta(self.model, self.state, about)
     }
 
     /// Force and moment about `about` \[m\] that each condition exerts on the

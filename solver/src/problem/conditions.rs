@@ -76,8 +76,8 @@ pub struct Loads {
     pub tractions: Vec<Traction>,
     /// Pressures on the deformed surface; they add up.
     pub pressures: Vec<Pressure>,
-    /// Velocity at t = 0 \[m/s\], the first part that contains a node.
-    pub initial_velocities: Vec<(Selector, Vector3)>,
+    /// Velocity at t = 0 \[m/s\], the first part that contains a node, at whose parameters it is set.
+    pub initial_velocities: Vec<(Selector, Field)>,
 }
 
 /// A force per mass \[N/kg\] on the body or a part of it, such as what lies above a fluid.

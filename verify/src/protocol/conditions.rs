@@ -3,8 +3,8 @@
 use super::geometry::{Selection, Shape};
 use crate::scene::Case;
 use crate::scene::format::{
-    BeyondFormat, CaseFormat, DataFormat, ExtentFormat, FrictionFormat, PrescribeFormat,
-    SelectorFormat, SideFormat, Triple, UnitFormat,
+    BeyondFormat, CaseFormat, DataFormat, ExtentFormat, FormulaFormat, FrictionFormat,
+    PrescribeFormat, SelectorFormat, SideFormat, Triple, UnitFormat,
 };
 use mtled::problem::Amplitude;
 use schemars::JsonSchema;
@@ -86,7 +86,10 @@ pub struct BodyForce {
     #[serde(rename = "where")]
     pub part: Selection,
     /// At factor 1.
-    pub acceleration_m_per_s2: Triple,
+    pub acceleration_m_per_s2: Option<Triple>,
+    /// The same as formulas, where it is not uniform.
+    #[serde(default)]
+    pub formula: Option<Formula>,
     pub history: History,
 }
 
@@ -97,7 +100,10 @@ pub struct Traction {
     #[serde(rename = "where")]
     pub part: Selection,
     /// At factor 1.
-    pub traction_pa: Triple,
+    pub traction_pa: Option<Triple>,
+    /// The same as formulas, where it is not uniform.
+    #[serde(default)]
+    pub formula: Option<Formula>,
     pub history: History,
 }
 
@@ -117,7 +123,28 @@ pub struct Pressure {
 pub struct InitialVelocity {
     #[serde(rename = "where")]
     pub part: Selection,
-    pub velocity_m_per_s: Triple,
+    pub velocity_m_per_s: Option<Triple>,
+    /// The same as formulas, where it is not uniform.
+    #[serde(default)]
+    pub formula: Option<Formula>,
+}
+
+/// A vector, SI, as formulas of the reference position x, y, z [m], like those of a displacement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Formula {
+    pub x: String,
+    pub y: String,
+    pub z: String,
+    /// Multiplies all of them.
+    pub factor: f64,
+}
+
+impl Formula {
+    fn new(format: &FormulaFormat) -> Formula {
+        let FormulaFormat { x, y, z, factor } = format;
+        let z = z.clone().unwrap_or_else(|| "0".into());
+        Formula { x: x.clone(), y: y.clone(), z, factor: *factor }
+    }
 }
 
 /// A rigid obstacle that the body may not enter: a shape grown by an offset.
@@ -210,6 +237,7 @@ pub fn loads(format: &CaseFormat, case: &Case, tolerance_m: f64, instants: &[f64
             .map(|(row, known)| BodyForce {
                 part: row.part.as_ref().map_or(Selection::All, part),
                 acceleration_m_per_s2: row.acceleration,
+                formula: row.formula.as_ref().map(Formula::new),
                 history: history(&known.amplitude),
             })
             .collect(),
@@ -218,6 +246,7 @@ pub fn loads(format: &CaseFormat, case: &Case, tolerance_m: f64, instants: &[f64
                 name: row.name.clone(),
                 part: part(&row.part),
                 traction_pa: row.traction,
+                formula: row.formula.as_ref().map(Formula::new),
                 history: history(&known.amplitude),
             })
             .collect(),
@@ -230,7 +259,11 @@ pub fn loads(format: &CaseFormat, case: &Case, tolerance_m: f64, instants: &[f64
             })
             .collect(),
         initial_velocities: (format.initial_velocity.iter())
-            .map(|row| InitialVelocity { part: part(&row.part), velocity_m_per_s: row.velocity })
+            .map(|row| InitialVelocity {
+                part: part(&row.part),
+                velocity_m_per_s: row.velocity,
+                formula: row.formula.as_ref().map(Formula::new),
+            })
             .collect(),
     }
 }

@@ -58,6 +58,7 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         | Error::ObstacleInBody { name, .. }
         | Error::EmptyObstacle { name } => &format!("obstacle.{name}"),
         Error::EmptyInitialVelocity { index } => &format!("initial_velocity[{index}]"),
+        Error::NoValue { what, index, .. } => &format!("{what}[{index}]"),
         Error::EmptyRegion { .. } => "probe",
         Error::EmptyTraction { name } => &format!("traction.{name}.where"),
         Error::EmptyBodyForce { index } | Error::SmallBodyForce { index, .. } => {

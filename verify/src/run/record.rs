@@ -9,7 +9,7 @@ use mtled::discretisation::Rows;
 use mtled::error::Error;
 use mtled::model::contact::ContactForce;
 use mtled::model::essential::Reaction;
-use mtled::motion::energy::Energies;
+use mtled::motion::energy::{Energies, Momenta};
 use mtled::motion::observe::{Continue, Observer, View};
 
 /// Samples and frames of a run up to its last sample.
@@ -38,6 +38,8 @@ pub struct Sample {
     pub reactions: Vec<Reaction>,
     /// Energies and works \[J\].
     pub energies: Energies,
+    /// About the place that moments are about.
+    pub momenta: Momenta,
     /// Smallest J of the quadrature points \[–\].
     pub smallest_jacobian: f64,
     /// Nodes that touch an obstacle.
@@ -197,6 +199,7 @@ impl<'a> Recorder<'a> {
             displacements: displacements.collect(),
             reactions: view.reactions(&self.moment_about),
             energies,
+            momenta: view.momenta(&self.moment_about),
             smallest_jacobian: view.smallest_jacobian,
             touching: view.state.contact.touching.len(),
             contact_forces,

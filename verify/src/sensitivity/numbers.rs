@@ -6,9 +6,9 @@ use toml_edit::{Item, TableLike, Value};
 /// Lists of a case with the keys of their entries that hold such numbers.
 const LISTS: [(&str, &[&str]); 4] = [
     ("prescribe", &["displacement", "rotation.angle", "formula.factor", "data.factor"]),
-    ("traction", &["traction"]),
+    ("traction", &["traction", "formula.factor"]),
     ("pressure", &["pressure"]),
-    ("body_force", &["acceleration"]),
+    ("body_force", &["acceleration", "formula.factor"]),
 ];
 /// Step of a number over itself \[–\]: what is left of curvature is a millionth.
 const STEP: f64 = 1e-3;

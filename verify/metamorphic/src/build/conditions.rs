@@ -89,7 +89,7 @@ pub fn load(scene: &Scene, frame: &Frame, loads: &mut Loads) {
             }),
             Push::Throw(on, v) => {
                 let velocity = scene.size / scene.wave_time() * frame.direction(&(*v).into());
-                loads.initial_velocities.push((part(frame, on), velocity));
+                loads.initial_velocities.push((part(frame, on), velocity.into()));
             }
         }
     }

@@ -56,7 +56,7 @@ class Rotation:
 
 @dataclass
 class Formula:
-    """Displacement [m] as formulas of x, y and z [m]."""
+    """A vector, such as a displacement [m], as formulas of x, y and z [m]."""
 
     x: str
     y: str
@@ -92,9 +92,10 @@ class Prescribe:
 class BodyForce:
     """A force per mass."""
 
-    acceleration_m_s2: Triple
+    acceleration_m_s2: Triple | None = None
     where: Any = None
     amplitude: Any = None
+    formula: Formula | None = None
 
 
 @dataclass
@@ -103,8 +104,9 @@ class Traction:
 
     name: str
     where: Any
-    traction_pa: Triple
+    traction_pa: Triple | None = None
     amplitude: Any = None
+    formula: Formula | None = None
 
 
 @dataclass
@@ -122,7 +124,8 @@ class InitialVelocity:
     """A velocity at t = 0."""
 
     where: Any
-    velocity_m_s: Triple
+    velocity_m_s: Triple | None = None
+    formula: Formula | None = None
 
 
 @dataclass

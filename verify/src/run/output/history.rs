@@ -3,6 +3,7 @@
 use crate::run::record::{Recording, Sample};
 use crate::scene::Case;
 use anyhow::Result;
+use mtled::problem::Motion;
 use mtled_checks::escape::csv_text;
 
 /// Names of columns with units, and one row per sample; probes with one position only (lattices
@@ -17,6 +18,11 @@ pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) 
         ["kinetic_j", "strain_j", "external_work_j", "constraint_work_j", "damping_loss_j"]
             .map(String::from),
     );
+    let moving = matches!(case.problem.motion, Motion::Dynamic { .. });
+    if moving {
+        header.extend(axes.map(|axis| format!("momentum_{axis}_kg_m_per_s")));
+        header.extend(axes.map(|axis| format!("angular_momentum_{axis}_kg_m2_per_s")));
+    }
     let obstructed = !case.problem.obstacles.is_empty();
     if obstructed {
         header.extend(["contact_energy_j", "contact_loss_j"].map(String::from));
@@ -36,6 +42,9 @@ pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) 
         let mut row =
             vec![sample.step as f64, sample.time, sample.smallest_jacobian, sample.touching as f64];
         row.extend([e.kinetic, e.strain, e.external_work, e.constraint_work, e.damping_loss]);
+        if moving {
+            row.extend(sample.momenta.linear.iter().chain(sample.momenta.angular.iter()));
+        }
         if obstructed {
             row.extend([e.contact_energy, e.contact_loss]);
         }

@@ -3,8 +3,8 @@
 use crate::scene::build::builder::Builder;
 use crate::scene::build::field::near;
 use crate::scene::format::{
-    AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, ObstacleFormat, PrescribeFormat,
-    RotationFormat,
+    AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, FormulaFormat, ObstacleFormat,
+    PrescribeFormat, RotationFormat, Triple,
 };
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Field, Selector};
@@ -98,22 +98,31 @@ impl Builder<'_> {
         let mut loads = Loads::default();
         for (n, row) in format.body_force.iter().enumerate() {
             let key = format!("body_force[{n}]");
-            self.no_z(&format!("{key}.acceleration"), &row.acceleration);
             let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
-            let acceleration = Vector3::from(row.acceleration).into();
+            let acceleration = self.vector(&key, "acceleration", (row.acceleration, &row.formula));
             let part = match &row.part {
                 None => Some(Selector::All),
                 Some(part) => self.selector(&format!("{key}.where"), part),
             };
-            loads.body_forces.extend(part.map(|part| BodyForce { part, acceleration, amplitude }));
+            let found = part.zip(acceleration);
+            loads.body_forces.extend(found.map(|(part, acceleration)| BodyForce {
+                part,
+                acceleration,
+                amplitude,
+            }));
         }
         for (n, row) in format.traction.iter().enumerate() {
             let key = format!("traction[{n}]");
-            self.no_z(&format!("{key}.traction"), &row.traction);
             let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
             let part = self.selector(&format!("{key}.where"), &row.part);
-            let (name, traction) = (row.name.clone(), Vector3::from(row.traction).into());
-            loads.tractions.extend(part.map(|part| Traction { name, part, traction, amplitude }));
+            let traction = self.vector(&key, "traction", (row.traction, &row.formula));
+            let (name, found) = (row.name.clone(), part.zip(traction));
+            loads.tractions.extend(found.map(|(part, traction)| Traction {
+                name,
+                part,
+                traction,
+                amplitude,
+            }));
         }
         for (n, row) in format.pressure.iter().enumerate() {
             let key = format!("pressure[{n}]");
@@ -124,12 +133,36 @@ impl Builder<'_> {
         }
         for (n, row) in format.initial_velocity.iter().enumerate() {
             let key = format!("initial_velocity[{n}]");
-            self.no_z(&format!("{key}.velocity"), &row.velocity);
             let part = self.selector(&format!("{key}.where"), &row.part);
-            let velocity = Vector3::from(row.velocity);
-            loads.initial_velocities.extend(part.map(|part| (part, velocity)));
+            let velocity = self.vector(&key, "velocity", (row.velocity, &row.formula));
+            loads.initial_velocities.extend(part.zip(velocity));
         }
         loads
+    }
+
+    /// A vector that is uniform, under the key `name`, or a formula.
+    fn vector(
+        &mut self,
+        key: &str,
+        name: &str,
+        given: (Option<Triple>, &Option<FormulaFormat>),
+    ) -> Option<Field> {
+        match given {
+            (Some(uniform), None) => {
+                self.no_z(&format!("{key}.{name}"), &uniform);
+                Some(Field::Uniform(uniform.into()))
+            }
+            (None, Some(formula)) => self.formula(&format!("{key}.formula"), formula),
+            (None, None) => {
+                self.mistake(&format!("{key}.{name}"), "is missing; give it, or a formula");
+                None
+            }
+            (Some(_), Some(_)) => {
+                let message = format!("stands beside {name}; give one of them");
+                self.mistake(&format!("{key}.formula"), message);
+                None
+            }
+        }
     }
 
     pub fn obstacles(&mut self, rows: &[ObstacleFormat]) -> Vec<Obstacle> {

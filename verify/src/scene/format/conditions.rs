@@ -68,17 +68,17 @@ pub struct RotationFormat {
     pub angle: f64,
 }
 
-/// A displacement at amplitude 1 [m], or a direction [–], as formulas of the reference position x, y, z [m], such
+/// A vector as formulas of the reference position x, y, z [m], such
 /// as "0.02*sin(PI*x/0.1)": + - * / ^, parentheses, sqrt, exp, ln, sin, cos, tan, asin, acos,
 /// atan, sinh, cosh, tanh, abs, PI.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FormulaFormat {
-    /// Component along x [m].
+    /// Component along x [m, m/s, m/s², Pa or –].
     pub x: String,
-    /// Component along y [m].
+    /// Component along y [m, m/s, m/s², Pa or –].
     pub y: String,
-    /// Component along z [m]; left out in plane strain only.
+    /// Component along z [m, m/s, m/s², Pa or –]; left out in plane strain only.
     pub z: Option<String>,
     /// Multiplies all of them [–].
     #[serde(default = "one")]
@@ -160,8 +160,10 @@ pub struct BodyForceFormat {
     /// The part that it acts on, such as what lies above a fluid; everything if left out.
     #[serde(rename = "where")]
     pub part: Option<SelectorFormat>,
-    /// Force per mass [m/s²].
-    pub acceleration: Triple,
+    /// Force per mass [m/s²]; left out where a formula is given.
+    pub acceleration: Option<Triple>,
+    /// The same as a function of the position [m/s²]; left out where it is uniform.
+    pub formula: Option<FormulaFormat>,
     #[serde(default)]
     pub amplitude: AmplitudeFormat,
 }
@@ -174,8 +176,10 @@ pub struct TractionFormat {
     pub name: String,
     #[serde(rename = "where")]
     pub part: SelectorFormat,
-    /// Force per reference area [Pa].
-    pub traction: Triple,
+    /// Force per reference area [Pa]; left out where a formula is given.
+    pub traction: Option<Triple>,
+    /// The same as a function of the position [Pa]; left out where it is uniform.
+    pub formula: Option<FormulaFormat>,
     #[serde(default)]
     pub amplitude: AmplitudeFormat,
 }
@@ -200,8 +204,10 @@ pub struct PressureFormat {
 pub struct InitialVelocityFormat {
     #[serde(rename = "where")]
     pub part: SelectorFormat,
-    /// Its components [m/s].
-    pub velocity: Triple,
+    /// Its components [m/s]; left out where a formula is given.
+    pub velocity: Option<Triple>,
+    /// The same as a function of the position [m/s]; left out where it is uniform.
+    pub formula: Option<FormulaFormat>,
 }
 
 /// A rigid obstacle.
