@@ -1,11 +1,28 @@
 //! Materials.
+#![allow(non_snake_case)]
 
+use super::frame::Frame;
 use crate::scene::{self, Scene};
 use anyhow::Result;
+use mtled::Vector3;
 use mtled::material::{
-    ElasticConstants, Law, LinearElastic, Material, MooneyRivlin, NeoHookeanIsochoric,
-    NeoHookeanLogJ, Ogden, OgdenTerm, OgdenTerms, StVenantKirchhoff, VolumetricTerm,
+    ElasticConstants, Guccione, HolzapfelOgden, Isochoric, Law, LinearElastic, Material,
+    MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ, Ogden, OgdenTerm, OgdenTerms, ShapeEnergy,
+    StVenantKirchhoff, VolumetricTerm,
 };
+use mtled::problem::{Fibres, Field};
+
+/// The fibres of a scene in a frame: they turn along x, and rise a little; sheets lie askew.
+pub fn fibres(scene: &Scene, frame: &Frame) -> Option<Fibres> {
+    let frame = *frame;
+    let fibre = move |X: &Vector3| {
+        let (sine, cosine) = (2.0 * frame.home_of(X).x).sin_cos();
+        frame.direction(&Vector3::new(cosine, sine, 0.3))
+    };
+    let sheet = frame.direction(&Vector3::new(-0.4, 0.3, 1.0));
+    let fibres = || Fibres { fibre: Field::of(fibre), sheet: Some(sheet.into()) };
+    scene.law.has_fibres().then(fibres)
+}
 
 /// The material of a scene, `stiffness` times as stiff.
 pub fn material(scene: &Scene, stiffness: f64) -> Result<Material> {
@@ -28,6 +45,15 @@ pub fn material(scene: &Scene, stiffness: f64) -> Result<Material> {
         }
         scene::Law::StVenantKirchhoff => Law::StVenantKirchhoff(StVenantKirchhoff::new(constants)),
         scene::Law::Linear => Law::LinearElastic(LinearElastic::new(constants)),
+        scene::Law::Muscle => {
+            let shape = Guccione::new(&[0.25 * mu, 8.0, 2.0, 4.0])?;
+            Law::Guccione(Isochoric::new(shape, constants.bulk_modulus, term)?)
+        }
+        scene::Law::Sheets => {
+            let [a, fibre, sheet, shear] = [0.4, 0.3, 0.1, 0.1].map(|part| part * mu);
+            let shape = HolzapfelOgden::new(&[a, 2.0, fibre, 4.0, sheet, 3.0, shear, 2.0])?;
+            Law::HolzapfelOgden(Isochoric::new(shape, constants.bulk_modulus, term)?)
+        }
     };
     Ok(Material { density: scene.density, law })
 }

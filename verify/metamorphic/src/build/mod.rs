@@ -68,14 +68,14 @@ fn regions(scene: &Scene, frame: &Frame) -> Result<Vec<Region>> {
             name: "half".into(),
             part: shape::half(frame, inclusion.axis),
             material: material::material(scene, inclusion.stiffness)?,
-            fibres: None,
+            fibres: material::fibres(scene, frame),
         });
     }
     regions.push(Region {
         name: "rest".into(),
         part: Selector::All,
         material: material::material(scene, 1.0)?,
-        fibres: None,
+        fibres: material::fibres(scene, frame),
     });
     Ok(regions)
 }

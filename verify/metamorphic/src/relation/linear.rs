@@ -74,7 +74,7 @@ pub const RELATIONS: &[Relation] = &[
         reason: NEARLY_LINEAR,
         compare: |subject| {
             let scene = &subject.scene;
-            if !becomes_linear(scene) || scene.has_patches() {
+            if !becomes_linear(scene) || scene.has_patches() || scene.law.has_fibres() {
                 return None;
             }
             let small = scaled(scene, SMALL);
@@ -89,7 +89,8 @@ pub const RELATIONS: &[Relation] = &[
 /// Whether a scene is linear in the limit of small loads.
 fn becomes_linear(scene: &Scene) -> bool {
     let turns = scene.holds.iter().any(|hold| matches!(hold.to, Place::Turned(..)));
-    scene.is_static() && scene.obstacle.is_none() && !turns
+    let switches = scene.law == Law::Sheets;
+    scene.is_static() && scene.obstacle.is_none() && !turns && !switches
 }
 
 fn still(to: &Place) -> Place {

@@ -74,6 +74,17 @@ pub enum Law {
     StVenantKirchhoff,
     /// Hooke's law.
     Linear,
+    /// Guccione's, its fibres turning from place to place.
+    Muscle,
+    /// Holzapfel and Ogden's, whose fibres carry nothing in compression.
+    Sheets,
+}
+
+impl Law {
+    /// Whether it has fibres.
+    pub fn has_fibres(self) -> bool {
+        matches!(self, Law::Muscle | Law::Sheets)
+    }
 }
 
 /// A solid in the box of the scene.
