@@ -170,10 +170,10 @@ mod tests {
         let points = cloud(3000, false);
         let any = |X: &Vector3| (*X, axis(X) * (random.vector(1).x + 0.1));
         let data: Vec<_> = points.iter().map(any).collect();
-        let field = Scattered::new(&data, 0.1).unwrap();
+        let field = Scattered::new(&data, 0.5).unwrap();
         for X in cloud(50, false).iter().map(|X| 0.8 * X) {
             assert!(field.axis_at(&X).cross(&axis(&X)).norm() < 0.03, "{X}");
-            assert!(field.axis_at(&X).norm() > 0.9, "{X}");
+            assert!((field.axis_at(&X).norm() - 1.0).abs() < 0.03, "{X}");
         }
         assert_eq!(field.axis_at(&Vector3::repeat(3.0)), Vector3::zeros());
     }
