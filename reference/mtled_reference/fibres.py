@@ -76,7 +76,25 @@ def _holzapfel_ogden(constants: dict, C):
     return energy
 
 
-LAWS: dict[str, Callable] = {"guccione": _guccione, "holzapfel_ogden": _holzapfel_ogden}
+def _holzapfel_gasser_ogden(constants: dict, C):
+    kappa, angle = constants.get("kappa", 0.0), constants.get("angle", 0.0)
+    first = ufl.tr(C) - 3
+    energy = 0.5 * constants["mu"] * first
+    for sign in (1.0, -1.0):
+        along = [np.cos(angle), sign * np.sin(angle)]
+        square = sum(along[i] * along[j] * C[i, j] for i in (0, 1) for j in (0, 1))
+        strain = kappa * first + (1 - 3 * kappa) * (square - 1)
+        carried = ufl.conditional(ufl.gt(strain, 0.0), strain**2, 0.0)
+        k1, k2 = constants["k1"], constants["k2"]
+        energy += k1 / (2 * k2) * (ufl.exp(k2 * carried) - 1)
+    return energy
+
+
+LAWS: dict[str, Callable] = {
+    "guccione": _guccione,
+    "holzapfel_gasser_ogden": _holzapfel_gasser_ogden,
+    "holzapfel_ogden": _holzapfel_ogden,
+}
 
 
 class _Model:

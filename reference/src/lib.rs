@@ -63,6 +63,7 @@ macro_rules! with_fibres {
 }
 
 with_fibres! {
+    "artery_strip"
     "land_1"
     "muscle_bar"
     "muscle_block"

@@ -17,7 +17,7 @@ pub struct Fibres {
 /// A place where a material has no direction.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "there is no direction of {what} at ({}, {}, {}) m: it must be a vector longer than 0, that of sheets not along the fibres",
+    "there is no direction of {what} at ({}, {}, {}) m: it must be a vector longer than 0, of data within their reach, and that of sheets not along the fibres",
     .position.x, .position.y, .position.z
 )]
 pub struct NoDirection {
