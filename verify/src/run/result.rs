@@ -179,7 +179,8 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
             "increments": counts.increments,
             "iterations": counts.iterations,
             "tangent_products": counts.products,
-            "relative_residual": counts.residual, "pressures": counts.pressures.name(),
+            "relative_residual": counts.residual,
+            "up_to_round_off": counts.up_to_round_off, "pressures": counts.pressures.name(),
         })
     });
     let newton_failed = summary

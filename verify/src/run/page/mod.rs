@@ -85,6 +85,9 @@ fn verdict(result: &Json) -> Value {
     let outcome = motion["outcome"].as_str().unwrap_or_default();
     let (mut class, mut text) = match outcome {
         "completed" => ("pass", "The motion reached its end"),
+        "converged" if motion["newton"]["up_to_round_off"] == true => {
+            ("pass", "Converged up to round-off")
+        }
         "converged" => ("pass", "Converged to its tolerance"),
         "stopped" => ("fail", "Stopped by the user before its end"),
         "not_converged" => ("fail", "Did not converge"),

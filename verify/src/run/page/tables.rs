@@ -134,7 +134,12 @@ pub fn materials(case: &Case) -> Vec<Value> {
             context! {
                 name => region.name.as_str(),
                 colour => region_colour(number, regions.len()),
-                shear => four_digits(constants.shear_modulus),
+                // Of a law with fibres a bound of all directions.
+                shear => if region.material.law.has_fibres() {
+                    format!("≤ {}", four_digits(constants.shear_modulus))
+                } else {
+                    four_digits(constants.shear_modulus)
+                },
                 bulk => four_digits(constants.bulk_modulus),
                 density => four_digits(region.material.density),
             }
