@@ -15,6 +15,7 @@ from .fenicsx import versions
 from .fenicsx.mesh_blocks import mesh_of_blocks
 from .fenicsx.mesh_shapes import box
 from .fenicsx.newton import Newton
+from .shared.selection import selected
 
 CELL = "hexahedron"
 QUADRATURE = 5
@@ -25,10 +26,8 @@ ON_PLANE = 1e-9
 """Distance from a plane [m] within which a point lies on it."""
 
 
-def _direction(table: dict | None, x):
+def _direction(table: dict, x):
     """The direction of a `fibres` or `sheets` table at the coordinates `x`."""
-    if table is None:
-        return None
     if "direction" in table:
         return ufl.as_vector([float(part) for part in table["direction"]])
     names = {"x": x[0], "y": x[1], "z": x[2], "PI": np.pi}
@@ -42,12 +41,8 @@ def _frame(material: dict, x):
     """Directions of fibres, of sheets normal to them, and normal to both."""
     fibre = _direction(material["fibres"], x)
     fibre = fibre / ufl.sqrt(ufl.inner(fibre, fibre))
-    sheet = _direction(material.get("sheets"), x)
-    if sheet is None:
-        sheet = ufl.as_vector([-fibre[1], fibre[0], 0.0])
-        if "direction" in material["fibres"]:
-            start = np.asarray(material["fibres"]["direction"], float)
-            sheet = ufl.as_vector(np.cross(start, np.eye(3)[np.argmin(np.abs(start))]).tolist())
+    # Without sheets any normals to the fibres do; no body here has fibres along z.
+    sheet = _direction(material.get("sheets", {"direction": [0.0, 0.0, 1.0]}), x)
     sheet = sheet - ufl.inner(sheet, fibre) * fibre
     sheet = sheet / ufl.sqrt(ufl.inner(sheet, sheet))
     return fibre, sheet, ufl.cross(fibre, sheet)
@@ -136,17 +131,16 @@ class _Model:
             load = fem.Constant(self.domain, 0.0)
             self.loads.append((load, row["pressure"]))
             force = J * ufl.dot(ufl.inv(F).T, normal)
-            residual += load * ufl.inner(force, v) * self._on(row["where"]["plane"])
+            residual += load * ufl.inner(force, v) * self._on(row["where"])
         self.residual_form = versions.form(residual)
         self.jacobian_form = versions.form(ufl.derivative(residual, self.unknown))
         self.energy_form = versions.form((shape + p**2 / (2 * bulk_modulus)) * dx)
 
-    def _on(self, plane: dict):
-        """The measure of the facets on a plane."""
-        point, normal = (np.asarray(plane[key], float) for key in ("point", "normal"))
+    def _on(self, where: dict):
+        """The measure of the facets of a selection."""
 
         def on(x):
-            return np.abs(normal @ (x - point[:, None])) < ON_PLANE
+            return selected(where, x.T, ON_PLANE)
 
         facets = mesh.locate_entities_boundary(self.domain, 2, on)
         tags = mesh.meshtags(self.domain, 2, np.sort(facets), np.ones(len(facets), np.int32))
@@ -157,10 +151,9 @@ class _Model:
         """Unknowns with their values."""
         fixed: dict[int, float] = {}
         for row in case["prescribe"]:
-            plane = row["where"]["plane"]
-            offset = (self.points - plane["point"]) @ np.asarray(plane["normal"], float)
+            nodes = np.flatnonzero(selected(row["where"], self.points, ON_PLANE))
             for axis, value in row["displacement"].items():
-                for node in np.flatnonzero(np.abs(offset) < ON_PLANE):
+                for node in nodes:
                     fixed[int(self.fields[node]["xyz".index(axis)])] = fraction * value
         return np.array(list(fixed), np.int32), np.array(list(fixed.values()))
 
@@ -188,9 +181,7 @@ def solve(case: dict, size: float) -> dict[str, float]:
         for axis, value in zip("xyz", model.displacement(np.asarray(probe["point"]))):
             answers[f"displacement/{probe['name']}/{axis}"] = float(value)
     for row in case["prescribe"]:
-        plane = row["where"]["plane"]
-        offset = (model.points - plane["point"]) @ np.asarray(plane["normal"], float)
-        force = residual[np.abs(offset) < ON_PLANE].sum(axis=0)
+        force = residual[selected(row["where"], model.points, ON_PLANE)].sum(axis=0)
         for axis in row["displacement"]:
             answers[f"force/{row['name']}/{axis}"] = float(force["xyz".index(axis)])
     answers["strain_energy"] = float(fem.assemble_scalar(model.energy_form))

@@ -27,6 +27,8 @@ pub enum MaterialError {
         "the Mooney-Rivlin rubber with A = {a} Pa, B = {b} Pa, ν = {poisson_ratio} has D = {d} Pa < 0 and loses its stiffness in tension; use ν ≥ {smallest:.4} or a neo-Hookean law"
     )]
     UnstableRubber { a: f64, b: f64, poisson_ratio: f64, d: f64, smallest: f64 },
+    #[error("{given} constants are given; the law takes {taken}")]
+    Constants { given: usize, taken: usize },
     #[error("{name} is {value}; it must not be negative")]
     Negative { name: &'static str, value: f64 },
     #[error("kappa is {value}; it must lie in 0 ≤ κ ≤ 1/3, from aligned fibres to none")]

@@ -354,6 +354,8 @@ fn laws_with_fibres_become_known_ones_without_them() {
 #[test]
 fn constants_with_which_a_body_would_lose_its_stiffness_are_refused() {
     let message = |made: Result<Law, MaterialError>| made.unwrap_err().to_string();
+    let few = isochoric(&[1.0], Law::Demiray);
+    assert!(message(few).contains("1 constants are given; the law takes 2"));
     assert!(message(yeoh([0.0, 1.0, 1.0])).contains("C1 is 0"));
     assert!(message(yeoh([400.0, -300.0, 60.0])).contains("C2 > -√(3 C1 C3)"));
     assert!(message(yeoh([400.0, 1.0, -1e-3])).contains("C3 ≥ 0"));

@@ -1,6 +1,6 @@
 //! The model of a body: its parts and how they are made.
 
-use crate::algebra::tensor::{Vector3, bounding_box};
+use crate::algebra::tensor::{Matrix3, Vector3, bounding_box};
 use crate::discretisation::{Discretisation, Rows, Warning};
 use crate::error::Error;
 use crate::model::blocks::{Block, Sums, blocks};
@@ -128,6 +128,15 @@ impl Model {
     /// M⁻¹ f of forces \[component of node\] \[N\], with the inertia \[m/s²\].
     pub fn accelerations(&self, force: &[f64]) -> Vec<f64> {
         force.iter().enumerate().map(|(i, f)| f / self.inertia[i / self.components]).collect()
+    }
+
+    /// Fibre frames \[point\]; none where the law of a point has no fibres.
+    pub fn fibre_frames(&self) -> Vec<Option<Matrix3>> {
+        let mut frames = vec![None; self.point_positions.len()];
+        for block in &self.blocks {
+            block.occupied().for_each(|lane| frames[block.point(lane)] = block.frame(lane));
+        }
+        frames
     }
 
     /// Bytes that one evaluation of the internal force reads from the blocks.

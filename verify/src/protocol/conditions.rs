@@ -141,9 +141,8 @@ pub struct Formula {
 
 impl Formula {
     fn new(format: &FormulaFormat) -> Formula {
-        let FormulaFormat { x, y, z, factor } = format;
-        let z = z.clone().unwrap_or_else(|| "0".into());
-        Formula { x: x.clone(), y: y.clone(), z, factor: *factor }
+        let [x, y, z] = format.components();
+        Formula { x, y, z, factor: format.factor }
     }
 }
 
@@ -183,12 +182,8 @@ impl SupportMotion {
             return Some(SupportMotion::Rotation { point_m, axis, angle_rad: rotation.angle });
         }
         if let Some(formula) = &row.formula {
-            return Some(SupportMotion::Formula {
-                x: formula.x.clone(),
-                y: formula.y.clone(),
-                z: formula.z.clone().unwrap_or_else(|| "0".into()),
-                scale_m: formula.factor,
-            });
+            let [x, y, z] = formula.components();
+            return Some(SupportMotion::Formula { x, y, z, scale_m: formula.factor });
         }
         row.data.as_ref().map(|DataFormat { file, unit, field, reach, beyond, factor }| {
             SupportMotion::Data {

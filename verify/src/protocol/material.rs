@@ -68,11 +68,10 @@ impl Direction {
     fn new(format: &DirectionFormat) -> Direction {
         match (format.direction, &format.formula) {
             (Some(direction), _) => Direction::Uniform { direction },
-            (None, Some(formula)) => Direction::Formula {
-                x: formula.x.clone(),
-                y: formula.y.clone(),
-                z: formula.z.clone().unwrap_or_else(|| "0".into()),
-            },
+            (None, Some(formula)) => {
+                let [x, y, z] = formula.components();
+                Direction::Formula { x, y, z }
+            }
             (None, None) => Direction::Data,
         }
     }

@@ -1,7 +1,7 @@
 //! The isotropic exponential law of Demiray.
 #![allow(non_snake_case)]
 
-use super::shape_energy::{Constant, ShapeEnergy, first_invariant_above_rest, spherical};
+use super::shape_energy::{Constant, ShapeEnergy, exactly, first_invariant_above_rest, spherical};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::Tensor;
 use crate::material::constants::{MaterialError, positive};
@@ -19,10 +19,10 @@ impl ShapeEnergy for Demiray {
     const HAS_FIBRES: bool = false;
 
     fn new(constants: &[f64]) -> Result<Demiray, MaterialError> {
-        let [mu, b] = constants else { unreachable!("two constants") };
-        positive("mu", *mu)?;
-        positive("b", *b)?;
-        Ok(Demiray { mu: *mu, b: *b })
+        let [mu, b] = exactly(constants)?;
+        positive("mu", mu)?;
+        positive("b", b)?;
+        Ok(Demiray { mu, b })
     }
 
     fn energy(&self, C: &Tensor<f64>) -> f64 {

@@ -1,7 +1,7 @@
 //! The transversely isotropic exponential law of Guccione.
 #![allow(non_snake_case)]
 
-use super::shape_energy::{Constant, ShapeEnergy};
+use super::shape_energy::{Constant, ShapeEnergy, exactly};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::{Tensor, contract, map};
 use crate::material::constants::{MaterialError, positive};
@@ -47,7 +47,7 @@ impl ShapeEnergy for Guccione {
     const HAS_FIBRES: bool = true;
 
     fn new(constants: &[f64]) -> Result<Guccione, MaterialError> {
-        let [C, b_f, b_t, b_fs] = *constants else { unreachable!("four constants") };
+        let [C, b_f, b_t, b_fs] = exactly(constants)?;
         for (name, value) in [("C", C), ("b_f", b_f), ("b_t", b_t), ("b_fs", b_fs)] {
             positive(name, value)?;
         }

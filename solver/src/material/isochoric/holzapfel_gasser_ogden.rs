@@ -1,7 +1,7 @@
 //! The arterial law of Gasser, Ogden and Holzapfel: two families of fibres, each dispersed.
 #![allow(non_snake_case)]
 
-use super::shape_energy::{Constant, ShapeEnergy, first_invariant_above_rest};
+use super::shape_energy::{Constant, ShapeEnergy, exactly, first_invariant_above_rest};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::{Tensor, map};
 use crate::material::constants::{MaterialError, positive};
@@ -40,7 +40,7 @@ impl ShapeEnergy for HolzapfelGasserOgden {
     const HAS_FIBRES: bool = true;
 
     fn new(constants: &[f64]) -> Result<HolzapfelGasserOgden, MaterialError> {
-        let [mu, k1, k2, kappa, angle] = *constants else { unreachable!("five constants") };
+        let [mu, k1, k2, kappa, angle] = exactly(constants)?;
         for (name, value) in [("mu", mu), ("k1", k1), ("k2", k2)] {
             positive(name, value)?;
         }

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::shape_energy::{
-    Constant, ShapeEnergy, first_invariant_above_rest, not_negative, spherical,
+    Constant, ShapeEnergy, exactly, first_invariant_above_rest, not_negative, spherical,
 };
 use crate::algebra::real::Real;
 use crate::algebra::tensor::Tensor;
@@ -52,9 +52,7 @@ impl ShapeEnergy for HolzapfelOgden {
     const HAS_FIBRES: bool = true;
 
     fn new(constants: &[f64]) -> Result<HolzapfelOgden, MaterialError> {
-        let [a, b, a_f, b_f, a_s, b_s, a_fs, b_fs] = *constants else {
-            unreachable!("eight constants")
-        };
+        let [a, b, a_f, b_f, a_s, b_s, a_fs, b_fs] = exactly(constants)?;
         positive("a", a)?;
         positive("b", b)?;
         let pairs = [("a_f", "b_f", a_f, b_f), ("a_s", "b_s", a_s, b_s)];

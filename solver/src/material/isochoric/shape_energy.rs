@@ -13,19 +13,19 @@ pub struct Constant {
     pub name: &'static str,
     /// SI, `–` for a number.
     pub unit: &'static str,
-    /// Used where none is given; none where one is needed.
-    pub default: Option<u8>,
+    /// Whether it is 0 where it is not given.
+    pub is_optional: bool,
 }
 
 impl Constant {
     /// Of a constant that must be given.
     pub const fn needed(name: &'static str, unit: &'static str) -> Constant {
-        Constant { name, unit, default: None }
+        Constant { name, unit, is_optional: false }
     }
 
     /// Of a constant that is 0 where it is not given.
     pub const fn zero_if_left_out(name: &'static str, unit: &'static str) -> Constant {
-        Constant { name, unit, default: Some(0) }
+        Constant { name, unit, is_optional: true }
     }
 }
 
@@ -37,7 +37,7 @@ pub trait ShapeEnergy: Copy + Send + Sync + PartialEq + Debug {
     const CONSTANTS: &'static [Constant];
     /// Whether it depends on the directions of fibres.
     const HAS_FIBRES: bool;
-    /// From its constants; refused where a body would lose its stiffness.
+    /// From its constants; refused where there are more or fewer, and where a body would lose its stiffness.
     fn new(constants: &[f64]) -> Result<Self, MaterialError>;
     /// ψ̄(C̄) \[Pa\], 0 at rest.
     fn energy(&self, C: &Tensor<f64>) -> f64;
@@ -75,4 +75,10 @@ pub fn not_negative(name: &'static str, value: f64) -> Result<(), MaterialError>
     } else {
         Err(MaterialError::Negative { name, value })
     }
+}
+
+/// The constants of a law, as many as it takes.
+pub fn exactly<const N: usize>(constants: &[f64]) -> Result<[f64; N], MaterialError> {
+    let counts = MaterialError::Constants { given: constants.len(), taken: N };
+    constants.try_into().map_err(|_| counts)
 }

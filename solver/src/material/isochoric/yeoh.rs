@@ -1,7 +1,7 @@
 //! Yeoh's law.
 #![allow(non_snake_case)]
 
-use super::shape_energy::{Constant, ShapeEnergy, first_invariant_above_rest, spherical};
+use super::shape_energy::{Constant, ShapeEnergy, exactly, first_invariant_above_rest, spherical};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::Tensor;
 use crate::material::constants::{MaterialError, positive};
@@ -22,7 +22,7 @@ impl ShapeEnergy for Yeoh {
 
     /// C₁ > 0; refused where the slope C₁ + 2 C₂ x + 3 C₃ x² is not positive for every x ≥ 0.
     fn new(constants: &[f64]) -> Result<Yeoh, MaterialError> {
-        let [c1, c2, c3] = *constants else { unreachable!("three constants") };
+        let [c1, c2, c3] = exactly(constants)?;
         positive("C1", c1)?;
         let sound = c2.is_finite() && c3.is_finite() && c3 >= 0.0;
         // The vertex of the parabola lies at x > 0 where C₂ < 0.

@@ -104,15 +104,15 @@ impl Block {
         self.points.start + self.lanes[lane] as usize
     }
 
-    /// A deformation gradient at the point in a lane as the law needs it: in the fibre frame, where
-    /// it has fibres.
+    /// The fibre frame Q at the point in a lane, where the law has fibres.
+    pub fn frame(&self, lane: usize) -> Option<Matrix3> {
+        let frame = self.frames.get(lane / LANES)?;
+        Some(Matrix3::from_row_iterator(frame.iter().map(|entry| entry.0[lane % LANES])))
+    }
+
+    /// A deformation gradient at the point in a lane as the law needs it: F Q, where it has fibres.
     pub fn as_the_law_needs(&self, F: &Matrix3, lane: usize) -> Matrix3 {
-        match self.frames.get(lane / LANES) {
-            Some(frame) => {
-                F * Matrix3::from_row_iterator(frame.iter().map(|entry| entry.0[lane % LANES]))
-            }
-            None => *F,
-        }
+        self.frame(lane).map_or(*F, |frame| F * frame)
     }
 
     /// Bytes that one evaluation of the internal force reads.

@@ -12,7 +12,7 @@ use anyhow::Result;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Rows;
 use mtled::discretisation::mls::{Approximation, Support};
-use mtled::problem::{Dimension, Problem};
+use mtled::problem::{Dimension, Fibres, Problem};
 use rayon::prelude::*;
 
 const PURPOSE: &str = "A mesh to look at, cut from a lattice by the boundary of the body; the solver \
@@ -36,17 +36,18 @@ fn fibres(problem: &Problem, mesh: &Mesh) -> Option<Vec<f64>> {
     if problem.regions.iter().all(|region| region.fibres.is_none()) {
         return None;
     }
-    let mut directions = vec![0.0; 3 * mesh.vertices.len()];
+    let mut owners = vec![None; mesh.vertices.len()];
     for (cell, region) in mesh.iter().zip(&mesh.regions) {
-        for &vertex in cell {
-            let at = 3 * vertex as usize;
-            let frame = problem.regions[*region as usize].frame(&mesh.vertices[vertex as usize]);
-            if let Ok(Some(frame)) = frame {
-                directions[at..at + 3].copy_from_slice(frame.column(0).as_slice());
-            }
+        let fibres = problem.regions[*region as usize].fibres.as_ref();
+        for &vertex in cell.iter().filter(|_| fibres.is_some()) {
+            owners[vertex as usize] = fibres;
         }
     }
-    Some(directions)
+    let direction = |(X, owner): (&Vector3, Option<&Fibres>)| {
+        let frame = owner.and_then(|fibres| fibres.frame(X).ok());
+        frame.map_or([0.0; 3], |frame| frame.column(0).into_owned().into())
+    };
+    Some(mesh.vertices.iter().zip(owners).flat_map(direction).collect())
 }
 
 impl BodyFrames {

@@ -37,7 +37,7 @@ impl NodeFields {
     ) -> Result<NodeFields> {
         let u = &frame.displacement;
         let displacement = field_at_nodes(prepared, u)?;
-        let (jacobian, stress, strain) = averaged(problem, prepared, u)?;
+        let (jacobian, stress, strain) = averaged(problem, prepared, u);
         let (plan, discretisation) = (&prepared.model.contact, &prepared.discretisation);
         let contact_pressure = prepared
             .contact_surface(problem)?
@@ -60,26 +60,23 @@ pub fn field_at_nodes(prepared: &Prepared, u: &[f64]) -> Result<Vec<f64>> {
     Ok((0..rows.len()).flat_map(value).collect())
 }
 
-/// J, stresses and strains at the nodes.
-type Averages = (Vec<f64>, Vec<f64>, Vec<f64>);
-
 /// J \[–\], Cauchy stress by rows \[Pa\], projected pressure included, and Green–Lagrange strain
 /// \[–\], averaged over the quadrature points that a node supports, weighted by volume times φ
 /// where positive.
-fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> Result<Averages> {
+fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let discretisation = &prepared.discretisation;
     let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
     let nodes = discretisation.cloud.positions.len();
     let (mut total, mut jacobian, mut stress, mut strain) =
         (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; 9 * nodes], vec![0.0; 6 * nodes]);
+    let frames = prepared.model.fibre_frames();
     let projected = projected_mean_stress(&prepared.model, u);
     for (point, mean_stress) in projected.into_iter().enumerate() {
         let F = rows.deformation_gradient(point, u, prepared.model.components);
-        let region = &problem.regions[quadrature.regions[point] as usize];
+        let law = &problem.regions[quadrature.regions[point] as usize].material.law;
         // The Cauchy stress is the same in every frame of the material.
-        let frame = region.frame(&quadrature.positions[point])?;
-        let own = frame.map_or(F, |frame| F * frame);
-        let sigma = region.material.law.cauchy(&own) + Matrix3::from_diagonal_element(mean_stress);
+        let own = frames[point].map_or(F, |frame| F * frame);
+        let sigma = law.cauchy(&own) + Matrix3::from_diagonal_element(mean_stress);
         let E = 0.5 * (F.transpose() * F - Matrix3::identity());
         let E = [E.m11, E.m22, E.m33, E.m12, E.m23, E.m13];
         for entry in rows.row(point) {
@@ -105,5 +102,5 @@ fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> Result<Average
         stress[9 * node..9 * node + 9].iter_mut().for_each(|value| *value /= total[node]);
         strain[6 * node..6 * node + 6].iter_mut().for_each(|value| *value /= total[node]);
     }
-    Ok((jacobian, stress, strain))
+    (jacobian, stress, strain)
 }

@@ -1,19 +1,20 @@
 //! Laws with constants of their own names, and the directions of their fibres.
 
 use crate::scene::build::builder::Builder;
-use crate::scene::format::{DirectionFormat, MaterialFormat};
+use crate::scene::format::{DirectionFormat, LawFormat, MaterialFormat};
 use mtled::geometry::Field;
-use mtled::material::{Isochoric, Law, ShapeEnergy};
+use mtled::material::{Isochoric, Law, ShapeEnergy, VolumetricTerm};
 use mtled::problem::Fibres;
 
 impl Builder<'_> {
-    /// A law of named constants, or `None` and a mistake; `name` is its own.
+    /// A law of named constants, or `None` and a mistake.
     pub fn isochoric<W: ShapeEnergy>(
         &mut self,
         key: &str,
-        name: &str,
         format: &MaterialFormat,
+        volumetric: VolumetricTerm,
     ) -> Option<Isochoric<W>> {
+        let name = LawFormat::WORDS[format.law as usize];
         let before = self.count();
         let known: Vec<&str> = W::CONSTANTS.iter().map(|constant| constant.name).collect();
         let names: Vec<String> =
@@ -30,7 +31,7 @@ impl Builder<'_> {
         let values: Vec<f64> = (W::CONSTANTS.iter())
             .map(|constant| {
                 let value = given.get(constant.name).copied();
-                value.or(constant.default.map(f64::from)).unwrap_or_else(|| {
+                value.or(constant.is_optional.then_some(0.0)).unwrap_or_else(|| {
                     let own = format!("{key}.constants.{}", constant.name);
                     self.mistake(&own, format!("is missing; {name} needs it"));
                     f64::NAN
@@ -43,33 +44,38 @@ impl Builder<'_> {
         let shape = self.accept(&format!("{key}.constants"), W::new(&values))?;
         let shear = (!W::HAS_FIBRES).then(|| shape.shear_modulus());
         let bulk_modulus = self.bulk_modulus(key, (name, "constants"), format, shear)?;
-        let volumetric = format.volumetric.map(Into::into).unwrap_or_default();
         self.accept(key, Isochoric::new(shape, bulk_modulus, volumetric))
     }
 
     /// The fibres of a law that has some.
     pub fn fibres(&mut self, key: &str, format: &MaterialFormat, law: &Law) -> Option<Fibres> {
-        let needed = [
-            ("fibres", &format.fibres, law.has_fibres(), "laws with fibres"),
-            ("sheets", &format.sheets, law.has_sheets(), "laws with fibres in sheets"),
-        ];
-        let mut fields = Vec::new();
-        for (name, given, is_needed, laws) in needed {
-            let key = format!("{key}.{name}");
-            match given {
-                // Sheets turn the frame of any law with fibres.
-                Some(given) if law.has_fibres() => fields.extend(self.directions(&key, given)),
-                Some(_) => self.mistake(&key, format!("belongs to {laws}; remove it")),
-                None if is_needed => {
-                    let message =
-                        "is missing; the law needs it, such as { direction = [1.0, 0.0, 0.0] }";
-                    self.mistake(&key, message);
-                }
-                None => {}
+        let (any, sheets) = (law.has_fibres(), law.has_sheets());
+        let fibre = (&format.fibres, any, "laws with fibres");
+        let fibre = self.directions_for(&format!("{key}.fibres"), law, fibre);
+        // Sheets turn the frame of any law with fibres.
+        let sheet = (&format.sheets, sheets, "laws with fibres in sheets");
+        let sheet = self.directions_for(&format!("{key}.sheets"), law, sheet);
+        Some(Fibres { fibre: fibre?, sheet })
+    }
+
+    /// Directions that a law with fibres may have, or must have where they are needed; `laws` are
+    /// those that they belong to.
+    fn directions_for(
+        &mut self,
+        key: &str,
+        law: &Law,
+        (given, is_needed, laws): (&Option<DirectionFormat>, bool, &str),
+    ) -> Option<Field> {
+        match given {
+            Some(given) if law.has_fibres() => return self.directions(key, given),
+            Some(_) => self.mistake(key, format!("belongs to {laws}; remove it")),
+            None if is_needed => {
+                let example = "such as { direction = [1.0, 0.0, 0.0] }";
+                self.mistake(key, format!("is missing; the law needs it, {example}"));
             }
+            None => {}
         }
-        let mut fields = fields.into_iter();
-        law.has_fibres().then(|| Some(Fibres { fibre: fields.next()?, sheet: fields.next() }))?
+        None
     }
 
     fn directions(&mut self, key: &str, format: &DirectionFormat) -> Option<Field> {

@@ -6,6 +6,7 @@ use mtled::geometry::Selector;
 use mtled::material::{
     ElasticConstants, Law, LinearElastic, Material, MaterialError, MooneyRivlin,
     NeoHookeanIsochoric, NeoHookeanLogJ, Ogden, OgdenTerm, OgdenTerms, StVenantKirchhoff,
+    VolumetricTerm,
 };
 use mtled::problem::{Fibres, Region};
 use std::collections::BTreeMap;
@@ -59,19 +60,32 @@ impl Builder<'_> {
         let key = format!("material.{name}");
         self.positive(&format!("{key}.density"), format.density);
         self.keys_of_law(&key, format);
+        let volumetric = format.volumetric.map(Into::into).unwrap_or_default();
         let law = match format.law {
             LawFormat::MooneyRivlin => Law::MooneyRivlin(self.rubber(&key, format)?),
-            LawFormat::Ogden => Law::Ogden(self.ogden(&key, format)?),
-            LawFormat::Yeoh => Law::Yeoh(self.isochoric(&key, "yeoh", format)?),
-            LawFormat::Demiray => Law::Demiray(self.isochoric(&key, "demiray", format)?),
-            LawFormat::Guccione => Law::Guccione(self.isochoric(&key, "guccione", format)?),
+            LawFormat::NeoHookeanLogJ => {
+                Law::NeoHookeanLogJ(NeoHookeanLogJ::new(self.constants(&key, format)?))
+            }
+            LawFormat::NeoHookeanIsochoric => {
+                let constants = self.constants(&key, format)?;
+                Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(constants, volumetric))
+            }
+            LawFormat::Ogden => Law::Ogden(self.ogden(&key, format, volumetric)?),
+            LawFormat::Yeoh => Law::Yeoh(self.isochoric(&key, format, volumetric)?),
+            LawFormat::Demiray => Law::Demiray(self.isochoric(&key, format, volumetric)?),
+            LawFormat::Guccione => Law::Guccione(self.isochoric(&key, format, volumetric)?),
             LawFormat::HolzapfelGasserOgden => {
-                Law::HolzapfelGasserOgden(self.isochoric(&key, "holzapfel_gasser_ogden", format)?)
+                Law::HolzapfelGasserOgden(self.isochoric(&key, format, volumetric)?)
             }
             LawFormat::HolzapfelOgden => {
-                Law::HolzapfelOgden(self.isochoric(&key, "holzapfel_ogden", format)?)
+                Law::HolzapfelOgden(self.isochoric(&key, format, volumetric)?)
             }
-            _ => law(format, self.constants(&key, format)?),
+            LawFormat::StVenantKirchhoff => {
+                Law::StVenantKirchhoff(StVenantKirchhoff::new(self.constants(&key, format)?))
+            }
+            LawFormat::LinearElastic => {
+                Law::LinearElastic(LinearElastic::new(self.constants(&key, format)?))
+            }
         };
         let before = self.count();
         let fibres = self.fibres(&key, format, &law);
@@ -110,7 +124,12 @@ impl Builder<'_> {
         }
     }
 
-    fn ogden(&mut self, key: &str, format: &MaterialFormat) -> Option<Ogden> {
+    fn ogden(
+        &mut self,
+        key: &str,
+        format: &MaterialFormat,
+        volumetric: VolumetricTerm,
+    ) -> Option<Ogden> {
         let Some(rows) = &format.terms else {
             let message = "is missing; ogden needs terms such as [{ mu = 842.0, alpha = -4.7 }]";
             self.mistake(&format!("{key}.terms"), message);
@@ -125,7 +144,6 @@ impl Builder<'_> {
         let terms = self.accept(key, OgdenTerms::new(&terms))?;
         let shear = Some(terms.shear_modulus());
         let bulk_modulus = self.bulk_modulus(key, ("ogden", "terms"), format, shear)?;
-        let volumetric = format.volumetric.map(Into::into).unwrap_or_default();
         self.accept(key, Ogden::new(terms, bulk_modulus, volumetric))
     }
 
@@ -258,18 +276,5 @@ fn has_named_constants(law: LawFormat) -> bool {
         | LawFormat::Ogden
         | LawFormat::StVenantKirchhoff
         | LawFormat::LinearElastic => false,
-    }
-}
-
-/// A law of two constants; the others are made elsewhere.
-fn law(format: &MaterialFormat, constants: ElasticConstants) -> Law {
-    match format.law {
-        LawFormat::NeoHookeanIsochoric => {
-            let volumetric = format.volumetric.map(Into::into).unwrap_or_default();
-            Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(constants, volumetric))
-        }
-        LawFormat::StVenantKirchhoff => Law::StVenantKirchhoff(StVenantKirchhoff::new(constants)),
-        LawFormat::LinearElastic => Law::LinearElastic(LinearElastic::new(constants)),
-        _ => Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants)),
     }
 }

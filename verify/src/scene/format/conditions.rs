@@ -85,8 +85,16 @@ pub struct FormulaFormat {
     pub factor: f64,
 }
 
-/// Displacements at amplitude 1 at scattered points, such as measured ones, or directions. Between them the
-/// linear function counts that fits the nearest 16 best.
+impl FormulaFormat {
+    /// The formulas of all three components.
+    pub fn components(&self) -> [String; 3] {
+        let z = self.z.clone().unwrap_or_else(|| "0".into());
+        [self.x.clone(), self.y.clone(), z]
+    }
+}
+
+/// Displacements at amplitude 1 at scattered points, such as measured ones, or directions. Between
+/// them the linear function counts that fits the nearest 16 best.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DataFormat {
