@@ -8,7 +8,7 @@ use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::material::Law;
 use mtled::model::Model;
 use mtled::motion::internal_force::{Workspace, internal_force, stiffness_times, strain_energy};
-use mtled::problem::{Problem, VolumetricProjection};
+use mtled::problem::{Fibres, Field, Problem, VolumetricProjection};
 use proptest::prelude::*;
 
 /// Cube and square, regular and jittered, linear and quadratic.
@@ -196,5 +196,25 @@ proptest! {
         }
         prop_assert!(force.norm() < 1e-12 * size, "{:e}", force.norm() / size);
         prop_assert!(moment.norm() < 1e-12 * arm, "{:e}", moment.norm() / arm);
+    }
+}
+
+#[test]
+fn a_body_that_is_turned_with_its_fibres_stores_the_same_energy() {
+    // x to y to z to x: the cube and its lattice come to lie on themselves.
+    let turn = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+    let fibres = |X: &Vector3| Vector3::new((20.0 * X.y).cos(), (20.0 * X.y).sin(), 0.4);
+    let bent = |X: &Vector3| Vector3::new(0.2 * X.y, 3.0 * X.x * X.z, -0.1 * X.z);
+    let energy = |Q: Matrix3, law: Law| {
+        let mut problem = with_law(cube(3), law);
+        let fibre = Field::of(move |X| Q * fibres(&(Q.transpose() * X)));
+        let sheet = Some((Q * Vector3::new(0.3, -0.2, 1.0)).into());
+        problem.regions[0].fibres = Some(Fibres { fibre, sheet });
+        let (_, model) = build(&problem);
+        strain_energy(&model, &field(&model, |X| Q * bent(&(Q.transpose() * X))))
+    };
+    for law in objective_laws().into_iter().filter(Law::has_fibres) {
+        let (home, turned) = (energy(Matrix3::identity(), law), energy(turn, law));
+        assert!((turned / home - 1.0).abs() < 1e-10, "{law:?}: {home} {turned}");
     }
 }
