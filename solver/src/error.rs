@@ -238,6 +238,10 @@ pub enum Error {
         indefinite: bool,
     },
     #[error(
+        "sensitivities of a body with viscosity depend on all equilibria before the last one, and are not computed: remove `viscosity` for those of a sudden load"
+    )]
+    MemoryToVary,
+    #[error(
         "sensitivities are those of a static problem that Newton's method solves: set its motion to Motion::Newton \
              or Motion::Static, without friction on obstacles"
     )]

@@ -12,6 +12,7 @@ use crate::algebra::tensor::Vector3;
 use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::model::Model;
+use crate::motion::extra_stress::ExtraState;
 use crate::motion::internal_force::{internal_force, strain_energy};
 use crate::motion::newton::Balanced;
 use crate::motion::state::State;
@@ -93,7 +94,8 @@ impl<'a> Adjoint<'a> {
     /// asks for answers there.
     ///
     /// # Errors
-    /// [`Error::NoEquilibriumToVary`] for motions and for relaxation, [`Error::NoEquilibrium`] where
+    /// [`Error::NoEquilibriumToVary`] for motions and for relaxation, [`Error::MemoryToVary`] where a
+    /// material has viscosity, [`Error::NoEquilibrium`] where
     /// the state is near to none.
     pub fn new(
         problem: &Problem,
@@ -105,9 +107,12 @@ impl<'a> Adjoint<'a> {
         if !problem.by_newton() || model.nodal_rows.is_none() {
             return Err(Error::NoEquilibriumToVary);
         }
+        if model.has_memory() {
+            return Err(Error::MemoryToVary);
+        }
         let settings = match problem.motion {
             Motion::Newton(settings) => settings,
-            _ => Newton { load_end: problem.motion.end(), tolerance: 1.0 },
+            _ => Newton { load_end: problem.motion.end(), tolerance: 1.0, ..Newton::default() },
         };
         let mut balanced = Balanced::new(model, &settings, state)?;
         let t = problem.motion.end();
@@ -154,6 +159,7 @@ impl<'a> Adjoint<'a> {
         let model = Model::new(problem, self.discretisation)?;
         let mut buffers = Buffers::new(&model, false);
         let (t, u) = (problem.motion.end(), self.balanced.displacement().to_vec());
+        ExtraState::new(&model).act(&model, t, &mut buffers.workspace);
         external_force(&model, t, &mut buffers.f_ext);
         add_pressures(&model, t, &u, &mut buffers.f_ext);
         internal_force(&model, &u, &mut buffers.workspace, &mut buffers.f_int);

@@ -199,7 +199,8 @@ fn prescribed_with(
     let mut boundary = condition("boundary", Selector::All, [None; 3]);
     boundary.prescribed = Prescribed::Field(field);
     problem.conditions.push(boundary);
-    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-11 });
+    problem.motion =
+        Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-11, ..Newton::default() });
     let (_, model) = build(&problem);
     let mut state = State::new(&model);
     simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();

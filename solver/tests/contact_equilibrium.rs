@@ -32,7 +32,7 @@ fn solve(problem: &Problem) -> Solved {
 }
 
 fn newton() -> Motion {
-    Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-9 })
+    Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-9, ..Newton::default() })
 }
 
 fn contact_force(state: &State) -> Vector3 {
@@ -213,7 +213,7 @@ fn ball_in_its_own_outline(tolerance: f64) -> Problem {
     let top = Selector::Inside { shape: top, tolerance: 0.0 };
     problem.conditions.push(condition("top", top, [None, None, Some(-0.05 * EDGE)]));
     problem.obstacles.push(obstacle(ball, ObstacleSide::Inside, Friction::Frictionless));
-    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance });
+    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance, ..Newton::default() });
     problem
 }
 

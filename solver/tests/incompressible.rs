@@ -42,7 +42,7 @@ fn pressed(problem: Problem) -> Problem {
 }
 
 fn to(tolerance: f64) -> Motion {
-    Motion::Newton(Newton { load_end: 1.0, tolerance })
+    Motion::Newton(Newton { load_end: 1.0, tolerance, ..Newton::default() })
 }
 
 fn counts(problem: &Problem, tolerance: f64) -> NewtonCounts {

@@ -49,7 +49,9 @@ fn a_tolerance_below_round_off_ends_in_an_equilibrium_that_says_so() {
     problem.loads = Loads::default();
     let aside = Prescribed::Displacement([Some(1e-7 * EDGE), Some(0.0), None]);
     problem.conditions[1].prescribed = aside;
-    let by = |tolerance| solve_by(&problem, Motion::Newton(Newton { load_end: 1.0, tolerance }));
+    let by = |tolerance| {
+        solve_by(&problem, Motion::Newton(Newton { load_end: 1.0, tolerance, ..Newton::default() }))
+    };
     let counts = by(1e-14).summary.newton.unwrap();
     assert!(counts.up_to_round_off && counts.increments == 1, "{counts:?}");
     assert!(counts.residual > 1e-14 && counts.residual < 1e-8, "{counts:?}");

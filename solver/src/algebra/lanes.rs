@@ -132,6 +132,8 @@ pub trait Lanes<S: Simd>: Real {
     /// A number that does not change.
     fn fixed(simd: S, block: &SimdBlock, piece: usize) -> Self;
     fn store(self, parts: &mut Parts<SimdBlock>, entry: usize, piece: usize);
+    /// Writes the value alone.
+    fn write(self, simd: S, block: &mut SimdBlock, piece: usize);
 }
 
 /// Implements [`Lanes`] for a [`Number`].
@@ -154,6 +156,11 @@ macro_rules! lanes_of_values {
             #[inline(always)]
             fn store(self, parts: &mut Parts<SimdBlock>, entry: usize, piece: usize) {
                 Number::<S>::write(self, &mut parts.values[entry], piece);
+            }
+
+            #[inline(always)]
+            fn write(self, _simd: S, block: &mut SimdBlock, piece: usize) {
+                Number::<S>::write(self, block, piece);
             }
         }
     };
@@ -183,5 +190,10 @@ impl<S: Simd, N: Number<S>> Lanes<S> for Dual<N> {
     fn store(self, parts: &mut Parts<SimdBlock>, entry: usize, piece: usize) {
         self.value.write(&mut parts.values[entry], piece);
         self.slope.write(&mut parts.slopes[entry], piece);
+    }
+
+    #[inline(always)]
+    fn write(self, _simd: S, block: &mut SimdBlock, piece: usize) {
+        self.value.write(block, piece);
     }
 }

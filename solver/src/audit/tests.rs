@@ -161,7 +161,7 @@ fn reactions_of_one_condition_that_balance_each_other_are_not_doubted() {
     };
     problem.conditions[0].part = face(0.08);
     problem.conditions[0].prescribed = Prescribed::Field(Field::of(dent));
-    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-3 });
+    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-3, ..Newton::default() });
     assert_eq!(doubts(&run(&problem)).iter().filter(|kind| **kind == Kind::Forces).count(), 0);
 }
 
@@ -185,9 +185,7 @@ fn a_soft_layer_of_one_spacing_is_doubted_and_one_of_four_is_not() {
         let part = cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, thickness]);
         let part = Selector::Inside { shape: part, tolerance: 0.0 };
         problem.body = cuboid([0.0; 3], [0.08, 0.08, 0.16]);
-        problem
-            .regions
-            .insert(0, Region { name: "soft".into(), part, material: tissue(300.0), fibres: None });
+        problem.regions.insert(0, Region::new("soft", part, tissue(300.0)));
         problem.loads = Default::default();
         problem.loads.body_forces = block().loads.body_forces;
         problem.loads.body_forces[0].acceleration = Vector3::new(0.0, 0.0, -0.2).into();

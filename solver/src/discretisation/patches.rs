@@ -225,7 +225,7 @@ mod tests {
         let constants = ElasticConstants::from_young_poisson(3000.0, 0.49).unwrap();
         let law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
         let material = Material { density: 1000.0, law };
-        let regions = [Region { name: "all".into(), part: Selector::All, material, fibres: None }];
+        let regions = [Region::new("all", Selector::All, material)];
         let grid = BackgroundGrid::with_cell(size / 7.0);
         let mut points = quadrature(&body, &regions, &grid, &Dimension::Three).unwrap();
         let spacing = vec![size / 6.0; points.positions.len()];

@@ -43,6 +43,12 @@ pub enum MaterialError {
     OgdenTerms { count: usize },
     #[error("alpha is {value}; it must be finite and not 0")]
     OgdenExponent { value: f64 },
+    #[error("prony has {count} terms; it takes one to {most}")]
+    PronyTerms { count: usize, most: usize },
+    #[error(
+        "the parts g of prony sum to {sum}; they must sum to less than 1, or nothing is left in the end"
+    )]
+    PronySum { sum: f64 },
     #[error("the strain energy has a stress of {stress:e} Pa at rest; it must be stationary there")]
     StressAtRest { stress: f64 },
 }

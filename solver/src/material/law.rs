@@ -125,6 +125,24 @@ impl Law {
         }
     }
 
+    /// Whether its energy is one of shape plus one of volume, so that its stress has an isochoric part.
+    pub fn is_split(&self) -> bool {
+        match self {
+            Law::NeoHookeanIsochoric(_)
+            | Law::Ogden(_)
+            | Law::Yeoh(_)
+            | Law::Demiray(_)
+            | Law::Guccione(_)
+            | Law::HolzapfelGasserOgden(_)
+            | Law::HolzapfelOgden(_) => true,
+            Law::MooneyRivlin(_)
+            | Law::NeoHookeanLogJ(_)
+            | Law::StVenantKirchhoff(_)
+            | Law::LinearElastic(_)
+            | Law::Own(_) => false,
+        }
+    }
+
     /// Whether its derivative costs more than a product with ∂P/∂F, so that it pays to keep that.
     pub fn is_costly(&self) -> bool {
         matches!(self, Law::Ogden(_) | Law::Own(_))

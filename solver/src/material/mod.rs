@@ -11,6 +11,7 @@ mod neo_hookean_isochoric;
 mod neo_hookean_log_j;
 mod ogden;
 mod own_law;
+mod prony;
 mod st_venant_kirchhoff;
 mod volumetric_term;
 
@@ -27,6 +28,7 @@ pub use neo_hookean_isochoric::NeoHookeanIsochoric;
 pub use neo_hookean_log_j::NeoHookeanLogJ;
 pub use ogden::{Ogden, OgdenTerm, OgdenTerms};
 pub use own_law::{Number, OwnLaw, StrainEnergy};
+pub use prony::{PronySeries, PronyTerm};
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use volumetric_term::VolumetricTerm;
 

@@ -11,7 +11,7 @@ use crate::model::mass::{fictitious_mass, lumped_mass};
 use crate::model::pressure::{PressureLoad, pressure_loads};
 use crate::model::stiffness::stiffness_diagonal;
 use crate::model::time_step_bound::per_point_bound;
-use crate::problem::{Dimension, MassRule, Motion, Problem, Region, RelaxationMass};
+use crate::problem::{Amplitude, Dimension, MassRule, Motion, Problem, Region, RelaxationMass};
 
 /// A discretised body with its materials, conditions and loads.
 #[derive(Debug, Clone)]
@@ -137,6 +137,27 @@ impl Model {
             block.occupied().for_each(|lane| frames[block.point(lane)] = block.frame(lane));
         }
         frames
+    }
+
+    /// Times \[s\] at which the slope of an amplitude jumps, or a condition ends, in any order.
+    pub fn corners(&self) -> Vec<f64> {
+        let conditions = &self.constraints.conditions;
+        let loads = self.loads.iter().map(|load| &load.amplitude);
+        let pressures = self.pressures.iter().map(|load| &load.amplitude);
+        let held = conditions.iter().map(|condition| &condition.amplitude);
+        let active = self.blocks.iter().filter_map(|block| Some(&block.active.as_ref()?.amplitude));
+        let all = loads.chain(pressures).chain(held).chain(active).flat_map(Amplitude::corners);
+        all.chain(conditions.iter().filter_map(|condition| condition.release)).collect()
+    }
+
+    /// Whether there are stresses beside those of the laws.
+    pub fn has_extra_stress(&self) -> bool {
+        self.blocks.iter().any(Block::has_extra_stress)
+    }
+
+    /// Whether a stress depends on what was before.
+    pub fn has_memory(&self) -> bool {
+        self.blocks.iter().any(|block| block.viscosity.is_some())
     }
 
     /// Bytes that one evaluation of the internal force reads from the blocks.

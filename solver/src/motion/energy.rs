@@ -3,7 +3,7 @@
 
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
-use crate::motion::internal_force::{Workspace, internal_force, strain_energy};
+use crate::motion::internal_force::{internal_force, strain_energy};
 use crate::motion::state::State;
 
 /// Energies \[J\] half a step before the time of the state, like velocities.
@@ -19,6 +19,8 @@ pub struct Energies {
     pub constraint_work: f64,
     /// Dissipated by damping.
     pub damping_loss: f64,
+    /// Done against viscous branches, which lose it in time, less what active fibres have done.
+    pub extra_work: f64,
     /// Of a motion: kept of nodes that touch obstacles.
     pub contact_energy: f64,
     /// Of a motion: what obstacles have taken for good.
@@ -48,11 +50,11 @@ pub fn momenta(model: &Model, state: &State, about: &Vector3) -> Momenta {
 }
 
 impl Energies {
-    /// kinetic + strain + kept and lost in contact + damping loss − external work − constraint
+    /// kinetic + strain + kept and lost in contact + damping loss + extra work − external work − constraint
     /// work \[J\]: constant up to O(Δt²) for central differences.
     pub fn balance(&self) -> f64 {
         let contact = self.contact_energy + self.contact_loss;
-        let held = self.kinetic + self.strain + contact + self.damping_loss;
+        let held = self.kinetic + self.strain + contact + self.damping_loss + self.extra_work;
         held - self.external_work - self.constraint_work
     }
 }
@@ -60,7 +62,7 @@ impl Energies {
 /// By how much the mean of the strain energies at t − Δt and t exceeds that between them \[J\],
 /// ¼ Δu · Δf_int: without it central differences keep the energy of a linear body exactly.
 pub fn excess_of_mean(model: &Model, state: &State) -> f64 {
-    let mut workspace = Workspace::new(model);
+    let mut workspace = state.workspace(model);
     let mut change = vec![0.0; model.size()];
     let mut before = change.clone();
     let last = displacement_before(state);
@@ -95,6 +97,8 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         external_work: state.work.external,
         constraint_work: state.work.constraint - impacts.work,
         damping_loss: state.work.damping + impacts.damped,
+        // In a motion what is remembered is a step old, in a static run all of it is.
+        extra_work: state.work.extra + 0.5 * state.extra.work_towards(model, &state.displacement),
         contact_energy: impacts.stored(),
         contact_loss: impacts.lost,
     }

@@ -5,11 +5,12 @@
 use crate::algebra::lanes::{Lanes, Number, with_vectors};
 use crate::algebra::real::Dual;
 use crate::algebra::tensor::Matrix3;
+use crate::material::PronySeries;
 use crate::model::blocks::{LocalVectors, with_gradients};
 use crate::model::projection::PatchMoments;
 use crate::model::{Block, Chunk, Model};
 pub use crate::motion::kernel::OwnPressures;
-use crate::motion::kernel::{self, BlockPressures, Local, Scratch, block_force};
+use crate::motion::kernel::{self, BlockPressures, ExtraStress, Local, Scratch, block_force};
 use fearless_simd::{Level, Simd};
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -46,6 +47,11 @@ impl Workspace {
     /// For a model, at the widest vector instructions of this processor.
     pub fn new(model: &Model) -> Workspace {
         Workspace { level: Level::new(), blocks: model.blocks.iter().map(Scratch::new).collect() }
+    }
+
+    /// What acts beside the law of a block, where there is such a thing.
+    pub(crate) fn extra(&mut self, block: usize) -> Option<&mut ExtraStress> {
+        self.blocks[block].extra.as_mut()
     }
 
     /// What the last displacements made of the patches, block by block.
@@ -297,31 +303,62 @@ fn displacement_gradient<const D: usize>(
     sums
 }
 
-/// Strain energy Σ_q w_q ψ(F_q) \[J\] at displacements `u` \[m\].
-pub fn strain_energy(model: &Model, u: &[f64]) -> f64 {
-    let energy = |block: &Block| {
-        with_local(|Local { u: local, .. }| match model.components {
-            2 => block_energy::<2>(block, u, local),
-            _ => block_energy::<3>(block, u, local),
-        })
-    };
-    model.blocks.iter().map(energy).sum()
+/// F at the points of a block that are not padding, lane by lane.
+pub(crate) fn deformation_gradients(
+    model: &Model,
+    block: &Block,
+    u: &[f64],
+    mut visit: impl FnMut(usize, &Matrix3),
+) {
+    with_local(|Local { u: local, .. }| match model.components {
+        2 => {
+            local.gather::<2>(&block.nodes, u);
+            block.occupied().for_each(|n| visit(n, &deformation_gradient::<2>(block, n, local)));
+        }
+        _ => {
+            local.gather::<3>(&block.nodes, u);
+            block.occupied().for_each(|n| visit(n, &deformation_gradient::<3>(block, n, local)));
+        }
+    });
 }
 
-fn block_energy<const D: usize>(block: &Block, u: &[f64], local: &mut LocalVectors) -> f64 {
-    local.gather::<D>(&block.nodes, u);
-    let mut energy = 0.0;
-    let mut jacobians = Vec::new();
-    for Chunk { lanes, groups } in &block.chunks {
-        jacobians.clear();
-        for lane in lanes.clone() {
-            let F = deformation_gradient::<D>(block, lane, local);
-            let own = block.as_the_law_needs(&F, lane);
-            energy += block.quadrature_weights[lane] * block.law.strain_energy(&own);
-            jacobians.push(F.determinant());
+/// Strain energy Σ_q w_q ψ(F_q) \[J\] at displacements `u` \[m\]; of viscous materials what is left
+/// of it in the end, the energy of an infinitely slow strain.
+pub fn strain_energy(model: &Model, u: &[f64]) -> f64 {
+    model.blocks.iter().map(|block| block_energy(model, block, u, None)).sum()
+}
+
+/// As [`strain_energy`], of a sudden strain, with Σ_q w_q ½ S_q : (C_q − 1) of the extra stresses S
+/// of a workspace: what [`internal_force`] is the derivative of while nothing relaxes.
+pub fn potential_energy(model: &Model, u: &[f64], workspace: &Workspace) -> f64 {
+    let blocks = model.blocks.iter().zip(&workspace.blocks);
+    blocks.map(|(block, own)| block_energy(model, block, u, own.extra.as_ref())).sum()
+}
+
+fn block_energy(model: &Model, block: &Block, u: &[f64], extra: Option<&ExtraStress>) -> f64 {
+    let relaxing = match extra {
+        Some(_) => 0.0,
+        None => block.viscosity.as_ref().map_or(0.0, PronySeries::relaxing),
+    };
+    let (mut energies, mut jacobians) =
+        (vec![0.0; block.lanes.len()], vec![1.0; block.lanes.len()]);
+    deformation_gradients(model, block, u, |lane, F| {
+        let (own, J) = (block.as_the_law_needs(F, lane), F.determinant());
+        let mut density = block.law.strain_energy(&own);
+        if relaxing > 0.0 {
+            density -= relaxing * (density - block.law.bulk_energy(J));
         }
+        if let Some(extra) = extra {
+            density += extra.energy(lane, &(F.transpose() * F));
+        }
+        energies[lane] = block.quadrature_weights[lane] * density;
+        jacobians[lane] = J;
+    });
+    let mut energy = 0.0;
+    for Chunk { lanes, groups } in &block.chunks {
+        energies[lanes.clone()].iter().for_each(|at_point| energy += at_point);
         if let Some(projection) = &block.projection {
-            energy += projection.energy(&block.law, groups.clone(), &jacobians);
+            energy += projection.energy(&block.law, groups.clone(), &jacobians[lanes.clone()]);
         }
     }
     energy

@@ -3,6 +3,7 @@
 pub mod balance;
 pub mod critical_time_step;
 pub mod energy;
+pub mod extra_stress;
 pub mod internal_force;
 mod kernel;
 pub mod mass_scaling;

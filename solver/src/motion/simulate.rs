@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::model::contact::Impacts;
 use crate::motion::internal_force::internal_force;
-use crate::motion::newton::equilibrate;
+use crate::motion::newton::{equilibrate, follow};
 use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::relaxation::relax;
 use crate::motion::state::State;
@@ -42,7 +42,8 @@ pub fn simulate(
         }
         Motion::Newton(settings) => {
             refuse_unheld(model, settings.load_end)?;
-            equilibrate(model, settings, state, observer)
+            let solve = if model.has_memory() { follow } else { equilibrate };
+            solve(model, settings, state, observer)
         }
     }
 }
@@ -56,6 +57,9 @@ fn solve_static(
     state: &mut State,
     observer: &mut dyn Observer,
 ) -> Result<Summary, Error> {
+    if model.has_memory() {
+        return follow(model, &settings.newton(), state, observer);
+    }
     if sticks(&model.contact.obstacles) {
         return relax(model, settings, state, observer);
     }
@@ -82,6 +86,7 @@ fn solve_static(
 /// Shows an observer the equilibrium at a part of the load, in place of what diverged.
 fn show_again(model: &Model, state: &State, reached: f64, observer: &mut dyn Observer) {
     let mut buffers = Buffers::new(model, false);
+    state.extra.act(model, state.time, &mut buffers.workspace);
     let smallest =
         internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
     observer.restart();

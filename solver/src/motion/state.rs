@@ -4,6 +4,8 @@ use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
 use crate::model::contact::{ContactForce, ContactState};
 use crate::model::essential::{ConstraintForces, Reaction};
+use crate::motion::extra_stress::ExtraState;
+use crate::motion::internal_force::{Workspace, internal_force};
 
 /// Displacements and velocities at one instant, and the work so far.
 #[derive(Debug)]
@@ -25,6 +27,8 @@ pub struct State {
     pub(crate) residual_scratch: ConstraintForces,
     /// Nodes in contact.
     pub contact: ContactState,
+    /// Stresses beside those of the laws.
+    pub extra: ExtraState,
     /// Work so far.
     pub work: Work,
 }
@@ -38,6 +42,8 @@ pub struct Work {
     pub constraint: f64,
     /// Dissipated by damping.
     pub damping: f64,
+    /// Done against viscous branches, less what active fibres have done; up to t − Δt.
+    pub extra: f64,
 }
 
 impl State {
@@ -53,6 +59,7 @@ impl State {
             constraint_forces: ConstraintForces::default(),
             residual_scratch: ConstraintForces::default(),
             contact: ContactState::default(),
+            extra: ExtraState::new(model),
             work: Work::default(),
         }
     }
@@ -65,8 +72,26 @@ impl State {
             constraint_forces: ConstraintForces::default(),
             residual_scratch: ConstraintForces::default(),
             contact: self.contact.clone(),
+            extra: self.extra.clone(),
             ..*self
         }
+    }
+
+    /// Has the extra stresses remember a static equilibrium.
+    pub(crate) fn remember(&mut self, model: &Model, workspace: &mut Workspace) {
+        self.extra.act(model, self.time, workspace);
+        internal_force(model, &self.displacement, workspace, &mut vec![0.0; model.size()]);
+        let work = self.extra.remember(model, self.time, workspace);
+        self.work.extra += work;
+        // The work of conditions and contact is what closes the balance of a static run.
+        self.work.constraint += work;
+    }
+
+    /// Scratch memory for forces and products with the extra stresses of this state.
+    pub fn workspace(&self, model: &Model) -> Workspace {
+        let mut workspace = Workspace::new(model);
+        self.extra.act(model, self.time, &mut workspace);
+        workspace
     }
 
     /// Force \[N\] and moment about `about` \[m\] that each condition exerts on the body, in

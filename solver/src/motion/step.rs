@@ -100,8 +100,11 @@ pub fn step(
     state: &mut State,
     buffers: &mut Buffers,
 ) -> StepReport {
+    state.extra.interval = state.time_step;
+    state.extra.act(model, load_time, &mut buffers.workspace);
     let smallest_jacobian =
         internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
+    state.work.extra += state.extra.remember(model, load_time, &mut buffers.workspace);
     external_force(model, load_time, &mut buffers.f_ext);
     add_pressures(model, load_time, &state.displacement, &mut buffers.f_ext);
     if buffers.track_work {

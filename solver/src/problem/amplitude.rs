@@ -34,6 +34,17 @@ impl Amplitude {
     }
 }
 
+impl Amplitude {
+    /// Times \[s\] at which its slope jumps, or it ends.
+    pub fn corners(&self) -> Vec<f64> {
+        match self {
+            Amplitude::Constant => Vec::new(),
+            Amplitude::Linear { duration } | Amplitude::Smooth { duration } => vec![*duration],
+            Amplitude::Table(rows) => rows.iter().map(|row| row.0).collect(),
+        }
+    }
+}
+
 fn interpolate(rows: &[(f64, f64)], t: f64) -> f64 {
     let after = rows.partition_point(|row| row.0 <= t);
     match after {

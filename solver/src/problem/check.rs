@@ -39,12 +39,22 @@ pub enum Wrong {
     Jitter(f64),
     #[error("is {0}; it must be 1 to 5")]
     GaussPoints(usize),
-    #[error("is missing; the law needs the direction of its fibres")]
+    #[error("is {0}; it must be finite")]
+    NotFinite(f64),
+    #[error("is missing; the law, or the active stress, needs the direction of its fibres")]
     NoFibres,
     #[error("has no sheets; the law needs their direction")]
     NoSheets,
-    #[error("belongs to laws with fibres; remove it")]
+    #[error("belongs to laws with fibres, and to an active stress; remove it")]
     UnusedFibres,
+    #[error(
+        "relaxes the isochoric stress, which the law does not have: use neo_hookean_isochoric, ogden, or a law with constants"
+    )]
+    NotSplit,
+    #[error(
+        "is by relaxation, which has no time for a material with viscosity: use Newton's method, or a motion"
+    )]
+    NoTime,
     #[error("is empty; it needs rows of time and factor")]
     Empty,
     #[error("has time {after} after {before}; times must increase")]
@@ -74,6 +84,10 @@ impl Mistakes {
     // Comparisons are made so that what is not a number is wrong.
     pub(super) fn positive(&mut self, field: &str, value: f64) {
         self.add_if(value.is_nan() || value <= 0.0, field, Wrong::NotPositive(value));
+    }
+
+    pub(super) fn finite(&mut self, field: &str, value: f64) {
+        self.add_if(!value.is_finite(), field, Wrong::NotFinite(value));
     }
 
     fn not_negative(&mut self, field: &str, value: f64) {
@@ -209,6 +223,7 @@ impl Motion {
             Motion::Newton(newton) => {
                 found.positive("load_end", newton.load_end);
                 found.tolerance("tolerance", newton.tolerance);
+                found.at_least_one("parts", newton.parts);
             }
         }
         found.0
@@ -221,6 +236,7 @@ impl Relaxation {
         found.positive("load_end", self.load_end);
         found.at_least_one("load_steps", self.load_steps);
         found.at_least_one("max_steps", self.max_steps);
+        found.at_least_one("parts", self.parts);
         found.tolerance("tolerance", self.tolerance);
         found.part("step", self.step.check());
         found.0
@@ -303,7 +319,7 @@ mod tests {
         let of_relaxation = ["load_end", "load_steps", "max_steps", "tolerance"];
         let expected = [&of_relaxation[..], &of_step].concat();
         assert_eq!(fields(&Motion::Relaxed(relaxation).check()), expected);
-        let newton = Motion::Newton(Newton { load_end: -1.0, tolerance: 1.0 });
+        let newton = Motion::Newton(Newton { load_end: -1.0, tolerance: 1.0, ..Newton::default() });
         assert_eq!(fields(&newton.check()), ["load_end", "tolerance"]);
     }
 

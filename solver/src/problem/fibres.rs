@@ -3,6 +3,7 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::Field;
+use crate::problem::amplitude::Amplitude;
 
 /// Directions of fibres and sheets of a region, as functions of the reference position \[m\]. They
 /// need not have length 1, nor be normal to each other.
@@ -12,6 +13,17 @@ pub struct Fibres {
     pub fibre: Field,
     /// Within the sheets that the fibres lie in \[–\]; none where the law has no sheets.
     pub sheet: Option<Field>,
+}
+
+/// What muscle pulls with along its fibres, whatever its strain: T_a f ⊗ f is added to the second
+/// Piola–Kirchhoff stress, with the fibre direction f at rest (Land et al., Proc. R. Soc. A
+/// 471:20150641, 2015, section 2.2; method book, eq. 3.26).
+#[derive(Debug, Clone)]
+pub struct ActiveStress {
+    /// T_a at amplitude 1 \[Pa\].
+    pub tension: f64,
+    /// The factor over time.
+    pub amplitude: Amplitude,
 }
 
 /// A place where a material has no direction.

@@ -18,7 +18,7 @@ pub use conditions::{
     BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed, Pressure,
     Traction,
 };
-pub use fibres::{Fibres, NoDirection};
+pub use fibres::{ActiveStress, Fibres, NoDirection};
 pub use motion::{Motion, Newton, Relaxation, RelaxationMass, StepControl};
 pub use recipe::{
     BackgroundGrid, Basis, Cloud, Enforcement, GradientStorage, Gradients, InsideRule, MassRule,
@@ -27,7 +27,7 @@ pub use recipe::{
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::{Selector, Shape};
-use crate::material::Material;
+use crate::material::{Material, PronySeries};
 use check::Mistakes;
 
 /// A whole problem: body, discretisation recipe, conditions, loads, motion.
@@ -60,12 +60,7 @@ impl Problem {
         Problem {
             dimension: Dimension::Three,
             body,
-            regions: vec![Region {
-                name: "body".into(),
-                part: Selector::All,
-                material,
-                fibres: None,
-            }],
+            regions: vec![Region::new("body", Selector::All, material)],
             recipe,
             conditions: Vec::new(),
             loads: Loads::default(),
@@ -80,15 +75,7 @@ impl Problem {
         let mut found = Mistakes::default();
         for (n, region) in self.regions.iter().enumerate() {
             found.positive(&format!("regions[{n}].material.density"), region.material.density);
-            let (law, fibres) = (region.material.law, region.fibres.as_ref());
-            let has_sheets = fibres.is_some_and(|fibres| fibres.sheet.is_some());
-            let wrong = match () {
-                () if law.has_fibres() && fibres.is_none() => Some(Wrong::NoFibres),
-                () if law.has_sheets() && !has_sheets => Some(Wrong::NoSheets),
-                () if !law.has_fibres() && fibres.is_some() => Some(Wrong::UnusedFibres),
-                () => None,
-            };
-            found.add(&format!("regions[{n}].fibres"), wrong);
+            found.part(&format!("regions[{n}]"), region.check());
         }
         found.part("recipe", self.recipe.check());
         let loads = &self.loads;
@@ -104,7 +91,23 @@ impl Problem {
             }
         }
         found.part("motion", self.motion.check());
+        found.add("motion", self.follows_no_time().then_some(Wrong::NoTime));
         found.0
+    }
+
+    /// Whether a material has a memory of what the method of solution has no time for.
+    fn follows_no_time(&self) -> bool {
+        let relaxes = match self.motion {
+            Motion::Relaxed(_) => true,
+            Motion::Static(_) => sticks(&self.obstacles),
+            Motion::Newton(_) | Motion::Dynamic { .. } => false,
+        };
+        relaxes && self.has_memory()
+    }
+
+    /// Whether a stress depends on what was before.
+    pub fn has_memory(&self) -> bool {
+        self.regions.iter().any(|region| region.viscosity.is_some())
     }
 
     /// Whether Newton's method is what is tried at first.
@@ -126,11 +129,43 @@ pub struct Region {
     pub part: Selector,
     /// Its law and density.
     pub material: Material,
-    /// Where its law needs them, and only there.
+    /// Where its law or its active stress needs them, and only there.
     pub fibres: Option<Fibres>,
+    /// How its isochoric stress relaxes, where it does.
+    pub viscosity: Option<PronySeries>,
+    /// What it pulls with along its fibres, where it does.
+    pub active: Option<ActiveStress>,
 }
 
 impl Region {
+    /// Of a material without fibres and viscosity.
+    pub fn new(name: &str, part: Selector, material: Material) -> Region {
+        let name = name.to_string();
+        Region { name, part, material, fibres: None, viscosity: None, active: None }
+    }
+
+    /// Every number that cannot be used.
+    fn check(&self) -> Vec<Mistake> {
+        let mut found = Mistakes::default();
+        let (law, fibres) = (self.material.law, self.fibres.as_ref());
+        let has_sheets = fibres.is_some_and(|fibres| fibres.sheet.is_some());
+        let needs_fibres = law.has_fibres() || self.active.is_some();
+        let wrong = match () {
+            () if needs_fibres && fibres.is_none() => Some(Wrong::NoFibres),
+            () if law.has_sheets() && !has_sheets => Some(Wrong::NoSheets),
+            () if !needs_fibres && fibres.is_some() => Some(Wrong::UnusedFibres),
+            () => None,
+        };
+        found.add("fibres", wrong);
+        let unsplit = self.viscosity.is_some() && !law.is_split();
+        found.add("viscosity", unsplit.then_some(Wrong::NotSplit));
+        if let Some(ActiveStress { tension, amplitude }) = &self.active {
+            found.finite("active.tension", *tension);
+            found.part("active.amplitude", amplitude.check());
+        }
+        found.0
+    }
+
     /// The fibre frame at a reference position; of a law without fibres any does, and none is
     /// computed.
     ///

@@ -105,6 +105,8 @@ pub struct Relaxation {
     pub step: StepControl,
     /// The mass that is moved.
     pub mass: RelaxationMass,
+    /// As [`Newton::parts`].
+    pub parts: usize,
 }
 
 impl Default for Relaxation {
@@ -116,6 +118,7 @@ impl Default for Relaxation {
             max_steps: 200_000,
             step: StepControl::default(),
             mass: RelaxationMass::default(),
+            parts: PARTS,
         }
     }
 }
@@ -127,7 +130,11 @@ const RESIDUAL_OF_TOLERANCE: f64 = 0.01;
 impl Relaxation {
     /// Newton's method to the same load, with displacements at least as close to the solution.
     pub fn newton(&self) -> Newton {
-        Newton { load_end: self.load_end, tolerance: RESIDUAL_OF_TOLERANCE * self.tolerance }
+        Newton {
+            load_end: self.load_end,
+            tolerance: RESIDUAL_OF_TOLERANCE * self.tolerance,
+            parts: self.parts,
+        }
     }
 }
 
@@ -142,6 +149,9 @@ pub enum RelaxationMass {
     Lumped,
 }
 
+/// Default of [`Newton::parts`].
+const PARTS: usize = 20;
+
 /// Settings of Newton's method.
 #[derive(Debug, Clone, Copy)]
 pub struct Newton {
@@ -149,10 +159,13 @@ pub struct Newton {
     pub load_end: f64,
     /// Requested largest unbalanced nodal force over the largest nodal force \[–\].
     pub tolerance: f64,
+    /// Equal parts of the time between two corners of amplitudes in which a material with
+    /// viscosity is followed; other materials need none.
+    pub parts: usize,
 }
 
 impl Default for Newton {
     fn default() -> Self {
-        Newton { load_end: 1.0, tolerance: 1e-10 }
+        Newton { load_end: 1.0, tolerance: 1e-10, parts: PARTS }
     }
 }

@@ -74,12 +74,7 @@ fn body(dimension: Dimension, cells: usize) -> Problem {
     Problem {
         dimension,
         body: Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(EDGE) },
-        regions: vec![Region {
-            name: "tissue".into(),
-            part: Selector::All,
-            material: material(neo_hookean(3000.0, 0.3)),
-            fibres: None,
-        }],
+        regions: vec![Region::new("tissue", Selector::All, material(neo_hookean(3000.0, 0.3)))],
         recipe: Recipe {
             cloud: Cloud::Regular { spacing },
             dilation: 1.8,
@@ -126,7 +121,7 @@ pub fn with_law(mut problem: Problem, law: Law) -> Problem {
 /// The half x < EDGE/2 made of another law.
 pub fn with_stiff_half(mut problem: Problem, law: Law) -> Problem {
     let (fibres, material) = (turning_fibres(&law), material(law));
-    let half = Region { name: "half".into(), part: half_space(), material, fibres };
+    let half = Region { fibres, ..Region::new("half", half_space(), material) };
     problem.regions.insert(0, half);
     problem
 }

@@ -15,11 +15,12 @@ pub fn relaxation(tolerance: f64) -> Motion {
         max_steps: 50_000,
         step: StepControl::default(),
         mass: RelaxationMass::default(),
+        ..Relaxation::default()
     })
 }
 
 pub fn newton() -> Motion {
-    Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-10 })
+    Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-10, ..Newton::default() })
 }
 pub struct Solved {
     pub discretisation: Discretisation,

@@ -182,12 +182,7 @@ fn a_plate_of_one_cell_and_a_body_of_several_pieces_are_whole() {
 
 #[test]
 fn cells_are_cut_where_regions_meet_and_the_first_region_has_them() {
-    let region = |part: Selector| Region {
-        name: "part".into(),
-        part,
-        material: tissue(0.3).unwrap(),
-        fibres: None,
-    };
+    let region = |part: Selector| Region::new("part", part, tissue(0.3).unwrap());
     let inside = |shape: Shape| Selector::Inside { shape, tolerance: 0.0 };
     let inclusion = Shape::Sphere { centre: Vector3::repeat(0.5), radius: 0.3 };
     let overlapping = cuboid([0.5, -1.0, -1.0], [2.0; 3]);

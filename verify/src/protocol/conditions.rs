@@ -157,7 +157,7 @@ pub struct Contact {
 }
 
 impl History {
-    fn new(amplitude: &Amplitude, instants: &[f64]) -> History {
+    pub(super) fn new(amplitude: &Amplitude, instants: &[f64]) -> History {
         History {
             factors: instants.iter().map(|time| amplitude.at(*time)).collect(),
             amplitude: match amplitude {

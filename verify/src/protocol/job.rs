@@ -121,7 +121,7 @@ impl Job {
             dimension: format.dimension,
             plane: plane.map(|plane| Plane { thickness_m: plane.thickness, z_m: plane.z }),
             body: (&format.geometry.shape).into(),
-            regions: regions(&format, case, tolerance_m),
+            regions: regions(&format, case, tolerance_m, instants_s),
             supports: supports(&format, case, tolerance_m, instants_s),
             loads: loads(&format, case, tolerance_m, instants_s),
             obstacles: obstacles(&format),

@@ -1,10 +1,13 @@
 //! Regions of the body with their materials in a job.
 
+use super::conditions::History;
 use super::geometry::Selection;
 use crate::scene::Case;
 use crate::scene::format::{
     CaseFormat, DirectionFormat, LawFormat, MaterialFormat, VolumetricFormat,
 };
+use mtled::material::PronySeries;
+use mtled::problem;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -50,6 +53,21 @@ pub struct Material {
     /// Directions in the sheets of the fibres, else null.
     #[serde(default)]
     pub sheets: Option<Direction>,
+    /// Rows of g [–] and τ [s] by which the isochoric stress relaxes after a sudden strain to its part
+    /// 1 − Σ g (1 − e^(−t/τ)); empty where nothing relaxes.
+    #[serde(default)]
+    pub prony: Vec<[f64; 2]>,
+    /// T f ⊗ f is added to the second Piola–Kirchhoff stress, f along the fibres, else null.
+    #[serde(default)]
+    pub active_stress: Option<ActiveStress>,
+}
+
+/// What muscle pulls with along its fibres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ActiveStress {
+    /// T.
+    pub tension_pa: f64,
+    pub history: History,
 }
 
 /// A direction at every place, of any length.
@@ -79,7 +97,8 @@ impl Direction {
 
 impl Material {
     /// A material of a sound case with its constants.
-    fn new(format: &MaterialFormat, known: &mtled::material::Material) -> Material {
+    fn new(format: &MaterialFormat, region: &problem::Region, instants: &[f64]) -> Material {
+        let known = &region.material;
         let constants = known.law.constants();
         let rubber = format.a.zip(format.b).map(|(a, b)| {
             let nu = format.poisson_ratio.unwrap_or(constants.poisson_ratio());
@@ -101,6 +120,16 @@ impl Material {
             constants: format.constants.clone().unwrap_or_default(),
             fibres: format.fibres.as_ref().map(Direction::new),
             sheets: format.sheets.as_ref().map(Direction::new),
+            prony: region
+                .viscosity
+                .iter()
+                .flat_map(PronySeries::terms)
+                .map(|t| [t.g, t.tau])
+                .collect(),
+            active_stress: region.active.as_ref().map(|active| ActiveStress {
+                tension_pa: active.tension,
+                history: History::new(&active.amplitude, instants),
+            }),
         }
     }
 }
@@ -145,9 +174,14 @@ fn strain_energy(law: LawFormat, volumetric: Option<VolumetricFormat>) -> String
 }
 
 /// The regions of a sound case; one for a body of one material.
-pub fn regions(format: &CaseFormat, case: &Case, tolerance_m: f64) -> Vec<Region> {
+pub fn regions(
+    format: &CaseFormat,
+    case: &Case,
+    tolerance_m: f64,
+    instants: &[f64],
+) -> Vec<Region> {
     let known = case.problem.regions.iter();
-    let region = |(n, known): (usize, &mtled::problem::Region)| {
+    let region = |(n, known): (usize, &problem::Region)| {
         let row = format.region.get(n);
         let material = match row {
             Some(row) => format.material.get(&row.material),
@@ -156,7 +190,7 @@ pub fn regions(format: &CaseFormat, case: &Case, tolerance_m: f64) -> Vec<Region
         Some(Region {
             name: known.name.clone(),
             part: row.map_or(Selection::All, |row| Selection::new(&row.part, tolerance_m)),
-            material: Material::new(material?, &known.material),
+            material: Material::new(material?, known, instants),
         })
     };
     known.enumerate().filter_map(region).collect()

@@ -76,7 +76,7 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         | Error::SingularMomentMatrix { .. }
         | Error::LargeSupports { .. } => "discretisation.dilation",
         Error::UnstableStep { .. } => "time.fixed_step",
-        Error::NoTimeStep { .. } | Error::NoDirection(_) => "material",
+        Error::NoTimeStep { .. } | Error::NoDirection(_) | Error::MemoryToVary => "material",
         Error::TooMuchAddedMass { .. } | Error::UnscaledMass { .. } => "time.mass_scaling",
         Error::ProbeOutside { .. } => "probe",
         Error::PointWithoutRegion { .. } => "region",

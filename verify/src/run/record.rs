@@ -59,6 +59,9 @@ pub struct Frame {
     pub displacement: Vec<f64>,
     /// What obstacles exert on nodes.
     pub contact: Vec<ContactForce>,
+    /// Second Piola–Kirchhoff stress beside that of the laws \[point\]\[xx, yy, zz, xy, yz, xz\]
+    /// \[Pa\]; nothing where no material has any.
+    pub extra_stress: Vec<[f64; 6]>,
 }
 
 /// A probe as the recorder evaluates it.
@@ -225,6 +228,7 @@ impl Observer for Recorder<'_> {
                     time: view.state.time,
                     displacement: view.state.displacement.clone(),
                     contact: view.state.contact_forces(),
+                    extra_stress: view.state.extra.stresses(view.model),
                 };
                 self.frames.keep(frame, view.progress, frame_due);
             }
@@ -255,7 +259,7 @@ impl Observer for Recorder<'_> {
 }
 
 fn is_finite(e: &Energies) -> bool {
-    [e.kinetic, e.strain, e.external_work, e.constraint_work, e.damping_loss]
+    [e.kinetic, e.strain, e.external_work, e.constraint_work, e.damping_loss, e.extra_work]
         .iter()
         .all(|energy| energy.is_finite())
 }

@@ -258,6 +258,7 @@ fn energies_json(record: &Recording) -> Value {
             "external_work_j": e.external_work,
             "constraint_work_j": e.constraint_work,
             "damping_loss_j": e.damping_loss,
+            "extra_work_j": e.extra_work,
             "contact_energy_j": e.contact_energy,
             "contact_loss_j": e.contact_loss,
         })

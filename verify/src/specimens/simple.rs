@@ -48,7 +48,7 @@ pub fn recipe(spacing: f64, jitter: f64, seed: u64) -> Recipe {
 
 /// An unloaded, unconstrained body of one material; its motion is a dynamic relaxation.
 pub fn free_body(dimension: Dimension, body: Shape, material: Material, recipe: Recipe) -> Problem {
-    let region = Region { name: "body".into(), part: Selector::All, material, fibres: None };
+    let region = Region::new("body", Selector::All, material);
     Problem {
         dimension,
         body,

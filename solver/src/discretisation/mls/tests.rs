@@ -225,7 +225,7 @@ fn points_of_the_stiffer_side_see_their_own_nodes_and_reproduce_linear_fields_as
     let region = |part: Selector, young_modulus: f64| {
         let constants = ElasticConstants::from_young_poisson(young_modulus, 0.3).unwrap();
         let law = Law::LinearElastic(LinearElastic::new(constants));
-        Region { name: "half".into(), part, material: Material { density: 1.0, law }, fibres: None }
+        Region::new("half", part, Material { density: 1.0, law })
     };
     let regions = [region(half(1.0), 10.0), region(half(-1.0), 1.0)];
     let sided = plain.clone().with_sides(Stiffness::new(&regions).unwrap(), 1.9);

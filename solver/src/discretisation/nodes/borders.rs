@@ -65,7 +65,7 @@ mod tests {
     fn region(part: Selector, young_modulus: f64) -> Region {
         let constants = ElasticConstants::from_young_poisson(young_modulus, 0.3).unwrap();
         let law = Law::LinearElastic(LinearElastic::new(constants));
-        Region { name: "part".into(), part, material: Material { density: 1.0, law }, fibres: None }
+        Region::new("part", part, Material { density: 1.0, law })
     }
 
     #[test]

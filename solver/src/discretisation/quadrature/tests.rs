@@ -11,7 +11,7 @@ use crate::problem::{BackgroundGrid, Dimension, InsideRule, Refinement, Region};
 fn region(name: &str, part: Selector) -> Region {
     let constants = ElasticConstants::from_young_poisson(1e3, 0.3).unwrap();
     let law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
-    Region { name: name.into(), part, material: Material { density: 1e3, law }, fibres: None }
+    Region::new(name, part, Material { density: 1e3, law })
 }
 
 fn ball() -> Shape {

@@ -5,8 +5,9 @@ use super::local_vectors::{Place, QUAD, stride};
 use super::stored_gradients::{GradientQuad, StoredGradients, with_gradients};
 use crate::algebra::lanes::{LANES, SimdBlock};
 use crate::algebra::tensor::Matrix3;
-use crate::material::Law;
+use crate::material::{Law, PronySeries};
 use crate::model::projection::Projection;
+use crate::problem::ActiveStress;
 use std::ops::Range;
 
 /// Consecutive quadrature points of one material, with a numbering of their own of
@@ -20,8 +21,13 @@ use std::ops::Range;
 pub struct Block {
     /// The constitutive law.
     pub law: Law,
-    /// Fibre frames Q by rows \[SIMD block\]; nothing where the law has no fibres.
+    /// Fibre frames Q by rows \[SIMD block\]; nothing where neither the law nor an active stress
+    /// has fibres.
     pub frames: Vec<[SimdBlock; 9]>,
+    /// How the isochoric stress relaxes, where it does.
+    pub viscosity: Option<PronySeries>,
+    /// Along the fibres, where there is one.
+    pub active: Option<ActiveStress>,
     /// Global quadrature points.
     pub points: Range<usize>,
     /// Global node of each local one.
@@ -99,6 +105,11 @@ impl Block {
         self.chunks.iter().flat_map(|chunk| chunk.lanes.clone())
     }
 
+    /// Its SIMD blocks.
+    pub fn groups(&self) -> usize {
+        self.lanes.len() / LANES
+    }
+
     /// Global quadrature point in a lane.
     pub fn point(&self, lane: usize) -> usize {
         self.points.start + self.lanes[lane] as usize
@@ -112,7 +123,12 @@ impl Block {
 
     /// A deformation gradient at the point in a lane as the law needs it: F Q, where it has fibres.
     pub fn as_the_law_needs(&self, F: &Matrix3, lane: usize) -> Matrix3 {
-        self.frame(lane).map_or(*F, |frame| F * frame)
+        self.frame(lane).filter(|_| self.law.has_fibres()).map_or(*F, |frame| F * frame)
+    }
+
+    /// Whether there are stresses beside those of the law.
+    pub fn has_extra_stress(&self) -> bool {
+        self.viscosity.is_some() || self.active.is_some()
     }
 
     /// Bytes that one evaluation of the internal force reads.

@@ -92,6 +92,8 @@ fn block(
     Ok(Block {
         law,
         frames: frames(region, &lanes, &discretisation.quadrature.positions)?,
+        viscosity: region.viscosity,
+        active: region.active.clone(),
         nodes: numbering.nodes().to_vec(),
         lanes: lanes.iter().map(|q| q.map_or(0, |q| (q - points.start) as u32)).collect(),
         starts: slots,
@@ -110,7 +112,7 @@ fn frames(
     lanes: &[Option<usize>],
     positions: &[Vector3],
 ) -> Result<Vec<[SimdBlock; 9]>, Error> {
-    if !region.material.law.has_fibres() {
+    if region.fibres.is_none() {
         return Ok(Vec::new());
     }
     let mut frames = vec![[SimdBlock::default(); 9]; lanes.len() / LANES];

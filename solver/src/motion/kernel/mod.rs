@@ -3,6 +3,7 @@
 //! side where nodes are read and eight in the law (method book, section 11).
 #![allow(non_snake_case)]
 
+mod extra;
 mod nodes;
 mod own_pressures;
 mod points;
@@ -13,10 +14,11 @@ use crate::material::with_law;
 use crate::model::blocks::{LocalVectors, with_gradients};
 use crate::model::projection::PatchMoments;
 use crate::model::{Block, Chunk};
+pub use extra::{ENTRIES, ExtraStress, Found, Symmetric};
 use fearless_simd::Simd;
 use nodes::{add_forces, deformation_gradients};
 pub use own_pressures::{BlockPressures, OwnPressures};
-use points::{jacobians, pressures, stresses};
+use points::{At, jacobians, pressures, stresses};
 use tangents::Tangents;
 
 /// Vectors at the nodes of the block that a thread works on.
@@ -44,6 +46,8 @@ pub struct Scratch {
     pub smallest: (f64, usize),
     /// What the last displacements made of the patches; volumes are slopes after a derivative.
     pub patches: Vec<PatchMoments>,
+    /// Where there are stresses beside those of the law.
+    pub extra: Option<ExtraStress>,
     /// F \[–\] of all points at the displacements of a derivative, once there has been one.
     linearised: Vec<SimdBlock>,
     /// What derivatives there have of a costly law.
@@ -71,6 +75,7 @@ impl Scratch {
                 Some(_) => vec![PatchMoments::default(); block.chunks.len()],
                 None => Vec::new(),
             },
+            extra: block.has_extra_stress().then(|| ExtraStress::zero(block.groups())),
             linearised: Vec::new(),
             tangents: Tangents::default(),
             deformation,
@@ -114,7 +119,8 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
 ) {
     f.clear::<D>(block.nodes.len());
     scratch.smallest = (f64::INFINITY, 0);
-    let Scratch { smallest, patches, linearised, tangents, deformation, stress, .. } = scratch;
+    let Scratch { smallest, patches, linearised, tangents, deformation, stress, extra, .. } =
+        scratch;
     let (jacobian, pressure) = (&mut scratch.jacobians, &mut scratch.pressures);
     let is_known = R::SLOPES && tangents.are_worth(block);
     for (patch, Chunk { lanes, groups }) in block.chunks.iter().enumerate() {
@@ -133,9 +139,11 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
         let projection = block.projection.as_ref();
         let frames = block.frames.get(groups.clone()).unwrap_or(&[]);
         with_law!(&block.law, law => {
+            let extra = extra.as_mut().map(|extra| (extra, groups.start));
+            let mut at = At { law, frames, extra };
             if is_known {
                 let work = (&mut *deformation, &mut *stress, &mut *jacobian);
-                tangents.multiply::<S, R, _>(simd, (law, frames), groups.clone(), work);
+                tangents.multiply::<S, R, _>(simd, at.again(), groups.clone(), work);
             }
             if let Some(projection) = projection {
                 jacobians::<S, R>(simd, count, deformation, jacobian);
@@ -147,9 +155,9 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
             let results = (&mut *stress, &mut *jacobian, is_known);
             // In a plane half of a law is not needed; a derivative is, rarely enough.
             if D == 2 && !R::SLOPES {
-                stresses::<S, R, _, 2>(simd, (law, frames), count, deformation, pressure, results)
+                stresses::<S, R, _, 2>(simd, at, count, deformation, pressure, results)
             } else {
-                stresses::<S, R, _, 3>(simd, (law, frames), count, deformation, pressure, results)
+                stresses::<S, R, _, 3>(simd, at, count, deformation, pressure, results)
             }
         });
         for (lane, value) in lanes.clone().zip(jacobian.values.iter().flat_map(|block| block.0)) {

@@ -1,6 +1,6 @@
 //! ∂P/∂F at the points of a block, for laws that cost more than a product with it.
 
-use super::points::stresses;
+use super::points::{At, stresses};
 use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock};
 use crate::material::ConstitutiveLaw;
 use crate::model::Block;
@@ -43,7 +43,7 @@ impl Tangents {
     pub fn multiply<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
         &mut self,
         simd: S,
-        (law, frames): (&L, &[[SimdBlock; 9]]),
+        mut at: At<L>,
         groups: Range<usize>,
         (deformation, stress, jacobians): (
             &mut Parts<SimdBlock>,
@@ -61,7 +61,7 @@ impl Tangents {
                     *slope = SimdBlock([one; LANES]);
                 }
                 let results = (&mut *stress, &mut *jacobians, false);
-                stresses::<S, R, L, 3>(simd, (law, frames), count, deformation, None, results);
+                stresses::<S, R, L, 3>(simd, at.again(), count, deformation, None, results);
                 for group in 0..count {
                     let start = ENTRIES * (groups.start + group) + 9 * column;
                     self.values[start..start + 9]

@@ -41,6 +41,7 @@ impl<'a> Balanced<'a> {
     /// Brings the state at the end of a static run to the equilibrium that it is near to.
     pub fn new(model: &'a Model, settings: &Newton, state: &State) -> Result<Balanced<'a>, Error> {
         let mut buffers = Buffers::new(model, false);
+        state.extra.act(model, state.time, &mut buffers.workspace);
         let mut solver = Solver::new(model, settings, state, &mut buffers);
         let load = Load { fraction: 1.0, part: 0.0, tolerance: BALANCED };
         let found = solver.solve(&state.displacement, load, &mut buffers, &mut Unobserved);

@@ -38,6 +38,7 @@ pub(crate) fn equilibrate(
     observer: &mut dyn Observer,
 ) -> Result<Summary, Error> {
     let mut buffers = Buffers::new(model, false);
+    state.extra.act(model, state.time, &mut buffers.workspace);
     let solver = Solver::new(model, settings, state, &mut buffers);
     let stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
     let tolerance = settings.tolerance;
@@ -94,6 +95,7 @@ impl Loading<'_, '_> {
         let load = self.load_at(fraction);
         let Loading { solver, state, buffers, observer, .. } = self;
         let kept = (solver.contacts.clone(), solver.pressures.clone());
+        state.extra.act(solver.model, solver.path.time(fraction), &mut buffers.workspace);
         match solver.solve(&state.displacement, load, buffers, *observer) {
             Ok(equilibrium) => self.settle(equilibrium, load, kept),
             Err(Unsolved::Stopped(here)) => {
@@ -158,6 +160,7 @@ impl Loading<'_, '_> {
         }
         let load = self.load_at((reached + AHEAD).min(1.0));
         let Loading { solver, state, branch, buffers, observer, .. } = self;
+        state.extra.act(solver.model, solver.path.time(load.fraction), &mut buffers.workspace);
         match branch.beyond(solver, state, load, buffers, *observer) {
             Some(equilibrium) => {
                 self.reach(equilibrium, load.fraction);
@@ -212,6 +215,10 @@ impl Solver<'_> {
         state.work.external += external;
         state.work.constraint += stored - external;
         state.displacement = u;
+        // What has a memory remembers whole parts of the time only.
+        if model.has_extra_stress() && !model.has_memory() {
+            state.remember(model, &mut buffers.workspace);
+        }
         state.velocity.fill(0.0);
         state.time_step = 0.0;
         state.step = self.counts.iterations;

@@ -5,6 +5,7 @@ mod adjoint;
 mod branch;
 mod drift;
 mod equilibrate;
+mod follow;
 mod free_space;
 mod increment;
 mod inf_sup;
@@ -16,4 +17,5 @@ mod taken;
 
 pub(crate) use adjoint::Balanced;
 pub(crate) use equilibrate::equilibrate;
+pub(crate) use follow::follow;
 pub use inf_sup::{InfSup, inf_sup};

@@ -54,7 +54,9 @@ pub fn problem_in(scene: &Scene, frame: &Frame) -> Result<Problem> {
 
 fn motion(scene: &Scene) -> Motion {
     match scene.way {
-        Way::Newton => Motion::Newton(Newton { load_end: 1.0, tolerance: RESIDUAL }),
+        Way::Newton => {
+            Motion::Newton(Newton { load_end: 1.0, tolerance: RESIDUAL, ..Newton::default() })
+        }
         Way::Motion { end, damping } => {
             Motion::dynamic(end * scene.wave_time(), damping / scene.wave_time())
         }
@@ -64,19 +66,14 @@ fn motion(scene: &Scene) -> Motion {
 fn regions(scene: &Scene, frame: &Frame) -> Result<Vec<Region>> {
     let mut regions = Vec::new();
     if let Some(inclusion) = scene.inclusion {
-        regions.push(Region {
-            name: "half".into(),
-            part: shape::half(frame, inclusion.axis),
-            material: material::material(scene, inclusion.stiffness)?,
-            fibres: material::fibres(scene, frame),
-        });
+        let part = shape::half(frame, inclusion.axis);
+        let material = material::material(scene, inclusion.stiffness)?;
+        let fibres = material::fibres(scene, frame);
+        regions.push(Region { fibres, ..Region::new("half", part, material) });
     }
-    regions.push(Region {
-        name: "rest".into(),
-        part: Selector::All,
-        material: material::material(scene, 1.0)?,
-        fibres: material::fibres(scene, frame),
-    });
+    let material = material::material(scene, 1.0)?;
+    let fibres = material::fibres(scene, frame);
+    regions.push(Region { fibres, ..Region::new("rest", Selector::All, material) });
     Ok(regions)
 }
 

@@ -140,7 +140,7 @@ fn solved(scene: &Scene) -> Option<Answer> {
 fn solved_small(scene: &Scene) -> Option<Answer> {
     let mut problem = build::problem(scene).ok()?;
     let tolerance = build::RESIDUAL / SMALL;
-    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance });
+    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance, ..Newton::default() });
     answer(problem).ok()
 }
 

@@ -92,7 +92,8 @@ pub const RELATIONS: &[Relation] = &[
                 let curve = Amplitude::Linear { duration: 100.0 };
                 let mut other = with_curve(subject.problem(), &curve);
                 let tolerance = crate::build::RESIDUAL;
-                other.motion = Motion::Newton(Newton { load_end: 100.0, tolerance });
+                other.motion =
+                    Motion::Newton(Newton { load_end: 100.0, tolerance, ..Newton::default() });
                 subject.with(other, &View::default())
             })?
         },

@@ -20,7 +20,18 @@ from .conditions import (
     Table,
     Traction,
 )
-from .recipe import Direction, Grid, Material, OgdenTerm, Recipe, RefineCell, RefineSpacing, Region
+from .recipe import (
+    ActiveStress,
+    Direction,
+    Grid,
+    Material,
+    OgdenTerm,
+    PronyTerm,
+    Recipe,
+    RefineCell,
+    RefineSpacing,
+    Region,
+)
 from .shapes import (
     Box,
     Cylinder,
@@ -45,6 +56,7 @@ from .tables import key_of
 from .time import Dynamic, Lattice, Output, PlaneStrain, Points, Probe, Static
 
 __all__ = [
+    "ActiveStress",
     "BodyForce",
     "Box",
     "Cylinder",
@@ -79,6 +91,7 @@ __all__ = [
     "Pressure",
     "Probe",
     "Problem",
+    "PronyTerm",
     "Recipe",
     "RefineCell",
     "RefineSpacing",

@@ -28,6 +28,22 @@ class Direction:
 
 
 @dataclass
+class PronyTerm:
+    """A part of the isochoric stress that relaxes."""
+
+    g: float
+    tau_s: float
+
+
+@dataclass
+class ActiveStress:
+    """What muscle pulls with along its fibres."""
+
+    tension_pa: float
+    amplitude: Any = None
+
+
+@dataclass
 class Material:
     """A law with its parameters."""
 
@@ -44,6 +60,8 @@ class Material:
     constants: Mapping[str, float] | None = None
     fibres: Direction | None = None
     sheets: Direction | None = None
+    prony: Sequence[PronyTerm] | None = None
+    active_stress: ActiveStress | None = None
     volumetric: str | None = None
 
 

@@ -18,6 +18,7 @@ class Static:
     load_steps: int | None = None
     tolerance: float | None = None
     max_steps: int | None = None
+    parts: int | None = None
     safety_factor: float | None = None
     reevaluate_every: int | None = None
     method: str = kind_of("static")

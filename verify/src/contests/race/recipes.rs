@@ -96,9 +96,7 @@ impl Family {
             Solver::Relaxation { tolerance, load_steps } => {
                 Motion::Relaxed(Relaxation { tolerance, load_steps, ..preset })
             }
-            Solver::Newton { tolerance } => {
-                Motion::Newton(Newton { load_end: preset.load_end, tolerance })
-            }
+            Solver::Newton { tolerance } => Motion::Newton(Newton { tolerance, ..preset.newton() }),
         };
     }
 }

@@ -24,7 +24,8 @@ pub fn with_affine_boundary(problem: &Problem, H: Matrix3) -> Problem {
     problem.loads = Loads::default();
     problem.obstacles.clear();
     problem.conditions = vec![AffineField { H, centre: Vector3::zeros() }.on_boundary()];
-    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-12 });
+    problem.motion =
+        Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-12, ..Newton::default() });
     problem
 }
 

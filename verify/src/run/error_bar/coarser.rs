@@ -67,7 +67,7 @@ fn by_newton(problem: &Problem) -> Option<Motion> {
     let relaxed = matches!(problem.motion, Motion::Relaxed(_)) && problem.obstacles.is_empty();
     let serves = problem.by_newton() || relaxed;
     let load_end = problem.motion.end();
-    serves.then_some(Motion::Newton(Newton { load_end, tolerance: TOLERANCE }))
+    serves.then_some(Motion::Newton(Newton { load_end, tolerance: TOLERANCE, ..Newton::default() }))
 }
 
 /// Solves a case with every length of its recipe multiplied by `ratio`; nothing of its

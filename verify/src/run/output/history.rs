@@ -18,6 +18,10 @@ pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) 
         ["kinetic_j", "strain_j", "external_work_j", "constraint_work_j", "damping_loss_j"]
             .map(String::from),
     );
+    let extra = case.problem.regions.iter().any(|r| r.viscosity.is_some() || r.active.is_some());
+    if extra {
+        header.push("extra_work_j".to_string());
+    }
     let moving = matches!(case.problem.motion, Motion::Dynamic { .. });
     if moving {
         header.extend(axes.map(|axis| format!("momentum_{axis}_kg_m_per_s")));
@@ -42,6 +46,9 @@ pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) 
         let mut row =
             vec![sample.step as f64, sample.time, sample.smallest_jacobian, sample.touching as f64];
         row.extend([e.kinetic, e.strain, e.external_work, e.constraint_work, e.damping_loss]);
+        if extra {
+            row.push(e.extra_work);
+        }
         if moving {
             row.extend(sample.momenta.linear.iter().chain(sample.momenta.angular.iter()));
         }

@@ -37,7 +37,7 @@ impl NodeFields {
     ) -> Result<NodeFields> {
         let u = &frame.displacement;
         let displacement = field_at_nodes(prepared, u)?;
-        let (jacobian, stress, strain) = averaged(problem, prepared, u);
+        let (jacobian, stress, strain) = averaged(problem, prepared, frame);
         let (plan, discretisation) = (&prepared.model.contact, &prepared.discretisation);
         let contact_pressure = prepared
             .contact_surface(problem)?
@@ -63,7 +63,12 @@ pub fn field_at_nodes(prepared: &Prepared, u: &[f64]) -> Result<Vec<f64>> {
 /// J \[–\], Cauchy stress by rows \[Pa\], projected pressure included, and Green–Lagrange strain
 /// \[–\], averaged over the quadrature points that a node supports, weighted by volume times φ
 /// where positive.
-fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+fn averaged(
+    problem: &Problem,
+    prepared: &Prepared,
+    frame: &Frame,
+) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    let u = &frame.displacement;
     let discretisation = &prepared.discretisation;
     let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
     let nodes = discretisation.cloud.positions.len();
@@ -75,8 +80,12 @@ fn averaged(problem: &Problem, prepared: &Prepared, u: &[f64]) -> (Vec<f64>, Vec
         let F = rows.deformation_gradient(point, u, prepared.model.components);
         let law = &problem.regions[quadrature.regions[point] as usize].material.law;
         // The Cauchy stress is the same in every frame of the material.
-        let own = frames[point].map_or(F, |frame| F * frame);
-        let sigma = law.cauchy(&own) + Matrix3::from_diagonal_element(mean_stress);
+        let own = frames[point].filter(|_| law.has_fibres()).map_or(F, |frame| F * frame);
+        let mut sigma = law.cauchy(&own) + Matrix3::from_diagonal_element(mean_stress);
+        if let Some(&[xx, yy, zz, xy, yz, xz]) = frame.extra_stress.get(point) {
+            let S = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+            sigma += F * S * F.transpose() / F.determinant();
+        }
         let E = 0.5 * (F.transpose() * F - Matrix3::identity());
         let E = [E.m11, E.m22, E.m33, E.m12, E.m23, E.m13];
         for entry in rows.row(point) {

@@ -83,7 +83,7 @@ impl Builder<'_> {
         Prescribed::Rotation { point: Vector3::from(format.point), axis, angle: format.angle }
     }
 
-    fn amplitude(&mut self, key: &str, format: &AmplitudeFormat) -> Amplitude {
+    pub(super) fn amplitude(&mut self, key: &str, format: &AmplitudeFormat) -> Amplitude {
         let amplitude = match format {
             AmplitudeFormat::Constant => Amplitude::Constant,
             AmplitudeFormat::Linear { duration } => Amplitude::Linear { duration: *duration },

@@ -1,10 +1,11 @@
-//! Laws with constants of their own names, and the directions of their fibres.
+//! Laws with constants of their own names, the directions of their fibres, and what acts beside
+//! the law.
 
 use crate::scene::build::builder::Builder;
-use crate::scene::format::{DirectionFormat, LawFormat, MaterialFormat};
+use crate::scene::format::{DirectionFormat, LawFormat, MaterialFormat, PronyTermFormat};
 use mtled::geometry::Field;
-use mtled::material::{Isochoric, Law, ShapeEnergy, VolumetricTerm};
-use mtled::problem::Fibres;
+use mtled::material::{Isochoric, Law, PronySeries, PronyTerm, ShapeEnergy, VolumetricTerm};
+use mtled::problem::{ActiveStress, Fibres};
 
 impl Builder<'_> {
     /// A law of named constants, or `None` and a mistake.
@@ -47,35 +48,72 @@ impl Builder<'_> {
         self.accept(key, Isochoric::new(shape, bulk_modulus, volumetric))
     }
 
-    /// The fibres of a law that has some.
+    /// The fibres of a law or an active stress that has some.
     pub fn fibres(&mut self, key: &str, format: &MaterialFormat, law: &Law) -> Option<Fibres> {
-        let (any, sheets) = (law.has_fibres(), law.has_sheets());
-        let fibre = (&format.fibres, any, "laws with fibres");
-        let fibre = self.directions_for(&format!("{key}.fibres"), law, fibre);
+        let pulls = format.active_stress.is_some();
+        let of = if pulls && !law.has_fibres() { "active_stress" } else { "the law" };
+        let any = law.has_fibres() || pulls;
+        let fibre = (&format.fibres, any, "laws with fibres", of);
+        let fibre = self.directions_for(&format!("{key}.fibres"), any, fibre);
         // Sheets turn the frame of any law with fibres.
-        let sheet = (&format.sheets, sheets, "laws with fibres in sheets");
-        let sheet = self.directions_for(&format!("{key}.sheets"), law, sheet);
+        let sheet = (&format.sheets, law.has_sheets(), "laws with fibres in sheets", of);
+        let sheet = self.directions_for(&format!("{key}.sheets"), any, sheet);
         Some(Fibres { fibre: fibre?, sheet })
     }
 
-    /// Directions that a law with fibres may have, or must have where they are needed; `laws` are
-    /// those that they belong to.
+    /// Directions that a material with fibres may have, or must have where they are needed; `laws`
+    /// are those that they belong to.
     fn directions_for(
         &mut self,
         key: &str,
-        law: &Law,
-        (given, is_needed, laws): (&Option<DirectionFormat>, bool, &str),
+        has_fibres: bool,
+        (given, is_needed, laws, of): (&Option<DirectionFormat>, bool, &str, &str),
     ) -> Option<Field> {
         match given {
-            Some(given) if law.has_fibres() => return self.directions(key, given),
+            Some(given) if has_fibres => return self.directions(key, given),
             Some(_) => self.mistake(key, format!("belongs to {laws}; remove it")),
             None if is_needed => {
                 let example = "such as { direction = [1.0, 0.0, 0.0] }";
-                self.mistake(key, format!("is missing; the law needs it, {example}"));
+                self.mistake(key, format!("is missing; {of} needs it, {example}"));
             }
             None => {}
         }
         None
+    }
+
+    /// The viscosity of a material that has some.
+    pub fn viscosity(
+        &mut self,
+        key: &str,
+        format: &MaterialFormat,
+        law: &Law,
+    ) -> Option<PronySeries> {
+        let rows = format.prony.as_ref()?;
+        let key = format!("{key}.prony");
+        if !law.is_split() {
+            let name = LawFormat::WORDS[format.law as usize];
+            let message = format!(
+                "relaxes the isochoric stress, which {name} does not have: use \
+                 neo_hookean_isochoric, ogden, or a law with constants"
+            );
+            self.mistake(&key, message);
+            return None;
+        }
+        let term = |row: &PronyTermFormat| PronyTerm { g: row.g, tau: row.tau };
+        let terms: Vec<PronyTerm> = rows.iter().map(term).collect();
+        // One by one for the place of a mistake.
+        for (n, term) in terms.iter().enumerate() {
+            self.accept(&format!("{key}[{n}]"), term.check())?;
+        }
+        self.accept(key.trim_end_matches(".prony"), PronySeries::new(&terms))
+    }
+
+    /// What a material pulls with along its fibres.
+    pub fn active_stress(&mut self, key: &str, format: &MaterialFormat) -> Option<ActiveStress> {
+        let given = format.active_stress.as_ref()?;
+        let key = format!("{key}.active_stress");
+        let amplitude = self.amplitude(&format!("{key}.amplitude"), &given.amplitude);
+        Some(ActiveStress { tension: given.tension, amplitude })
     }
 
     fn directions(&mut self, key: &str, format: &DirectionFormat) -> Option<Field> {

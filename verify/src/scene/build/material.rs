@@ -8,7 +8,7 @@ use mtled::material::{
     NeoHookeanIsochoric, NeoHookeanLogJ, Ogden, OgdenTerm, OgdenTerms, StVenantKirchhoff,
     VolumetricTerm,
 };
-use mtled::problem::{Fibres, Region};
+use mtled::problem::Region;
 use std::collections::BTreeMap;
 
 const PAIRS: &str = "young_modulus and poisson_ratio, lame_modulus and shear_modulus, \
@@ -17,10 +17,9 @@ const PAIRS: &str = "young_modulus and poisson_ratio, lame_modulus and shear_mod
 impl Builder<'_> {
     /// Regions with their materials; one region for a body of one material.
     pub fn regions(&mut self, format: &CaseFormat) -> Vec<Region> {
-        let materials: BTreeMap<&str, Option<(Material, Option<Fibres>)>> =
-            (format.material.iter())
-                .map(|(name, material)| (name.as_str(), self.material(name, material)))
-                .collect();
+        let materials: BTreeMap<&str, Option<Region>> = (format.material.iter())
+            .map(|(name, material)| (name.as_str(), self.material(name, material)))
+            .collect();
         if materials.is_empty() {
             self.mistake("material", "is empty; the body needs a [material.NAME]");
         }
@@ -29,13 +28,7 @@ impl Builder<'_> {
                 let message = "has several entries; say with [[region]] where each of them is";
                 self.mistake("material", message);
             }
-            let material = materials.values().next().cloned().flatten();
-            return Vec::from_iter(material.map(|(material, fibres)| Region {
-                name: "body".to_string(),
-                part: Selector::All,
-                material,
-                fibres,
-            }));
+            return materials.into_values().next().flatten().into_iter().collect();
         }
         let rows = format.region.iter().enumerate();
         rows.filter_map(|(n, region)| {
@@ -46,17 +39,13 @@ impl Builder<'_> {
                 self.unknown_name(&format!("{key}.material"), "material", &region.material, &known);
             }
             let known = materials.get(region.material.as_str()).cloned().flatten();
-            let (material, fibres) = known?;
-            Some(Region { name: region.name.clone(), part: part?, material, fibres })
+            Some(Region { name: region.name.clone(), part: part?, ..known? })
         })
         .collect()
     }
 
-    fn material(
-        &mut self,
-        name: &str,
-        format: &MaterialFormat,
-    ) -> Option<(Material, Option<Fibres>)> {
+    /// A body of one material.
+    fn material(&mut self, name: &str, format: &MaterialFormat) -> Option<Region> {
         let key = format!("material.{name}");
         self.positive(&format!("{key}.density"), format.density);
         self.keys_of_law(&key, format);
@@ -89,8 +78,11 @@ impl Builder<'_> {
         };
         let before = self.count();
         let fibres = self.fibres(&key, format, &law);
+        let viscosity = self.viscosity(&key, format, &law);
+        let active = self.active_stress(&key, format);
         let material = Material { density: format.density, law };
-        (self.count() == before).then_some((material, fibres))
+        let body = Region::new("body", Selector::All, material);
+        (self.count() == before).then_some(Region { fibres, viscosity, active, ..body })
     }
 
     /// Refuses keys that belong to another law.
@@ -241,6 +233,7 @@ impl Builder<'_> {
                 MaterialError::BulkModulus { .. } => "lame_modulus",
                 MaterialError::OgdenTerms { .. } => "terms",
                 MaterialError::OgdenExponent { .. } => "alpha",
+                MaterialError::PronyTerms { .. } | MaterialError::PronySum { .. } => "prony",
                 _ => "poisson_ratio",
             };
             let message = error.to_string();

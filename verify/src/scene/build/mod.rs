@@ -16,7 +16,7 @@ use crate::scene::document::Document;
 use crate::scene::format::{CaseFormat, DimensionFormat};
 use crate::scene::problem_hash::problem_hash;
 use builder::Builder;
-use mtled::problem::{Dimension, Problem};
+use mtled::problem::{Dimension, Problem, Wrong};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::path::Path;
@@ -83,7 +83,7 @@ impl Builder<'_> {
         let obstacles = self.obstacles(&format.obstacle);
         let motion = self.motion(&format.time);
         self.names(format);
-        Some(Problem {
+        let problem = Problem {
             dimension: self.dimension,
             body: self.body.clone()?,
             regions,
@@ -92,7 +92,11 @@ impl Builder<'_> {
             loads,
             obstacles,
             motion,
-        })
+        };
+        // Each of the others has been refused where it stands.
+        let timeless = problem.check().into_iter().filter(|found| found.wrong == Wrong::NoTime);
+        self.refused(timeless.collect(), |_| "time.solver".into());
+        Some(problem)
     }
 
     fn dimension_of(&mut self, format: &CaseFormat) -> Dimension {

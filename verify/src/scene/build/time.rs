@@ -62,6 +62,7 @@ impl Builder<'_> {
         Motion::Newton(Newton {
             load_end: format.load_end.unwrap_or(preset.load_end),
             tolerance: format.tolerance.unwrap_or(preset.tolerance),
+            parts: format.parts.unwrap_or(preset.parts),
         })
     }
 
@@ -77,6 +78,7 @@ impl Builder<'_> {
             ("load_steps", format.load_steps.is_some(), is_static),
             ("tolerance", format.tolerance.is_some(), is_static),
             ("max_steps", format.max_steps.is_some(), is_static),
+            ("parts", format.parts.is_some(), is_static),
         ];
         let other = if is_static { "dynamic" } else { "static" };
         for (name, given, belongs) in keys {
@@ -303,6 +305,7 @@ fn relaxation(format: &TimeFormat) -> Relaxation {
         max_steps: format.max_steps.unwrap_or(preset.max_steps),
         step: step(format),
         mass: preset.mass,
+        parts: format.parts.unwrap_or(preset.parts),
     }
 }
 

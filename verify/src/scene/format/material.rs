@@ -1,6 +1,7 @@
 //! Constitutive laws and their parameters.
 
 use crate::scene::format::choice::choice;
+use crate::scene::format::conditions::AmplitudeFormat;
 use crate::scene::format::fibres::DirectionFormat;
 use mtled::material::VolumetricTerm;
 use schemars::JsonSchema;
@@ -39,10 +40,16 @@ pub struct MaterialFormat {
     /// Constants of yeoh, demiray and laws with fibres by their names in the formula [Pa, rad or –],
     /// such as { mu = 1000.0, b = 2.0 }; left out for other laws.
     pub constants: Option<BTreeMap<String, f64>>,
-    /// Directions of the fibres; left out for laws without.
+    /// Directions of the fibres, of a law or of an active stress; left out for others.
     pub fibres: Option<DirectionFormat>,
     /// Directions that lie in the sheets of the fibres; left out for laws without.
     pub sheets: Option<DirectionFormat>,
+    /// One to six terms of viscosity, by which the isochoric stress relaxes after a sudden strain to
+    /// its part 1 − Σ g (1 − e^(−t/tau)); the constants of the law are those of a sudden strain. Left
+    /// out where nothing relaxes.
+    pub prony: Option<Vec<PronyTermFormat>>,
+    /// What muscle pulls with along its fibres, whatever its strain; left out where nothing pulls.
+    pub active_stress: Option<ActiveStressFormat>,
     /// Volumetric energy of neo_hookean_isochoric, ogden and laws with constants; "quadratic" if left out.
     pub volumetric: Option<VolumetricFormat>,
 }
@@ -55,6 +62,27 @@ pub struct OgdenTermFormat {
     pub mu: f64,
     /// Exponent α [–], not 0; -4.7 for brain tissue.
     pub alpha: f64,
+}
+
+/// A term of viscosity.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PronyTermFormat {
+    /// The part of the isochoric stress that relaxes with it [–], positive; all sum to less than 1.
+    pub g: f64,
+    /// Its relaxation time [s], positive.
+    pub tau: f64,
+}
+
+/// The second Piola–Kirchhoff stress T f ⊗ f with the direction f of the fibres at rest.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ActiveStressFormat {
+    /// T at amplitude 1 [Pa].
+    pub tension: f64,
+    /// Factor over time; constant if left out.
+    #[serde(default)]
+    pub amplitude: AmplitudeFormat,
 }
 
 choice! {

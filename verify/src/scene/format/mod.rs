@@ -17,7 +17,7 @@ pub use conditions::{
 };
 pub use fibres::DirectionFormat;
 pub use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
-pub use material::{LawFormat, MaterialFormat, VolumetricFormat};
+pub use material::{LawFormat, MaterialFormat, PronyTermFormat, VolumetricFormat};
 pub use recipe::{
     BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientsFormat, GridFormat,
     MassFormat, MaterialBordersFormat, VolumetricProjectionFormat, WeightFunctionFormat,

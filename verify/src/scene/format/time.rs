@@ -7,8 +7,8 @@ use serde::Deserialize;
 use std::path::PathBuf;
 
 /// How the body moves. `end`, `damping` and `mass_scaling` belong to method "dynamic";
-/// `solver`, `load_end`, `load_steps`, `tolerance` and `max_steps` to "static".
-/// Solver "newton" takes `load_end` and `tolerance` only.
+/// `solver`, `load_end`, `load_steps`, `tolerance`, `max_steps` and `parts` to "static".
+/// Solver "newton" takes `load_end`, `tolerance` and `parts` only.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeFormat {
@@ -41,6 +41,9 @@ pub struct TimeFormat {
     pub tolerance: Option<f64>,
     /// A relaxation that needs more steps has failed; 200000 if left out.
     pub max_steps: Option<usize>,
+    /// Equal parts of the time between two corners of amplitudes in which a static run follows
+    /// materials with viscosity [–]; 20 if left out.
+    pub parts: Option<usize>,
 }
 
 choice! {

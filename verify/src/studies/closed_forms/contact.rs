@@ -40,7 +40,7 @@ const BALANCE: f64 = 1e-3;
 fn solvers() -> [(&'static str, Motion); 2] {
     let relaxation = Relaxation { tolerance: 1e-5, ..Relaxation::default() };
     [
-        ("newton", Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-6 })),
+        ("newton", Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-6, ..Newton::default() })),
         ("relaxation", Motion::Relaxed(relaxation)),
     ]
 }

@@ -107,12 +107,8 @@ fn problem(
     let body = Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(EDGE) };
     let mut problem = free_body(Dimension::Three, body, material(1.0)?, recipe);
     let shape = Shape::Sphere { centre: centre(), radius: ball.radius };
-    let own = Region {
-        name: "ball".into(),
-        part: Selector::Inside { shape, tolerance: 0.0 },
-        material: material(ball.stiffness_ratio)?,
-        fibres: None,
-    };
+    let part = Selector::Inside { shape, tolerance: 0.0 };
+    let own = Region::new("ball", part, material(ball.stiffness_ratio)?);
     problem.regions.insert(0, own);
     let ramp = Amplitude::Linear { duration: 1.0 };
     let exact = Field::of(move |X| ball.displacement(&(X - centre())));
@@ -120,7 +116,7 @@ fn problem(
         prescribed: Prescribed::Field(exact),
         ..EssentialCondition::on_surface("faces", Selector::All, Vector3::zeros(), ramp)
     }];
-    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-6 });
+    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance: 1e-6, ..Newton::default() });
     Ok(problem)
 }
 

@@ -270,12 +270,11 @@ fn column_problem(
     let foot = Selector::Plane { point: Vector3::zeros(), normal: Vector3::x(), tolerance: 1e-6 };
     Problem {
         dimension: Dimension::Three,
-        regions: vec![Region {
-            name: "column".into(),
-            part: Selector::All,
-            material: Material { density, law: Law::LinearElastic(LinearElastic::new(constants)) },
-            fibres: None,
-        }],
+        regions: vec![Region::new(
+            "column",
+            Selector::All,
+            Material { density, law: Law::LinearElastic(LinearElastic::new(constants)) },
+        )],
         conditions: vec![
             roller("foot", foot, [Some(0.0), None, None]),
             roller("sides", Selector::All, [None, Some(0.0), Some(0.0)]),

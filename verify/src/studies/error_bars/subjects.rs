@@ -284,7 +284,8 @@ fn made_up(bench: &Workbench, (name, text): (&str, &str), set: Set, cloud: u64) 
         finer.problem.recipe.scale_lengths(factor);
         if let Some(relaxation) = finer.problem.motion.relaxation() {
             let load_end = relaxation.load_end;
-            finer.problem.motion = Motion::Newton(Newton { load_end, tolerance: 1e-6 });
+            finer.problem.motion =
+                Motion::Newton(Newton { load_end, tolerance: 1e-6, ..Newton::default() });
         }
         Ok(solve_case(&finer)?.1)
     };

@@ -240,12 +240,9 @@ fn inclusions(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Resu
             let mut problem = bond(cube(nearly_incompressible(3000.0)?, spacing), -0.2);
             let centre = Vector3::z() * (0.5 * SIZE);
             let shape = Shape::Sphere { centre, radius: 0.25 * SIZE };
-            let region = Region {
-                name: "inclusion".into(),
-                part: Selector::Inside { shape, tolerance: 0.0 },
-                material: nearly_incompressible(3000.0 * factor)?,
-                fibres: None,
-            };
+            let part = Selector::Inside { shape, tolerance: 0.0 };
+            let material = nearly_incompressible(3000.0 * factor)?;
+            let region = Region::new("inclusion", part, material);
             problem.regions.insert(0, region);
             Ok(problem)
         };

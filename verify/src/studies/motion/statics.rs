@@ -117,7 +117,11 @@ fn jittered(bench: &Workbench, mut case: Case) -> Case {
 
 fn compare(case: &Case, name: &'static str, label: &'static str) -> Result<Compared> {
     let Some(&settings) = case.problem.motion.relaxation() else { bail!("the case is not static") };
-    let motion = Motion::Newton(Newton { load_end: settings.load_end, tolerance: RESIDUAL });
+    let motion = Motion::Newton(Newton {
+        load_end: settings.load_end,
+        tolerance: RESIDUAL,
+        ..Newton::default()
+    });
     let problem = Problem { motion, ..case.problem.clone() };
     let newton = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
     let preset = Motion::Static(Relaxation { tolerance: PRESET, ..settings });

@@ -28,7 +28,8 @@ fn stretched(dimension: Dimension) -> (Problem, Prepared, Frame) {
     let positions = prepared.discretisation.cloud.positions.iter();
     let displacement =
         positions.flat_map(|X| moved(X).into_iter().take(components)).collect::<Vec<_>>();
-    let frame = Frame { step: 0, time: 0.0, displacement, contact: Vec::new() };
+    let frame =
+        Frame { step: 0, time: 0.0, displacement, contact: Vec::new(), extra_stress: Vec::new() };
     (problem, prepared, frame)
 }
 
