@@ -6,7 +6,7 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 use std::marker::PhantomData;
 
 /// One number at eight quadrature points.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[repr(C, align(64))]
 pub struct SimdBlock(pub [f64; 8]);
 

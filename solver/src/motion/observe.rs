@@ -63,6 +63,12 @@ pub trait Observer {
         None
     }
 
+    /// Called after a step of a motion. Where it is true the run goes on as one does that is
+    /// continued from this state, bit for bit.
+    fn checkpoint(&mut self, _view: &View) -> bool {
+        false
+    }
+
     /// Called where a run begins again from its first state by another method.
     fn restart(&mut self) {}
 

@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::model::contact::Impacts;
 use crate::motion::internal_force::internal_force;
 use crate::motion::newton::{equilibrate, follow};
-use crate::motion::observe::{Continue, Observer, notify};
+use crate::motion::observe::{Continue, Observer, View, notify};
 use crate::motion::relaxation::relax;
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, Scheme, StepReport, add_pressures, external_force, step};
@@ -142,7 +142,7 @@ fn integrate(
     let mut buffers = Buffers::new(model, observer.tracks_work());
     let mut control = StepController::new(model, settings, state, &mut buffers)?;
     let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
-    let start = state.time;
+    let mut start = state.time;
     if !model.contact.obstacles.is_empty() && !state.contact.impacts.is_active() {
         state.contact.impacts = Impacts::new(&state.velocity, model.components);
     }
@@ -163,6 +163,11 @@ fn integrate(
         let progress = state.time / end;
         let jacobian = report.smallest_jacobian.jacobian;
         stopped = notify(model, state, jacobian, progress, observer) == Continue::Stop;
+        let view = View { model, state, smallest_jacobian: jacobian, progress };
+        if observer.checkpoint(&view) {
+            start = state.time;
+            control.renew(model, state, &mut buffers);
+        }
     }
     // A step evaluates J before it moves the nodes: the last state is still to be checked.
     let smallest_jacobian =

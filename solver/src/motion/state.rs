@@ -8,7 +8,7 @@ use crate::motion::extra_stress::ExtraState;
 use crate::motion::internal_force::{Workspace, internal_force};
 
 /// Displacements and velocities at one instant, and the work so far.
-#[derive(Debug)]
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
 pub struct State {
     /// Number of steps.
     pub step: usize,
@@ -24,6 +24,7 @@ pub struct State {
     pub force_factor: f64,
     /// Multipliers of the last step.
     pub constraint_forces: ConstraintForces,
+    #[serde(skip)]
     pub(crate) residual_scratch: ConstraintForces,
     /// Nodes in contact.
     pub contact: ContactState,
@@ -34,7 +35,7 @@ pub struct State {
 }
 
 /// Work up to t − Δt/2 \[J\]; accumulated on request only.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Work {
     /// By body forces and tractions.
     pub external: f64,
@@ -75,6 +76,14 @@ impl State {
             extra: self.extra.clone(),
             ..*self
         }
+    }
+
+    /// What keeps it from being a state of a model, if anything does: how many numbers it has and the
+    /// model needs.
+    pub fn misfit(&self, model: &Model) -> Option<(usize, usize)> {
+        let (sizes, size) = ([self.displacement.len(), self.velocity.len()], model.size());
+        let wrong = sizes.into_iter().find(|found| *found != size).map(|found| (found, size));
+        wrong.or_else(|| self.extra.misfit(model))
     }
 
     /// Has the extra stresses remember a static equilibrium.

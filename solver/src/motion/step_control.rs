@@ -75,6 +75,13 @@ pub(crate) struct StepController {
     summary: Summary,
 }
 
+/// By Lanczos from nothing, with the extra stresses of a state.
+fn critical_step(model: &Model, state: &State, buffers: &mut Buffers) -> CriticalStep {
+    let (u, t) = (&state.displacement, state.time);
+    state.extra.act(model, t, &mut buffers.workspace);
+    critical_time_step(model, u, t, None, &mut buffers.workspace)
+}
+
 impl StepController {
     pub fn new(
         model: &Model,
@@ -82,8 +89,8 @@ impl StepController {
         state: &State,
         buffers: &mut Buffers,
     ) -> Result<StepController, Error> {
-        let (u, t) = (&state.displacement, state.time);
-        let critical = critical_time_step(model, u, t, None, &mut buffers.workspace);
+        let critical = critical_step(model, state, buffers);
+        let u = &state.displacement;
         // A displacement that is no number ends the run where it is, as diverged.
         let can_step = critical.time_step > 0.0 || !u.iter().all(|u| u.is_finite());
         if !can_step {
@@ -120,6 +127,20 @@ impl StepController {
             },
             critical,
         })
+    }
+
+    /// Goes on as a new one would.
+    pub fn renew(&mut self, model: &Model, state: &State, buffers: &mut Buffers) {
+        self.critical = critical_step(model, state, buffers);
+        if self.control.fixed.is_none() {
+            self.time_step = self.control.safety_factor * self.critical.time_step;
+        }
+        self.summary.lanczos_evaluations += self.critical.products;
+        self.growth = None;
+        self.checks = (CHECK_INTERVALS.0, 1);
+        self.changed = false;
+        self.stage = model.constraints.stage(state.time);
+        self.since = 0;
     }
 
     /// Runs Lanczos again where that is due, and when conditions are released.

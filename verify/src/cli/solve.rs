@@ -3,7 +3,9 @@
 use super::common::{Common, INCONCLUSIVE, STOPPED};
 use super::load::{SetArgs, located};
 use super::progress::progress_bar;
-use crate::run::{Failed, Finished, PAGE_FILE, audit_doubts, load, prepare_to_run, solve_recorded};
+use crate::run::{
+    Failed, Finished, PAGE_FILE, SavedState, audit_doubts, load, prepare_to_run, solve_recorded,
+};
 use crate::scene::Case;
 use clap::Args;
 use mtled::error::Error;
@@ -23,6 +25,10 @@ pub struct SolveArgs {
     /// earlier run [default: reports/<case>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Go on with a motion from a state that `output.states` of its case has written: the bits are
+    /// those of the run that wrote it. Loads and times may be others.
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
     /// Leave out the error bars, which take coarser clouds and up to a third of the time of the
     /// run.
     #[arg(long)]
@@ -34,7 +40,7 @@ pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
     let preset = || PathBuf::from("reports").join(file_name(&case.name));
     let out = arguments.out.clone().unwrap_or_else(preset);
     ensure_writable(&out)?;
-    match solve_to(&case, &out, !arguments.no_error_bar, common) {
+    match solve_to(&case, &out, arguments, common) {
         Ok(code) => code,
         Err(error) => Err(located(&case, &error)),
     }
@@ -43,10 +49,16 @@ pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
 fn solve_to(
     case: &Case,
     out: &Path,
-    with_bars: bool,
+    arguments: &SolveArgs,
     common: &Common,
 ) -> Result<anyhow::Result<u8>, Error> {
-    let prepared = prepare_to_run(&case.problem)?;
+    let mut prepared = prepare_to_run(&case.problem)?;
+    if let Some(file) = &arguments.from {
+        match SavedState::read(file, &case.problem, &prepared.model) {
+            Ok(saved) => prepared.start = Some(saved),
+            Err(error) => return Ok(Err(error)),
+        }
+    }
     for doubt in case.notes.iter().cloned().chain(prepared.doubts(&case.problem)) {
         common.warn(doubt);
     }
@@ -59,7 +71,7 @@ fn solve_to(
         }
         Continue::Yes
     };
-    let outcome = solve_recorded(case, prepared, with_bars, &show);
+    let outcome = solve_recorded(case, prepared, !arguments.no_error_bar, &show);
     bar.finish_and_clear();
     match outcome {
         Ok(finished) => Ok(finish(case, &finished, out, common)),

@@ -1,5 +1,6 @@
 //! From a problem to its discretisation and model.
 
+use super::saved_state::SavedState;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::{Discretisation, Warning};
 use mtled::error::Error;
@@ -22,12 +23,20 @@ pub struct Prepared {
     /// Wall time of the set-up \[s\].
     pub setup_seconds: f64,
     contact_surface: OnceLock<ContactSurface>,
+    /// From which a motion goes on, where it does not begin at rest.
+    pub start: Option<SavedState>,
 }
 
 impl Prepared {
     /// What was discretised in `setup_seconds` \[s\].
     pub fn new(discretisation: Discretisation, model: Model, setup_seconds: f64) -> Prepared {
-        Prepared { discretisation, model, setup_seconds, contact_surface: OnceLock::new() }
+        Prepared {
+            discretisation,
+            model,
+            setup_seconds,
+            contact_surface: OnceLock::new(),
+            start: None,
+        }
     }
 
     /// What contact pressures are found with, made when first wanted; nothing without obstacles.

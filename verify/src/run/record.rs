@@ -3,6 +3,7 @@
 use super::interrupt::interrupted;
 use super::prepare::Prepared;
 use super::probes::{MassCentre, centres_of_mass};
+use super::saved_state::SavedState;
 use crate::scene::{Case, ProbeKind};
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
@@ -21,6 +22,8 @@ pub struct Recording {
     pub samples: Vec<Sample>,
     /// In the order of time.
     pub frames: Vec<Frame>,
+    /// States from which a motion can be continued.
+    pub states: Vec<SavedState>,
     /// The motion in which the body is unstable, if it is \[component of node\] \[–\].
     pub unstable_mode: Option<Vec<f64>>,
 }
@@ -123,6 +126,9 @@ pub struct Recorder<'a> {
     /// At which a frame and a sample are taken, and how many of them have been \[s\].
     times: Vec<f64>,
     reached: usize,
+    /// At which states are saved \[s\].
+    saves: Vec<f64>,
+    states: Vec<SavedState>,
     progress: Option<&'a dyn Fn(f64, usize) -> Continue>,
 }
 
@@ -151,6 +157,10 @@ impl<'a> Recorder<'a> {
                 }
             }
         }
+        let start = prepared.start.as_ref().map_or(0.0, |saved| saved.time);
+        let left = |times: &[f64]| -> Vec<f64> {
+            times.iter().copied().filter(|time| start < FULL * time).collect()
+        };
         Ok(Recorder {
             probes,
             components: prepared.model.components,
@@ -160,8 +170,10 @@ impl<'a> Recorder<'a> {
             samples: Series::new(case.outputs.history.max(1)),
             // Besides those at given times only the first state and the last.
             frames: Series::new(if case.outputs.times.is_empty() { frames } else { frames.min(1) }),
-            times: case.outputs.times.clone(),
+            times: left(&case.outputs.times),
             reached: 0,
+            saves: left(&case.outputs.states),
+            states: Vec::new(),
             progress: None,
         })
     }
@@ -174,8 +186,9 @@ impl<'a> Recorder<'a> {
 
     /// The recording.
     pub fn finish(self) -> Recording {
-        let Recorder { references, samples, frames, .. } = self;
-        Recording { references, samples: samples.kept, frames: frames.kept, unstable_mode: None }
+        let Recorder { references, samples, frames, states, .. } = self;
+        let (samples, frames) = (samples.kept, frames.kept);
+        Recording { references, samples, frames, states, unstable_mode: None }
     }
 
     /// Whether the run is to end.
@@ -213,8 +226,11 @@ impl<'a> Recorder<'a> {
 impl Observer for Recorder<'_> {
     fn observe(&mut self, view: &mut View) -> Continue {
         let stop = self.is_stopped(view.progress, view.state.step);
-        let asked = self.awaited_time().is_some_and(|time| view.state.time >= FULL * time);
-        self.reached += asked as usize;
+        let before = self.reached;
+        while self.times.get(self.reached).is_some_and(|time| view.state.time >= FULL * time) {
+            self.reached += 1;
+        }
+        let asked = self.reached > before;
         let frame_due = self.frames.is_due(view.progress, stop);
         let sample_due = self.samples.is_due(view.progress, stop);
         let frame = frame_due || (asked && self.frames.parts > 0);
@@ -245,7 +261,19 @@ impl Observer for Recorder<'_> {
     }
 
     fn awaited_time(&self) -> Option<f64> {
-        self.times.get(self.reached).copied()
+        let save = self.saves.get(self.states.len());
+        let next = [self.times.get(self.reached), save].into_iter().flatten().copied();
+        next.reduce(f64::min)
+    }
+
+    fn checkpoint(&mut self, view: &View) -> bool {
+        let due = |saved: usize| self.saves.get(saved).is_some_and(|t| view.state.time >= FULL * t);
+        if !due(self.states.len()) {
+            return false;
+        }
+        let saved = SavedState::new(view.model, view.state);
+        self.states.extend(saved.ok());
+        true
     }
 
     fn restart(&mut self) {

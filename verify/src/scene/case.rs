@@ -110,6 +110,8 @@ pub struct Outputs {
     /// Times at which a step ends and a frame and a sample are taken, increasing \[s\]; where
     /// there are none, frames are taken at equal parts of the progress.
     pub times: Vec<f64>,
+    /// Times at which a step ends and the state of a motion is written, increasing \[s\].
+    pub states: Vec<f64>,
     /// Number of samples of histories.
     pub history: usize,
     /// Moments of reactions are taken about this point \[m\].

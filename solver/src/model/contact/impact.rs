@@ -10,7 +10,7 @@ use crate::problem::Friction;
 /// A lumped node that meets a rigid obstacle stops at once, and half of its mass times the
 /// square of its normal velocity is gone, however small the step; it falls with the spacing
 /// alone. Here that energy stays with the node as if in a stiff spring.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Impacts {
     /// Velocities before the step \[component of node\] \[m/s\].
     before: Vec<f64>,
@@ -31,7 +31,7 @@ pub struct Impacts {
 }
 
 /// What an obstacle keeps of a node.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 struct Kept {
     obstacle: u32,
     node: u32,

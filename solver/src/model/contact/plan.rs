@@ -34,7 +34,7 @@ pub struct ContactPlan {
 pub(crate) type Components = [bool; 3];
 
 /// What an obstacle exerts on a node.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactForce {
     /// Index of the obstacle.
     pub obstacle: u32,

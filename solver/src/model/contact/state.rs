@@ -7,7 +7,7 @@ use crate::algebra::tensor::{Vector3, vector_at};
 use crate::problem::Friction;
 
 /// The state of contact, which evolves from step to step.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct ContactState {
     /// (obstacle, node) pairs that may touch before the next search.
     candidates: Vec<(u32, u32)>,

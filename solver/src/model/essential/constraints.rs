@@ -82,14 +82,17 @@ impl ConstraintSet {
 }
 
 /// Multipliers of the last enforcement, and scratch memory.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct ConstraintForces {
     /// \[set\]\[row\] \[kg·m\], the sets of `stage`.
     pub(super) multipliers: Vec<Vec<f64>>,
     pub(super) stage: usize,
+    #[serde(skip)]
     states: Vec<ConditionState>,
     /// Of sets with the same nodes, one after the other.
+    #[serde(skip)]
     values: Vec<f64>,
+    #[serde(skip)]
     scratch: Scratch,
 }
 

@@ -10,14 +10,14 @@ use crate::motion::kernel::{ENTRIES, ExtraStress, Found, Symmetric};
 
 /// Extra stresses of all blocks at the last time that was remembered; nothing where no material
 /// has any.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct ExtraState {
     blocks: Vec<Option<BlockState>>,
     /// From the time that is remembered to that of the forces to come \[s\].
     pub(crate) interval: f64,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct BlockState {
     /// H_i of each term of the Prony series (method book, eq. 3.24) \[term\]\[SIMD block\] \[Pa\].
     branches: Vec<Vec<Symmetric>>,
@@ -108,6 +108,17 @@ impl ExtraState {
         }
         let state = |block: &Block| block.has_extra_stress().then(|| BlockState::new(block));
         ExtraState { blocks: model.blocks.iter().map(state).collect(), interval: 0.0 }
+    }
+
+    /// As of [`State`](crate::motion::state::State::misfit).
+    pub(crate) fn misfit(&self, model: &Model) -> Option<(usize, usize)> {
+        let sizes = |state: &ExtraState| -> Vec<(usize, usize)> {
+            let size = |b: &BlockState| (b.before.len(), b.branches.iter().map(Vec::len).sum());
+            state.blocks.iter().map(|b| b.as_ref().map_or((0, 0), size)).collect()
+        };
+        let (found, needed) = (sizes(self), sizes(&ExtraState::new(model)));
+        let sum = |sizes: &[(usize, usize)]| sizes.iter().map(|(a, b)| a + b).sum();
+        (found != needed).then(|| (sum(&found), sum(&needed)))
     }
 
     /// Has the extra stresses of time `t` \[s\] act in forces and products to come: in the interval

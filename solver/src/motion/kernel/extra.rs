@@ -29,7 +29,7 @@ pub struct ExtraStress {
 }
 
 /// The state of eight points.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub struct Found {
     /// The isochoric part of the law's second Piola–Kirchhoff stress \[Pa\].
     pub isochoric: Symmetric,

@@ -119,8 +119,8 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
 ) {
     f.clear::<D>(block.nodes.len());
     scratch.smallest = (f64::INFINITY, 0);
-    let Scratch { smallest, patches, linearised, tangents, deformation, stress, extra, .. } =
-        scratch;
+    let Scratch { smallest, patches, linearised, tangents, extra, .. } = scratch;
+    let (deformation, stress) = (&mut scratch.deformation, &mut scratch.stress);
     let (jacobian, pressure) = (&mut scratch.jacobians, &mut scratch.pressures);
     let is_known = R::SLOPES && tangents.are_worth(block);
     for (patch, Chunk { lanes, groups }) in block.chunks.iter().enumerate() {
@@ -139,8 +139,7 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
         let projection = block.projection.as_ref();
         let frames = block.frames.get(groups.clone()).unwrap_or(&[]);
         with_law!(&block.law, law => {
-            let extra = extra.as_mut().map(|extra| (extra, groups.start));
-            let mut at = At { law, frames, extra };
+            let mut at = At { law, frames, extra: extra.as_mut().map(|own| (own, groups.start)) };
             if is_known {
                 let work = (&mut *deformation, &mut *stress, &mut *jacobian);
                 tangents.multiply::<S, R, _>(simd, at.again(), groups.clone(), work);

@@ -79,5 +79,6 @@ class Output:
 
     frames: int | None = None
     times_s: Sequence[float] | None = None
+    states_s: Sequence[float] | None = None
     history: int | None = None
     moment_about_m: Triple | None = None

@@ -2,12 +2,12 @@
 #![allow(non_snake_case)]
 
 use super::node_fields::NodeFields;
+use super::vtu::{PointArray, Stored, VtuCells, VtuFrame};
 use crate::display::{DisplayMesh, Mesh, display_mesh};
 use crate::picture::{Body, Field};
 use crate::run::contact::contact_gaps;
 use crate::run::prepare::Prepared;
 use crate::run::record::Frame;
-use crate::run::vtu::{PointArray, Stored, VtuCells, VtuFrame};
 use anyhow::Result;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Rows;

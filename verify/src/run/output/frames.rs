@@ -4,12 +4,12 @@
 
 use super::body::BodyFrames;
 use super::node_fields::{NodeFields, field_at_nodes};
+use super::vtu::{Order, PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::picture::Body;
 use crate::run::contact::contact_gaps;
 use crate::run::error_bar::Indicator;
 use crate::run::prepare::Prepared;
 use crate::run::record::{Frame, Recording};
-use crate::run::vtu::{Order, PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::scene::Case;
 use anyhow::Result;
 use mtled::problem::Motion;

@@ -6,12 +6,14 @@ mod earlier;
 mod frames;
 mod history;
 mod node_fields;
+pub mod vtu;
 
 use super::error_bar::Indicator;
 use super::page::run_page;
 use super::prepare::Prepared;
 use super::record::Recording;
 use super::result::failed_json;
+use super::saved_state::write_states;
 use super::solve::Solved;
 use super::stored_field::StoredField;
 use crate::picture::Body;
@@ -87,6 +89,7 @@ fn write_recorded(
     remove_earlier_run(dir)?;
     let frames = write_frames(case, prepared, record, indicator, dir)?;
     write_atomically(&dir.join("history.csv"), history_csv(case, record)?.as_bytes())?;
+    write_states(&record.states, dir)?;
     frames.write_collections(case, dir)?;
     Ok(frames.last)
 }

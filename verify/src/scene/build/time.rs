@@ -259,11 +259,16 @@ impl Builder<'_> {
 
     pub fn outputs(&mut self, format: &OutputFormat, time: &TimeFormat) -> Outputs {
         let times = format.times.clone().unwrap_or_default();
-        self.check_times(&times, format, time);
+        let states = format.states.clone().unwrap_or_default();
+        let both = format.times.is_some() && format.frames.is_some();
+        self.refuse_if(both, "output.times", "takes the place of output.frames: give one");
+        self.check_times("output.times", format.times.as_deref(), time);
+        self.check_times("output.states", format.states.as_deref(), time);
         let outputs = Outputs {
             // With one more for the end.
             frames: format.times.as_ref().map_or(format.frames.unwrap_or(20), |t| t.len() + 1),
             times,
+            states,
             history: format.history.unwrap_or(200),
             moment_about: Vector3::from(format.moment_about.unwrap_or_default()),
         };
@@ -273,12 +278,8 @@ impl Builder<'_> {
         outputs
     }
 
-    fn check_times(&mut self, times: &[f64], format: &OutputFormat, time: &TimeFormat) {
-        if format.times.is_none() {
-            return;
-        }
-        let key = "output.times";
-        self.refuse_if(format.frames.is_some(), key, "takes the place of output.frames: give one");
+    fn check_times(&mut self, key: &str, times: Option<&[f64]>, time: &TimeFormat) {
+        let Some(times) = times else { return };
         self.refuse_if(times.is_empty(), key, "is empty; it needs at least one time");
         let is_static = matches!(time.method, MethodFormat::Static);
         self.refuse_if(

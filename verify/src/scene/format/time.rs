@@ -120,6 +120,9 @@ pub struct OutputFormat {
     /// step ends at each, and a sample of histories is taken too; the first state and the last
     /// are frames as well. For method "dynamic": increasing, above 0 and at most `time.end`.
     pub times: Option<Vec<f64>>,
+    /// Times at which the state of a motion is written [s], as state_1.json and so on, from which
+    /// `mtled solve --from` goes on with it; none if left out. As `times` for the rest.
+    pub states: Option<Vec<f64>>,
     /// Number of samples of histories; 200 if left out.
     pub history: Option<usize>,
     /// Moments of reactions are taken about this point [m]; the origin if left out.

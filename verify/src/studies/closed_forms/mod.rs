@@ -1,6 +1,7 @@
 //! Problems with a closed form.
 
 mod contact;
+mod extra_stress;
 mod inclusion;
 mod motion;
 mod results;
@@ -12,6 +13,7 @@ use crate::scene::Case;
 use crate::specimens::simple::relaxation;
 use crate::specimens::spacing::spacing_of;
 use crate::studies::closed_forms::contact::contact;
+use crate::studies::closed_forms::extra_stress::extra_stress;
 use crate::studies::closed_forms::inclusion::inclusions;
 use crate::studies::closed_forms::motion::{swing, wave};
 use crate::studies::closed_forms::results::Results;
@@ -39,6 +41,7 @@ pub fn closed_forms(bench: &Workbench, study: &mut Study) -> Result<()> {
     column(&bar, &mut results)?;
     swing(&mut results)?;
     contact(bench, &mut results)?;
+    extra_stress(&mut results)?;
     study.checks.append(&mut results.checks);
     study.notes.push(
         "Two cells per spacing here, instead of the default 1.26: with plain gradients the quadrature \

@@ -1,4 +1,5 @@
 //! Bodies whose critical step is measured.
+#![allow(non_snake_case)]
 
 use crate::specimens::simple::{
     PLANE, SIZE, block_shape, bonded_face, free_body, recipe, relaxation, sphere_shape, tissue,
@@ -6,9 +7,12 @@ use crate::specimens::simple::{
 use crate::studies::workbench::Workbench;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
+use mtled::material::{
+    Guccione, HolzapfelGasserOgden, Isochoric, Law, ShapeEnergy, VolumetricTerm,
+};
 use mtled::problem::{
-    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, MassRule, Problem, Refinement,
-    RelaxationMass,
+    Amplitude, BackgroundGrid, Basis, Cloud, Dimension, Fibres, Field, MassRule, Problem,
+    Refinement, RelaxationMass,
 };
 
 /// A problem whose largest stable step is measured.
@@ -73,6 +77,12 @@ pub fn specimens(bench: &Workbench) -> anyhow::Result<Vec<Specimen>> {
         }),
         specimen("cube-bonded", "cube, two faces bonded", cube(0.3)?, bond),
     ];
+    for (id, label, law) in [
+        ("cube-muscle", "cube of muscle, fibres turning", muscle()?),
+        ("cube-artery", "cube of artery, fibres turning", artery()?),
+    ] {
+        list.push(specimen(id, label, cube(0.3)?, |p| with_fibres(p, law)));
+    }
     let mut soft = cube(0.3)?;
     soft.regions[0].material = tissue(0.3)?;
     list.push(specimen("cube-compressible", "cube, ν = 0.3", soft, |_| ()));
@@ -99,6 +109,27 @@ fn add_deformed(list: &mut Vec<Specimen>, cube: &Problem) {
         let deformed = specimen(id, label, cube.clone(), |p| stretch(p, fraction));
         list.push(Specimen { deformed: true, ..deformed });
     }
+}
+
+/// Guccione's law with the constants of Land et al. 2015, problem 1, fifty times as stiff against a
+/// change of volume.
+fn muscle() -> anyhow::Result<Law> {
+    let shape = Guccione::new(&[2000.0, 8.0, 2.0, 4.0])?;
+    Ok(Law::Guccione(Isochoric::new(shape, 1e5, VolumetricTerm::Quadratic)?))
+}
+
+/// Two families of fibres at ± 0.6 from the direction that is given.
+fn artery() -> anyhow::Result<Law> {
+    let shape = HolzapfelGasserOgden::new(&[3000.0, 2000.0, 0.8, 0.1, 0.6])?;
+    Ok(Law::HolzapfelGasserOgden(Isochoric::new(shape, 1.5e5, VolumetricTerm::Quadratic)?))
+}
+
+/// Fibres that turn by a right angle from face to face.
+fn with_fibres(problem: &mut Problem, law: Law) {
+    let angle = |X: &Vector3| 0.5 * std::f64::consts::PI * X.z / SIZE;
+    let fibre = Field::of(move |X: &Vector3| Vector3::new(angle(X).cos(), angle(X).sin(), 0.2));
+    problem.regions[0].material.law = law;
+    problem.regions[0].fibres = Some(Fibres { fibre, sheet: Some(Vector3::z().into()) });
 }
 
 fn bond(problem: &mut Problem) {
