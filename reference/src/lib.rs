@@ -69,6 +69,57 @@ with_fibres! {
     "muscle_block"
 }
 
+/// A problem that others have published, with its numbers.
+#[derive(Debug)]
+pub struct Published {
+    /// Name of its folder.
+    pub name: &'static str,
+    /// (name, text) of its case files; others are bundled cases or bodies with fibres.
+    pub cases: &'static [(&'static str, &'static str)],
+    /// Text of its `numbers.toml`.
+    pub numbers: &'static str,
+}
+
+/// Includes the files of published problems.
+macro_rules! published {
+    ($($name:literal: $($case:literal)*;)*) => {
+        /// The problems in `published`.
+        pub static PUBLISHED: &[Published] = &[$(Published {
+            name: $name,
+            cases: &[$((
+                $case,
+                include_str!(concat!("../published/", $name, "/", $case, ".toml")),
+            )),*],
+            numbers: include_str!(concat!("../published/", $name, "/numbers.toml")),
+        }),*];
+    };
+}
+
+published! {
+    "bending_column": "case";
+    "cantilever_vibration": "load_50" "load_80";
+    "cook_membrane":;
+    "curved_cantilever": "case";
+    "elastica": "load_1" "load_10" "load_5";
+    "euler_column": "above" "below" "far_above";
+    "l_block": "case";
+    "land_1":;
+    "land_2": "case";
+    "plate_strip": "case";
+    "reese_block": "load_20" "load_40" "load_60" "load_80";
+    "rubber_seal": "half_stroke" "whole_stroke";
+    "spinning_cube": "case";
+    "thick_cylinder": "demiray" "neo_hookean" "yeoh";
+    "thick_sphere": "demiray" "mooney_rivlin" "neo_hookean";
+    "turek_hron":;
+    "twisted_beam": "along_y" "along_z";
+    "uniaxial_energy": "case";
+}
+
+/// (file, text) of the surfaces that their cases name.
+pub static PUBLISHED_SURFACES: &[(&str, &str)] =
+    &[("twisted_beam.obj", include_str!("../published/twisted_beam/twisted_beam.obj"))];
+
 /// (file, bytes) of the label maps in `brain`.
 pub static LABEL_MAPS: &[(&str, &[u8])] = &[
     ("brain.nrrd", include_bytes!("../brain/brain.nrrd")),

@@ -90,6 +90,13 @@ pub const STUDIES: &[Definition] = &[
         body: comparison::fibres::fibres,
     },
     Definition {
+        id: "published",
+        title: "Problems of others",
+        claim: "What others have computed or derived is met within their spread and a stated tolerance, or \
+                the table says by how much it is missed.",
+        body: comparison::published::published,
+    },
+    Definition {
         id: "manufactured",
         title: "Manufactured solutions",
         claim: "Fields of finite strain are recovered from their body forces and boundary values; \

@@ -10,6 +10,7 @@ mod cut_drawings;
 pub mod fibres;
 pub mod held_patches;
 mod limits;
+pub mod published;
 mod tables;
 
 use crate::accuracy::Group;

@@ -1,0 +1,124 @@
+//! Tables of the published problems.
+
+use super::Solved;
+use super::numbers::Number;
+use mtled_checks::report::four_digits;
+use mtled_checks::study::{Cell, Table, number, text};
+
+/// One published number beside one run.
+pub struct Row {
+    pub problem: String,
+    pub case: String,
+    pub spacing: f64,
+    pub nodes: usize,
+    /// Whether the spacing is that of the case file.
+    pub is_own: bool,
+    /// Ours, or why there is none.
+    pub ours: Result<f64, String>,
+    /// Our own error bar, or words.
+    pub bar: String,
+}
+
+fn verdict(number: &Number, ours: &Result<f64, String>) -> String {
+    match ours {
+        Err(reason) => format!("no answer: {reason}"),
+        Ok(ours) if number.difference(*ours) <= number.bound() => "met".into(),
+        Ok(_) => "missed".into(),
+    }
+}
+
+/// Every number beside every run.
+pub fn numbers_table(rows: &[(Row, &Number)]) -> Table {
+    let line = |(row, number): &(Row, &Number)| {
+        let ours = row.ours.clone().unwrap_or(f64::NAN);
+        vec![
+            Cell::Text(row.problem.clone()),
+            Cell::Text(row.case.clone()),
+            Cell::Text(number.name.clone()),
+            Cell::Number(number.value),
+            Cell::Number(number.spread),
+            Cell::Text(number.unit.clone()),
+            Cell::Text(number.by.words().into()),
+            Cell::Number(row.spacing),
+            Cell::Number(row.nodes as f64),
+            Cell::Number(ours),
+            Cell::Text(row.bar.clone()),
+            Cell::Number(100.0 * number.difference(ours)),
+            Cell::Number(100.0 * number.bound()),
+            Cell::Text(verdict(number, &row.ours)),
+        ]
+    };
+    Table {
+        title: "Published numbers beside ours".into(),
+        columns: vec![
+            text("problem"),
+            text("case"),
+            text("number"),
+            number("published", ""),
+            number("±", ""),
+            text("unit"),
+            text("by"),
+            number("spacing", "m"),
+            number("nodes", ""),
+            number("ours", ""),
+            text("our error bar"),
+            number("difference", "%"),
+            number("bound", "%"),
+            text("verdict"),
+        ],
+        rows: rows.iter().map(line).collect(),
+    }
+}
+
+/// Where the numbers come from.
+pub fn sources_table(rows: &[(Row, &Number)]) -> Table {
+    let line = |(row, number): &(Row, &Number)| {
+        let cell = |text: &str| Cell::Text(text.into());
+        vec![
+            cell(&row.problem),
+            cell(&row.case),
+            cell(&number.name),
+            cell(number.by.words()),
+            cell(&number.source),
+            cell(&number.licence),
+        ]
+    };
+    Table {
+        title: "Sources of the numbers".into(),
+        columns: ["problem", "case", "number", "by", "source", "licence of the data"]
+            .map(text)
+            .into(),
+        rows: rows.iter().filter(|(row, _)| row.is_own).map(line).collect(),
+    }
+}
+
+/// What every run costs.
+pub fn costs_table(runs: &[Solved]) -> Table {
+    let line = |run: &Solved| {
+        vec![
+            Cell::Text(run.problem.clone()),
+            Cell::Text(run.case.name.clone()),
+            Cell::Number(run.spacing),
+            Cell::Number(run.nodes as f64),
+            Cell::Number(run.cpu),
+            Cell::Text(run.remark()),
+        ]
+    };
+    Table {
+        title: "Cost of the runs on one thread, set-up included".into(),
+        columns: vec![
+            text("problem"),
+            text("case"),
+            number("spacing", "m"),
+            number("nodes", ""),
+            number("CPU time", "s"),
+            text("what the run says"),
+        ],
+        rows: runs.iter().map(line).collect(),
+    }
+}
+
+/// A bar as text.
+pub fn bar_text(bar: f64) -> String {
+    format!("± {}", four_digits(bar))
+}
