@@ -2,56 +2,19 @@
 
 mod answers;
 mod numbers;
+mod runs;
 mod tables;
 
 use self::answers::answer;
 use self::numbers::{By, Number, Problem, case, problems, unpack};
-use self::tables::{Row, bar_text, costs_table, numbers_table, sources_table};
+use self::runs::{Plan, Solved, solved};
+use self::tables::{Row, costs_table, numbers_table, sources_table};
 use crate::machine::on_threads;
-use crate::run::{Recording, error_bars, solve_case};
-use crate::scene::Case;
 use crate::specimens::spacing::{respaced, spacing_of};
 use crate::studies::workbench::{Suite, Workbench, relative_error};
 use anyhow::{Context, Result};
-use cpu_time::ThreadTime;
-use mtled::problem::Motion;
 use mtled_checks::study::{Bound, Check, Kind, Study};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
-
-/// A run that is to be done.
-struct Plan {
-    problem: String,
-    case: Case,
-    spacing: f64,
-    is_own: bool,
-}
-
-/// A run that was done.
-pub struct Solved {
-    problem: String,
-    case: Case,
-    spacing: f64,
-    is_own: bool,
-    nodes: usize,
-    /// CPU time of set-up and solution \[s\].
-    cpu: f64,
-    /// Samples, or why there are none.
-    record: Result<Recording, String>,
-    /// Reasons to doubt it.
-    doubts: Vec<String>,
-    /// Our own error bars by quantity, in words where there is none.
-    bars: BTreeMap<String, String>,
-}
-
-impl Solved {
-    fn remark(&self) -> String {
-        match &self.record {
-            Err(reason) => format!("no answer: {reason}"),
-            Ok(_) => self.doubts.join("; "),
-        }
-    }
-}
 
 /// Solves every problem at the spacing of its cases, in the full suite at three.
 pub fn published(bench: &Workbench, study: &mut Study) -> Result<()> {
@@ -81,33 +44,6 @@ pub fn published(bench: &Workbench, study: &mut Study) -> Result<()> {
         .map(|plan| on_threads(1, || solved(plan, with_bars)).context("a pool of one thread"))
         .collect::<Result<Vec<Solved>>>()?;
     report(bench, study, &runs, &problems)
-}
-
-/// Solves a case on one thread, whose time is measured.
-fn solved(plan: Plan, with_bars: bool) -> Solved {
-    let Plan { problem, case, spacing, is_own } = plan;
-    let start = ThreadTime::now();
-    let run = solve_case(&case);
-    let cpu = start.elapsed().as_secs_f64();
-    let mut bars = BTreeMap::new();
-    let (nodes, record, doubts) = match run {
-        Err(error) => (0, Err(error.to_string()), Vec::new()),
-        Ok((solved, record)) => {
-            if with_bars && is_own && matches!(case.problem.motion, Motion::Static { .. }) {
-                let estimated = error_bars(&case, &solved, &record, false);
-                if let Ok(estimated) = estimated {
-                    for bar in &estimated.bars {
-                        let text =
-                            bar.size.as_ref().map_or_else(|_| "none".into(), |b| bar_text(*b));
-                        bars.insert(bar.quantity.name.clone(), text);
-                    }
-                }
-            }
-            let nodes = solved.prepared.discretisation.cloud.positions.len();
-            (nodes, Ok(record), solved.doubts())
-        }
-    };
-    Solved { problem, case, spacing, is_own, nodes, cpu, record, doubts, bars }
 }
 
 /// Tables and checks of all runs.

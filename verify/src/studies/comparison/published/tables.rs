@@ -1,8 +1,7 @@
 //! Tables of the published problems.
 
-use super::Solved;
 use super::numbers::Number;
-use mtled_checks::report::four_digits;
+use super::runs::Solved;
 use mtled_checks::study::{Cell, Table, number, text};
 
 /// One published number beside one run.
@@ -116,9 +115,4 @@ pub fn costs_table(runs: &[Solved]) -> Table {
         ],
         rows: runs.iter().map(line).collect(),
     }
-}
-
-/// A bar as text.
-pub fn bar_text(bar: f64) -> String {
-    format!("± {}", four_digits(bar))
 }
