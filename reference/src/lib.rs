@@ -116,8 +116,8 @@ published! {
     "uniaxial_energy": "case";
 }
 
-/// (file, text) of the surfaces that their cases name.
-pub static PUBLISHED_SURFACES: &[(&str, &str)] =
+/// (file, text) of what their cases name.
+pub static PUBLISHED_FILES: &[(&str, &str)] =
     &[("twisted_beam.obj", include_str!("../published/twisted_beam/twisted_beam.obj"))];
 
 /// (file, bytes) of the label maps in `brain`.

@@ -44,9 +44,8 @@ pub struct MaterialFormat {
     pub fibres: Option<DirectionFormat>,
     /// Directions that lie in the sheets of the fibres; left out for laws without.
     pub sheets: Option<DirectionFormat>,
-    /// One to six terms of viscosity, by which the isochoric stress relaxes after a sudden strain to
-    /// its part 1 − Σ g (1 − e^(−t/tau)); the constants of the law are those of a sudden strain. Left
-    /// out where nothing relaxes.
+    /// One to six terms of viscosity, by which the isochoric stress relaxes after a sudden strain, whose
+    /// constants the law has, to its part 1 − Σ g (1 − e^(−t/tau)); left out where nothing relaxes.
     pub prony: Option<Vec<PronyTermFormat>>,
     /// What muscle pulls with along its fibres, whatever its strain; left out where nothing pulls.
     pub active_stress: Option<ActiveStressFormat>,

@@ -3,7 +3,7 @@
 use crate::scene::{Case, parse_case};
 use anyhow::{Context, Result, anyhow};
 use mtled_checks::report::write_atomically;
-use mtled_reference::{CASES, FIBRES, PUBLISHED, PUBLISHED_SURFACES, Published};
+use mtled_reference::{CASES, FIBRES, PUBLISHED, PUBLISHED_FILES, Published};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -157,15 +157,15 @@ pub fn problems() -> Result<Vec<(&'static Published, Problem)>> {
     PUBLISHED.iter().map(read).collect()
 }
 
-/// Writes the files of the cases that name a surface into `folder`.
+/// Writes what cases name into `folder`.
 pub fn unpack(folder: &Path) -> Result<()> {
-    for (name, text) in PUBLISHED_SURFACES {
+    for (name, text) in PUBLISHED_FILES {
         write_atomically(&folder.join(name), text.as_bytes())?;
     }
     Ok(())
 }
 
-/// A case of a problem; surfaces that it names lie in `folder`.
+/// A case of a problem; what it names lies in `folder`.
 pub fn case(published: &Published, name: &str, folder: &Path) -> Result<Case> {
     let own = published.cases.iter().find(|(own, _)| *own == name).map(|(_, text)| *text);
     let bundled = || CASES.iter().find(|(other, _)| *other == name).map(|(_, text)| *text);
