@@ -1,12 +1,14 @@
 //! Stresses beside those of a law, fixed while displacements are looked for.
 #![allow(non_snake_case)]
 
-use crate::algebra::lanes::{LANES, Lanes, SimdBlock};
+use super::points::load_tensor;
+use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock};
 use crate::algebra::tensor::{
     Matrix3, Tensor, contract, map, right_cauchy_green, times_symmetric, transposed,
 };
 use crate::material::Deformation;
 use fearless_simd::Simd;
+use std::ops::Range;
 
 /// The entries of a symmetric tensor in the order in which six numbers stand for them.
 pub const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
@@ -54,9 +56,38 @@ impl ExtraStress {
         terms.sum()
     }
 
-    /// P of a law at a SIMD block with what acts beside it: P − r P̄ + F S (method book, eq. 3.25).
+    /// Adds to P of some SIMD blocks, from the first on, what acts beside the law: P − r P̄ + F S
+    /// (method book, eq. 3.25). A pressure in P has no part in P̄.
+    pub fn add<S: Simd, R: Lanes<S>>(
+        &mut self,
+        simd: S,
+        groups: Range<usize>,
+        deformation: &Parts<SimdBlock>,
+        stress: &mut Parts<SimdBlock>,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for (local, group) in groups.enumerate() {
+                    for piece in 0..R::PER_BLOCK {
+                        let F = load_tensor::<S, R>(simd, deformation, local, piece);
+                        let P = load_tensor::<S, R>(simd, stress, local, piece);
+                        let state = Deformation::new(F);
+                        let P = self.added::<S, R>(simd, (group, piece), &state, &P);
+                        for (i, row) in P.iter().enumerate() {
+                            for (j, entry) in row.iter().enumerate() {
+                                entry.store(stress, 9 * local + 3 * i + j, piece);
+                            }
+                        }
+                    }
+                }
+            },
+        );
+    }
+
+    /// P at a SIMD block with what acts beside the law.
     #[inline(always)]
-    pub fn added<S: Simd, R: Lanes<S>>(
+    fn added<S: Simd, R: Lanes<S>>(
         &mut self,
         simd: S,
         (group, piece): (usize, usize),

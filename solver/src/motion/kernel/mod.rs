@@ -18,7 +18,8 @@ pub use extra::{ENTRIES, ExtraStress, Found, Symmetric};
 use fearless_simd::Simd;
 use nodes::{add_forces, deformation_gradients};
 pub use own_pressures::{BlockPressures, OwnPressures};
-use points::{At, jacobians, pressures, stresses};
+use points::{jacobians, pressures, stresses};
+use std::ops::Range;
 use tangents::Tangents;
 
 /// Vectors at the nodes of the block that a thread works on.
@@ -139,10 +140,9 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
         let projection = block.projection.as_ref();
         let frames = block.frames.get(groups.clone()).unwrap_or(&[]);
         with_law!(&block.law, law => {
-            let mut at = At { law, frames, extra: extra.as_mut().map(|own| (own, groups.start)) };
             if is_known {
                 let work = (&mut *deformation, &mut *stress, &mut *jacobian);
-                tangents.multiply::<S, R, _>(simd, at.again(), groups.clone(), work);
+                tangents.multiply::<S, R, _>(simd, (law, frames), groups.clone(), work);
             }
             if let Some(projection) = projection {
                 jacobians::<S, R>(simd, count, deformation, jacobian);
@@ -153,21 +153,35 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
             let pressure = projection.map(|_| &*pressure);
             let results = (&mut *stress, &mut *jacobian, is_known);
             // In a plane half of a law is not needed; a derivative is, rarely enough.
-            if D == 2 && !R::SLOPES {
-                stresses::<S, R, _, 2>(simd, at, count, deformation, pressure, results)
+            if D == 2 && !R::SLOPES && extra.is_none() {
+                stresses::<S, R, _, 2>(simd, (law, frames), count, deformation, pressure, results)
             } else {
-                stresses::<S, R, _, 3>(simd, at, count, deformation, pressure, results)
+                stresses::<S, R, _, 3>(simd, (law, frames), count, deformation, pressure, results)
             }
         });
-        for (lane, value) in lanes.clone().zip(jacobian.values.iter().flat_map(|block| block.0)) {
-            if value < smallest.0 {
-                *smallest = (value, lane);
-            }
+        if let Some(extra) = extra {
+            extra.add::<S, R>(simd, groups.clone(), deformation, stress);
         }
+        *smallest = smaller(*smallest, lanes.clone(), jacobian);
         let stress = if R::SLOPES { &stress.slopes } else { &stress.values };
         with_gradients!(&block.grad_phi, grad_phi => {
             let stream = (block, &grad_phi[..]);
             add_forces::<S, _, D>(simd, stream, groups.clone(), stress, f);
         });
     }
+}
+
+/// The smallest J so far with its lane, or that of some lanes.
+#[inline(always)]
+fn smaller(
+    mut smallest: (f64, usize),
+    lanes: Range<usize>,
+    jacobians: &Parts<SimdBlock>,
+) -> (f64, usize) {
+    for (lane, value) in lanes.zip(jacobians.values.iter().flat_map(|block| block.0)) {
+        if value < smallest.0 {
+            smallest = (value, lane);
+        }
+    }
+    smallest
 }

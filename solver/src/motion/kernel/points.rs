@@ -8,7 +8,6 @@ use crate::algebra::real::Real;
 use crate::algebra::tensor::{Tensor, map, times_symmetric, transposed};
 use crate::material::{ConstitutiveLaw, Deformation};
 use crate::model::projection::{OwnPressure, PatchMoments, Projection};
-use crate::motion::kernel::extra::ExtraStress;
 use fearless_simd::Simd;
 use std::ops::Range;
 
@@ -48,28 +47,11 @@ pub fn pressures<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
     )
 }
 
-/// What the stress at the points of a chunk depends on besides F.
-pub struct At<'a, L> {
-    pub law: &'a L,
-    /// Of each SIMD block, where the law has fibres.
-    pub frames: &'a [[SimdBlock; 9]],
-    /// With the first SIMD block of the chunk in it.
-    pub extra: Option<(&'a mut ExtraStress, usize)>,
-}
-
-impl<L> At<'_, L> {
-    /// To be used once more.
-    pub fn again(&mut self) -> At<'_, L> {
-        let extra = self.extra.as_mut().map(|(extra, first)| (&mut **extra, *first));
-        At { law: self.law, frames: self.frames, extra }
-    }
-}
-
 /// J and P of the first `count` SIMD blocks; with a projected pressure p, P + p cof F, J being known.
-/// The slopes of P may be known, and stand in place of the result then.
+/// A law with fibres has a frame for each SIMD block. The slopes of P may be known, and stand in place of the result then.
 pub fn stresses<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
     simd: S,
-    At { law, frames, mut extra }: At<L>,
+    (law, frames): (&L, &[[SimdBlock; 9]]),
     count: usize,
     deformation: &Parts<SimdBlock>,
     pressures: Option<&Parts<SimdBlock>>,
@@ -90,9 +72,6 @@ pub fn stresses<S: Simd, R: Lanes<S>, L: ConstitutiveLaw, const D: usize>(
                         }
                         (false, None) => law.first_piola_kirchhoff(&state),
                     };
-                    if let Some((extra, first)) = extra.as_mut().filter(|_| !is_known) {
-                        P = extra.added::<S, R>(simd, (*first + group, piece), &state, &P);
-                    }
                     match pressures {
                         None => state.J.store(jacobians, group, piece),
                         Some(pressures) => {
@@ -130,7 +109,7 @@ fn frame_at<S: Simd, R: Lanes<S>>(simd: S, rows: &[SimdBlock; 9], piece: usize) 
 }
 
 #[inline(always)]
-fn load_tensor<S: Simd, R: Lanes<S>>(
+pub fn load_tensor<S: Simd, R: Lanes<S>>(
     simd: S,
     rows: &Parts<SimdBlock>,
     group: usize,

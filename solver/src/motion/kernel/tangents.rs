@@ -1,6 +1,6 @@
 //! ∂P/∂F at the points of a block, for laws that cost more than a product with it.
 
-use super::points::{At, stresses};
+use super::points::stresses;
 use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock};
 use crate::material::ConstitutiveLaw;
 use crate::model::Block;
@@ -30,7 +30,8 @@ impl Tangents {
 
     /// Counts a derivative, and says whether the tangents are to be used for it.
     pub fn are_worth(&mut self, block: &Block) -> bool {
-        if !block.law.is_costly() {
+        // What acts beside a law needs its stress too.
+        if !block.law.is_costly() || block.has_extra_stress() {
             return false;
         }
         self.derivatives += 1;
@@ -43,7 +44,7 @@ impl Tangents {
     pub fn multiply<S: Simd, R: Lanes<S>, L: ConstitutiveLaw>(
         &mut self,
         simd: S,
-        mut at: At<L>,
+        (law, frames): (&L, &[[SimdBlock; 9]]),
         groups: Range<usize>,
         (deformation, stress, jacobians): (
             &mut Parts<SimdBlock>,
@@ -61,7 +62,7 @@ impl Tangents {
                     *slope = SimdBlock([one; LANES]);
                 }
                 let results = (&mut *stress, &mut *jacobians, false);
-                stresses::<S, R, L, 3>(simd, at.again(), count, deformation, None, results);
+                stresses::<S, R, L, 3>(simd, (law, frames), count, deformation, None, results);
                 for group in 0..count {
                     let start = ENTRIES * (groups.start + group) + 9 * column;
                     self.values[start..start + 9]

@@ -3,10 +3,10 @@
 use super::equilibrate::equilibrate;
 use crate::error::Error;
 use crate::model::Model;
-use crate::motion::internal_force::{Workspace, internal_force};
+use crate::motion::internal_force::Workspace;
 use crate::motion::observe::{Continue, Observer, View, notify};
 use crate::motion::state::State;
-use crate::motion::step::{Buffers, add_pressures, external_force};
+use crate::motion::step::{add_pressures, external_force};
 use crate::motion::summary::{NewtonCounts, Summary};
 use crate::problem::Newton;
 
@@ -42,16 +42,16 @@ pub(crate) fn follow(
 /// Whether anything loads or moves the body at the start.
 fn acts(model: &Model, state: &State) -> bool {
     let (t, u) = (state.time, &state.displacement);
-    let mut buffers = Buffers::new(model, false);
-    state.extra.act(model, t, &mut buffers.workspace);
-    external_force(model, t, &mut buffers.f_ext);
-    add_pressures(model, t, u, &mut buffers.f_ext);
-    internal_force(model, u, &mut buffers.workspace, &mut buffers.f_int);
+    let mut force = vec![0.0; model.size()];
+    external_force(model, t, &mut force);
+    add_pressures(model, t, u, &mut force);
+    let pulls = model.blocks.iter().filter_map(|block| block.active.as_ref());
+    let pulls = pulls.map(|active| active.tension * active.amplitude.at(t));
     let mut moves = false;
     let forces = &mut Default::default();
     let Model { positions, inertia, constraints, .. } = model;
     constraints.enforce(t, positions, inertia, &mut u.clone(), forces, |_, d| moves |= d != 0.0);
-    moves || buffers.f_ext.iter().chain(&buffers.f_int).any(|force| *force != 0.0)
+    moves || force.iter().chain(u).copied().chain(pulls).any(|number| number != 0.0)
 }
 
 /// The ends of the parts of the time between corners of the amplitudes.

@@ -1,14 +1,13 @@
 //! Internal forces f_int,a = Σ_q w_q P(F_q) Grad φ_a(X_q) of all blocks (method book,
-//! eq. 11.1), their derivative, and the strain energy of the same points.
+//! eq. 11.1) and their derivative.
 #![allow(non_snake_case)]
 
 use crate::algebra::lanes::{Lanes, Number, with_vectors};
 use crate::algebra::real::Dual;
 use crate::algebra::tensor::Matrix3;
-use crate::material::PronySeries;
 use crate::model::blocks::{LocalVectors, with_gradients};
 use crate::model::projection::PatchMoments;
-use crate::model::{Block, Chunk, Model};
+use crate::model::{Block, Model};
 pub use crate::motion::kernel::OwnPressures;
 use crate::motion::kernel::{self, BlockPressures, ExtraStress, Local, Scratch, block_force};
 use fearless_simd::{Level, Simd};
@@ -21,7 +20,7 @@ use std::marker::PhantomData;
 pub struct Workspace {
     /// The vector instructions of this processor.
     pub level: Level,
-    blocks: Vec<Scratch>,
+    pub(super) blocks: Vec<Scratch>,
 }
 
 /// The smallest J of all quadrature points and where it is.
@@ -157,7 +156,7 @@ thread_local! {
 }
 
 /// Runs with the vectors of this thread.
-fn with_local<T>(run: impl FnOnce(&mut Local) -> T) -> T {
+pub(super) fn with_local<T>(run: impl FnOnce(&mut Local) -> T) -> T {
     LOCAL.with_borrow_mut(run)
 }
 
@@ -272,7 +271,11 @@ fn add<const D: usize>(node: &mut [f64; D], force: &[f64; D]) {
 
 /// F = I + Σ_a u_a ⊗ Grad φ_a at the point in a lane; in a plane F₃₃ = 1.
 #[inline(always)]
-fn deformation_gradient<const D: usize>(block: &Block, lane: usize, u: &LocalVectors) -> Matrix3 {
+pub(super) fn deformation_gradient<const D: usize>(
+    block: &Block,
+    lane: usize,
+    u: &LocalVectors,
+) -> Matrix3 {
     let sums = with_gradients!(&block.grad_phi, grad_phi => {
         displacement_gradient(block.support::<_, D>(grad_phi, lane), u)
     });
@@ -320,78 +323,4 @@ pub(crate) fn deformation_gradients(
             block.occupied().for_each(|n| visit(n, &deformation_gradient::<3>(block, n, local)));
         }
     });
-}
-
-/// Strain energy Σ_q w_q ψ(F_q) \[J\] at displacements `u` \[m\]; of viscous materials what is left
-/// of it in the end, the energy of an infinitely slow strain.
-pub fn strain_energy(model: &Model, u: &[f64]) -> f64 {
-    model.blocks.iter().map(|block| block_energy(model, block, u, None)).sum()
-}
-
-/// As [`strain_energy`], of a sudden strain, with Σ_q w_q ½ S_q : (C_q − 1) of the extra stresses S
-/// of a workspace: what [`internal_force`] is the derivative of while nothing relaxes.
-pub fn potential_energy(model: &Model, u: &[f64], workspace: &Workspace) -> f64 {
-    let blocks = model.blocks.iter().zip(&workspace.blocks);
-    blocks.map(|(block, own)| block_energy(model, block, u, own.extra.as_ref())).sum()
-}
-
-fn block_energy(model: &Model, block: &Block, u: &[f64], extra: Option<&ExtraStress>) -> f64 {
-    let relaxing = match extra {
-        Some(_) => 0.0,
-        None => block.viscosity.as_ref().map_or(0.0, PronySeries::relaxing),
-    };
-    let (mut energies, mut jacobians) =
-        (vec![0.0; block.lanes.len()], vec![1.0; block.lanes.len()]);
-    deformation_gradients(model, block, u, |lane, F| {
-        let (own, J) = (block.as_the_law_needs(F, lane), F.determinant());
-        let mut density = block.law.strain_energy(&own);
-        if relaxing > 0.0 {
-            density -= relaxing * (density - block.law.bulk_energy(J));
-        }
-        if let Some(extra) = extra {
-            density += extra.energy(lane, &(F.transpose() * F));
-        }
-        energies[lane] = block.quadrature_weights[lane] * density;
-        jacobians[lane] = J;
-    });
-    let mut energy = 0.0;
-    for Chunk { lanes, groups } in &block.chunks {
-        energies[lanes.clone()].iter().for_each(|at_point| energy += at_point);
-        if let Some(projection) = &block.projection {
-            energy += projection.energy(&block.law, groups.clone(), &jacobians[lanes.clone()]);
-        }
-    }
-    energy
-}
-
-/// What the projection adds to the mean Cauchy stress at each quadrature point
-/// \[Pa\], at displacements `u` \[m\]; 0 without one. The pressure is
-/// −tr σ/3 less this.
-pub fn projected_mean_stress(model: &Model, u: &[f64]) -> Vec<f64> {
-    let mut stresses = vec![0.0; model.point_positions.len()];
-    with_local(|Local { u: local, .. }| {
-        for block in &model.blocks {
-            match model.components {
-                2 => block_mean_stress::<2>(block, u, local, &mut stresses),
-                _ => block_mean_stress::<3>(block, u, local, &mut stresses),
-            }
-        }
-    });
-    stresses
-}
-
-fn block_mean_stress<const D: usize>(
-    block: &Block,
-    u: &[f64],
-    local: &mut LocalVectors,
-    stresses: &mut [f64],
-) {
-    let Some(projection) = &block.projection else { return };
-    local.gather::<D>(&block.nodes, u);
-    for Chunk { lanes, groups } in &block.chunks {
-        let jacobian = |lane| deformation_gradient::<D>(block, lane, local).determinant();
-        let jacobians: Vec<f64> = lanes.clone().map(jacobian).collect();
-        let pressures = projection.plain_pressures(&block.law, groups.clone(), &jacobians);
-        lanes.clone().zip(pressures).for_each(|(lane, p)| stresses[block.point(lane)] = p);
-    }
 }

@@ -1,0 +1,93 @@
+//! Strain energy of the points that forces are computed at, and their mean stress.
+#![allow(non_snake_case)]
+
+use super::forces::{Workspace, deformation_gradient, with_local};
+use crate::material::PronySeries;
+use crate::model::blocks::LocalVectors;
+use crate::model::{Block, Chunk, Model};
+use crate::motion::kernel::{ExtraStress, Local};
+
+/// Strain energy Σ_q w_q ψ(F_q) \[J\] at displacements `u` \[m\]; of viscous materials what is left
+/// of it in the end, the energy of an infinitely slow strain.
+pub fn strain_energy(model: &Model, u: &[f64]) -> f64 {
+    model.blocks.iter().map(|block| block_energy(model, block, u, None)).sum()
+}
+
+/// As [`strain_energy`], of a sudden strain, with Σ_q w_q ½ S_q : (C_q − 1) of the extra stresses S
+/// of a workspace: what [`internal_force`] is the derivative of while nothing relaxes.
+pub fn potential_energy(model: &Model, u: &[f64], workspace: &Workspace) -> f64 {
+    let blocks = model.blocks.iter().zip(&workspace.blocks);
+    blocks.map(|(block, own)| block_energy(model, block, u, own.extra.as_ref())).sum()
+}
+
+fn block_energy(model: &Model, block: &Block, u: &[f64], extra: Option<&ExtraStress>) -> f64 {
+    with_local(|Local { u: local, .. }| match model.components {
+        2 => block_energy_in::<2>(block, u, extra, local),
+        _ => block_energy_in::<3>(block, u, extra, local),
+    })
+}
+
+fn block_energy_in<const D: usize>(
+    block: &Block,
+    u: &[f64],
+    extra: Option<&ExtraStress>,
+    local: &mut LocalVectors,
+) -> f64 {
+    local.gather::<D>(&block.nodes, u);
+    let relaxing = block.viscosity.as_ref().filter(|_| extra.is_none());
+    let relaxing = relaxing.map_or(0.0, PronySeries::relaxing);
+    let mut energy = 0.0;
+    let mut jacobians = Vec::new();
+    for Chunk { lanes, groups } in &block.chunks {
+        jacobians.clear();
+        for lane in lanes.clone() {
+            let F = deformation_gradient::<D>(block, lane, local);
+            let own = block.as_the_law_needs(&F, lane);
+            let (mut density, J) = (block.law.strain_energy(&own), F.determinant());
+            if relaxing > 0.0 {
+                density -= relaxing * (density - block.law.bulk_energy(J));
+            }
+            if let Some(extra) = extra {
+                density += extra.energy(lane, &(F.transpose() * F));
+            }
+            energy += block.quadrature_weights[lane] * density;
+            jacobians.push(J);
+        }
+        if let Some(projection) = &block.projection {
+            energy += projection.energy(&block.law, groups.clone(), &jacobians);
+        }
+    }
+    energy
+}
+
+/// What the projection adds to the mean Cauchy stress at each quadrature point
+/// \[Pa\], at displacements `u` \[m\]; 0 without one. The pressure is
+/// −tr σ/3 less this.
+pub fn projected_mean_stress(model: &Model, u: &[f64]) -> Vec<f64> {
+    let mut stresses = vec![0.0; model.point_positions.len()];
+    with_local(|Local { u: local, .. }| {
+        for block in &model.blocks {
+            match model.components {
+                2 => block_mean_stress::<2>(block, u, local, &mut stresses),
+                _ => block_mean_stress::<3>(block, u, local, &mut stresses),
+            }
+        }
+    });
+    stresses
+}
+
+fn block_mean_stress<const D: usize>(
+    block: &Block,
+    u: &[f64],
+    local: &mut LocalVectors,
+    stresses: &mut [f64],
+) {
+    let Some(projection) = &block.projection else { return };
+    local.gather::<D>(&block.nodes, u);
+    for Chunk { lanes, groups } in &block.chunks {
+        let jacobian = |lane| deformation_gradient::<D>(block, lane, local).determinant();
+        let jacobians: Vec<f64> = lanes.clone().map(jacobian).collect();
+        let pressures = projection.plain_pressures(&block.law, groups.clone(), &jacobians);
+        lanes.clone().zip(pressures).for_each(|(lane, p)| stresses[block.point(lane)] = p);
+    }
+}
