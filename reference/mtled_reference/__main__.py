@@ -53,6 +53,14 @@ def _add_solving(commands) -> None:
     command.add_argument("--out", type=Path, required=True)
     command.set_defaults(run=_fibres)
 
+    command = commands.add_parser("published", help="solve a ventricle of Land's benchmark")
+    command.add_argument("problem", choices=("land_2", "land_3"))
+    command.add_argument("--published", type=Path, required=True, help="folder of the problems")
+    cells = "cells across the wall, along an eighth of the circumference, from apex to base"
+    command.add_argument("--cells", type=int, nargs=3, action="append", required=True, help=cells)
+    command.add_argument("--out", type=Path, required=True)
+    command.set_defaults(run=_published)
+
     command = commands.add_parser("solve-mesh", help="solve one mesh in this process")
     command.add_argument("case", type=Path)
     command.add_argument("--code", choices=CODES, required=True)
@@ -66,6 +74,14 @@ def _fibres(options) -> None:
     from .fibres import solve_on_meshes
 
     solve_on_meshes(options.case, options.sizes, options.out)
+
+
+def _published(options) -> None:
+    # Needs FEniCSx.
+    from .published import solve_on_meshes
+
+    meshes = [tuple(counts) for counts in options.cells]
+    solve_on_meshes(options.problem, options.published, meshes, options.out)
 
 
 def _add_race(commands) -> None:

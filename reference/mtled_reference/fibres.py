@@ -1,6 +1,7 @@
-"""Boxes with fibres by FEniCSx: hexahedra with quadratic displacements and a linear pressure in
-each, ψ̄(C̄) + p (J − 1) − p²/2K (Simo, Taylor and Pister, Comput. Methods Appl. Mech. Eng. 51, 177,
-1985), which is ψ̄(C̄) + K/2 (J − 1)² for a pressure that is free at each point."""
+"""Boxes, most with fibres, by FEniCSx: hexahedra with quadratic displacements and a linear pressure
+in each, ψ̄(C̄) + p (J − 1) − U*(p) (Simo, Taylor and Pister, Comput. Methods Appl. Mech. Eng. 51, 177,
+1985), which is ψ̄(C̄) + U(J) for a pressure that is free at each point: U = K/2 (J − 1)² with
+U* = p²/2K, or the volumetric energy `simo_taylor`, K/4 (J² − 1 − 2 ln J)."""
 
 import json
 import tomllib
@@ -15,13 +16,16 @@ from .fenicsx import versions
 from .fenicsx.mesh_blocks import mesh_of_blocks
 from .fenicsx.mesh_shapes import box
 from .fenicsx.newton import Newton
+from .shared.errors import NotConverged
+from .shared.resources import processor_time
 from .shared.selection import selected
 
 CELL = "hexahedron"
 QUADRATURE = 5
 """Degree to which the energy is integrated [–]."""
 STEPS = 8
-"""Parts of the load."""
+"""Parts of the load, unless Newton's method asks for smaller ones."""
+SMALLEST_STEP = 1.0 / 256.0
 ON_PLANE = 1e-9
 """Distance from a plane [m] within which a point lies on it."""
 
@@ -39,7 +43,7 @@ def _direction(table: dict, x):
 
 def _frame(material: dict, x):
     """Directions of fibres, of sheets normal to them, and normal to both."""
-    fibre = _direction(material["fibres"], x)
+    fibre = _direction(material.get("fibres", {"direction": [1.0, 0.0, 0.0]}), x)
     fibre = fibre / ufl.sqrt(ufl.inner(fibre, fibre))
     # Without sheets any normals to the fibres do; no body here has fibres along z.
     sheet = _direction(material.get("sheets", {"direction": [0.0, 0.0, 1.0]}), x)
@@ -85,24 +89,38 @@ def _holzapfel_gasser_ogden(constants: dict, C):
     return energy
 
 
+def _neo_hookean(constants: dict, C):
+    return 0.5 * constants["shear_modulus"] * (ufl.tr(C) - 3)
+
+
 LAWS: dict[str, Callable] = {
     "guccione": _guccione,
     "holzapfel_gasser_ogden": _holzapfel_gasser_ogden,
     "holzapfel_ogden": _holzapfel_ogden,
+    "neo_hookean_isochoric": _neo_hookean,
 }
 
 
-class _Model:
-    """A case on a mesh of cells of about `size` [m]: the residual of displacements and pressures,
-    with pressures on faces that follow them."""
+def _volumetric(material: dict, J, p):
+    """The part of the energy with the pressure `p`, and U for the J that belongs to it."""
+    bulk_modulus = material["bulk_modulus"]
+    if material.get("volumetric") == "simo_taylor":
+        theta = p / bulk_modulus + ufl.sqrt(1 + (p / bulk_modulus) ** 2)
+        stored = 0.25 * bulk_modulus * (theta**2 - 1 - 2 * ufl.ln(theta))
+        return p * (J - theta) + stored, stored
+    stored = p**2 / (2 * bulk_modulus)
+    return p * (J - 1) - stored, stored
+
+
+class Model:
+    """A case on a mesh of hexahedra: the residual of displacements and pressures. Pressures on
+    faces follow them, tractions do not; `active` is a stress [Pa] along the fibres, second
+    Piola–Kirchhoff, that grows with the load."""
 
     three_fields = True
 
-    def __init__(self, case: dict, size: float):
-        low, high = (np.asarray(case["geometry"]["shape"]["box"][end]) for end in ("min", "max"))
-        counts = tuple(max(1, round(length / size)) for length in high - low)
-        points, cells = mesh_of_blocks(box(low, high, counts), CELL)
-        self.domain = versions.create_mesh(CELL, 2, points, cells)
+    def __init__(self, case: dict, domain, frame: Callable | None = None, active: float = 0.0):
+        self.domain = domain
         element = [versions.vector_element(CELL, 2, 3), versions.discontinuous_element(CELL)]
         self.space = versions.function_space(self.domain, versions.mixed_element(element))
         self.unknown = fem.Function(self.space)
@@ -110,31 +128,42 @@ class _Model:
         self.fields = np.asarray(dofs, dtype=np.int32).reshape(-1, 3)
         self.points = self.u_space.tabulate_dof_coordinates()
         self.loads = []
-        self._make_forms(case)
-
-    def _make_forms(self, case: dict) -> None:
         material = next(iter(case["material"].values()))
+        axes = frame(domain) if frame else _frame(material, ufl.SpatialCoordinate(domain))
+        self._make_forms(case, material, axes, active)
+
+    def _make_forms(self, case: dict, material: dict, axes, active: float) -> None:
         dx = ufl.Measure("dx", self.domain, metadata={"quadrature_degree": QUADRATURE})
         u, p = ufl.split(self.unknown)
         F = ufl.Identity(3) + ufl.grad(u)
         J = ufl.det(F)
-        x = ufl.SpatialCoordinate(self.domain)
-        Q = ufl.as_matrix([[axis[i] for i in range(3)] for axis in _frame(material, x)]).T
+        Q = ufl.as_matrix([[axis[i] for i in range(3)] for axis in axes]).T
         C = Q.T * (J ** (-2.0 / 3.0) * F.T * F) * Q
-        shape = LAWS[material["law"]](material["constants"], C)
-        bulk_modulus = material["bulk_modulus"]
-        energy = (shape + p * (J - 1) - p**2 / (2 * bulk_modulus)) * dx
-        residual = ufl.derivative(energy, self.unknown)
+        shape = LAWS[material["law"]](material.get("constants", material), C)
+        mixed, stored = _volumetric(material, J, p)
+        energy = shape + mixed
+        if active:
+            along = F * axes[0]
+            energy += 0.5 * self._load(active) * (ufl.inner(along, along) - 1)
+        residual = ufl.derivative(energy * dx, self.unknown)
         v, _ = ufl.TestFunctions(self.space)
         normal = ufl.FacetNormal(self.domain)
         for row in case.get("pressure", []):
-            load = fem.Constant(self.domain, 0.0)
-            self.loads.append((load, row["pressure"]))
-            force = J * ufl.dot(ufl.inv(F).T, normal)
-            residual += load * ufl.inner(force, v) * self._on(row["where"])
+            force = self._load(row["pressure"]) * J * ufl.dot(ufl.inv(F).T, normal)
+            residual += ufl.inner(force, v) * self._on(row["where"])
+        for row in case.get("traction", []):
+            size = self._load(1.0)
+            force = ufl.as_vector([size * float(part) for part in row["traction"]])
+            residual -= ufl.inner(force, v) * self._on(row["where"])
         self.residual_form = versions.form(residual)
         self.jacobian_form = versions.form(ufl.derivative(residual, self.unknown))
-        self.energy_form = versions.form((shape + p**2 / (2 * bulk_modulus)) * dx)
+        self.energy_form = versions.form((shape + stored) * dx)
+
+    def _load(self, value: float):
+        """A load that grows to the value."""
+        load = fem.Constant(self.domain, 0.0)
+        self.loads.append((load, value))
+        return load
 
     def _on(self, where: dict):
         """The measure of the facets of a selection."""
@@ -165,17 +194,40 @@ class _Model:
         return self.unknown.x.array[self.fields[nearest]]
 
 
-def solve(case: dict, size: float) -> dict[str, float]:
-    """Answers of a case on cells of about `size` [m]: displacements of probes [m], forces [N] and
-    the strain energy [J]."""
-    model = _Model(case, size)
+def box_mesh(case: dict, size: float):
+    """The box of a case in cells of about `size` [m]."""
+    low, high = (np.asarray(case["geometry"]["shape"]["box"][end]) for end in ("min", "max"))
+    counts = tuple(max(1, round(length / size)) for length in high - low)
+    points, cells = mesh_of_blocks(box(low, high, counts), CELL)
+    return versions.create_mesh(CELL, 2, points, cells)
+
+
+def equilibrium(model: Model, case: dict, steps: int = STEPS) -> np.ndarray:
+    """Loads a body in steps, halved where Newton's method fails; returns the residual
+    (nodes, 3) [N], which is the reaction at supports."""
     newton = Newton(model)
-    for step in range(1, STEPS + 1):
-        fraction = step / STEPS
+    unknown = model.unknown.x.array
+    reached, step = 0.0, 1.0 / steps
+    while reached < 1.0 - 1e-9:
+        fraction = min(1.0, reached + step)
         for load, value in model.loads:
             load.value = fraction * value
         fixed, values = model.prescribed(case, fraction)
-        residual = newton.solve(fixed, values, np.zeros((len(model.points), 3)))
+        start = unknown.copy()
+        try:
+            residual = newton.solve(fixed, values, np.zeros((len(model.points), 3)))
+        except NotConverged:
+            unknown[:] = start
+            step *= 0.5
+            if step < SMALLEST_STEP:
+                raise
+            continue
+        reached = fraction
+    return residual
+
+
+def answers_of(model: Model, case: dict, residual: np.ndarray) -> dict[str, float]:
+    """Displacements of probes [m], forces [N] and the strain energy [J]."""
     answers = {}
     for probe in case["probe"]:
         for axis, value in zip("xyz", model.displacement(np.asarray(probe["point"]))):
@@ -188,12 +240,26 @@ def solve(case: dict, size: float) -> dict[str, float]:
     return answers
 
 
+def seconds_apart_from_compiling() -> float:
+    """Processor time [s] of this process so far, without that of compiling forms."""
+    return processor_time() - versions.compile_seconds()
+
+
+def solve(case: dict, size: float) -> dict[str, float]:
+    """Answers of a case on cells of about `size` [m]."""
+    model = Model(case, box_mesh(case, size))
+    return answers_of(model, case, equilibrium(model, case))
+
+
 def solve_on_meshes(path: Path, sizes: list[float], out: Path) -> None:
     """Writes the answers on meshes of falling size, with packages."""
     case = tomllib.loads(path.read_text())
     meshes = []
     for size in sizes:
-        meshes.append({"size_m": size, "answers": solve(case, size)})
+        start = seconds_apart_from_compiling()
+        answers = solve(case, size)
+        cpu = round(seconds_apart_from_compiling() - start, 2)
+        meshes.append({"size_m": size, "cpu_s": cpu, "answers": answers})
         print(json.dumps(meshes[-1]), flush=True)
     result = {"problem": path.stem, "packages": versions.packages(), "meshes": meshes}
     out.write_text(json.dumps(result, indent=1) + "\n")

@@ -1,0 +1,194 @@
+"""The left ventricles of Land's benchmark (Proc. R. Soc. A 471:20150641, 2015) by FEniCSx, with the
+elements of `fibres.py` on hexahedra whose edges are curved: half an ellipsoid with a thick wall,
+held at its base, under a pressure that follows the inner surface. In the second problem a quarter
+is enough; in the third the fibres turn across the wall and pull, and the whole body twists."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import basix
+import numpy as np
+import ufl
+from dolfinx import fem
+
+from .fenicsx import versions
+from .fenicsx.mesh_blocks import Block, mesh_of_blocks
+from .fibres import (
+    CELL,
+    QUADRATURE,
+    Model,
+    answers_of,
+    equilibrium,
+    seconds_apart_from_compiling,
+)
+
+INNER = np.array([0.007, 0.017])
+"""Radius across the axis and along it of the inner surface [m]."""
+WALL = 0.003
+"""What the outer surface has more of both [m]."""
+BASE = 0.005
+"""Height of the base [m]."""
+CAP = 0.2
+"""Half-width of the square of cells around the apex over the arc from apex to base [–]."""
+BISECTIONS = 50
+
+THIRD = {"C": 2e3, "b_f": 8.0, "b_t": 2.0, "b_fs": 4.0}
+"""Constants of the third problem."""
+THIRD_BULK_MODULUS = 1e6
+THIRD_PRESSURE = 15e3
+THIRD_TENSION = 60e3
+"""Second Piola–Kirchhoff stress along the fibres [Pa]."""
+STEPS = {"land_2": 8, "land_3": 16}
+
+
+def _side(turn: int):
+    """The part of the unit disc between a side of the square around its centre and the circle."""
+    cosine, sine = ((1, 0), (0, 1), (-1, 0), (0, -1))[turn]
+
+    def placed(s):
+        out, angle = s[:, 0], 0.25 * np.pi * s[:, 1]
+        circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        # A side of the square, bulged half way to a circle.
+        side = CAP * (0.5 * np.stack([np.ones_like(angle), np.tan(angle)], axis=1) + 0.5 * circle)
+        x, y = ((1 - out[:, None]) * side + out[:, None] * circle).T
+        return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=1)
+
+    return placed
+
+
+def _square(s):
+    """The square around the centre of the disc; s in [−1, 1]."""
+    square = np.tan(0.25 * np.pi * s)
+    length = np.linalg.norm(square, axis=1, keepdims=True)
+    largest = np.abs(square).max(axis=1, keepdims=True)
+    with np.errstate(invalid="ignore"):
+        circle = np.where(length > 0.0, square * largest / length, 0.0)
+    return CAP * 0.5 * (square + circle)
+
+
+def _on_wall(disc, t):
+    """The point of the wall at the parameter t across it, above a point of the unit disc:
+    its centre is the apex, its circle the base."""
+    across, along = (INNER[:, None] + WALL * t)[:]
+    radius = np.linalg.norm(disc, axis=1)
+    angle = radius * (np.pi - np.arccos(BASE / along))
+    with np.errstate(invalid="ignore"):
+        x, y = np.where(radius > 0.0, disc.T / radius, 0.0) * across * np.sin(angle)
+    return np.stack([x, y, -along * np.cos(angle)], axis=1)
+
+
+def ventricle(wall: int, around: int, up: int, quarter: bool) -> list[Block]:
+    """Blocks with `wall` cells across the wall, twice `around` cells along a quarter of the
+    circumference, and `up` from the square around the apex to the base."""
+
+    def square(low: float):
+        return lambda s: _on_wall(_square(low + (1.0 - low) * s[:, 1:]), s[:, 0])
+
+    def side(turn: int, low: float, high: float):
+        def placed(s):
+            along = low + (high - low) * s[:, [2]]
+            return _on_wall(_side(turn)(np.concatenate([s[:, [1]], along], axis=1)), s[:, 0])
+
+        return placed
+
+    if quarter:
+        sides = [Block(side(0, 0.0, 1.0), (wall, up, around))]
+        sides.append(Block(side(1, -1.0, 0.0), (wall, up, around)))
+        return [Block(square(0.0), (wall, around, around)), *sides]
+    sides = [Block(side(turn, -1.0, 1.0), (wall, up, 2 * around)) for turn in range(4)]
+    return [Block(square(-1.0), (wall, 2 * around, 2 * around)), *sides]
+
+
+def wall_parameter(points: np.ndarray) -> np.ndarray:
+    """The t (n,) of the ellipsoid through each point (n, 3), by bisection."""
+    radius = np.linalg.norm(points[:, :2], axis=1)
+    low, high = np.full(len(points), -0.5), np.full(len(points), 1.5)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        across, along = INNER[:, None] + WALL * middle
+        outside = (radius / across) ** 2 + (points[:, 2] / along) ** 2 > 1.0
+        low, high = np.where(outside, middle, low), np.where(outside, high, middle)
+    return 0.5 * (low + high)
+
+
+def frame_at(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Directions (n, 3) of the fibres, which turn from 90° to −90° across the wall, and of the
+    normals of the wall. With u from −π at the apex, the tangents are e_u upwards, e_v around."""
+    t = wall_parameter(points)
+    across, along = INNER[:, None] + WALL * t
+    radius = np.linalg.norm(points[:, :2], axis=1)
+    out = np.stack([*(points[:, :2].T / radius), np.zeros(len(t))], axis=1)
+    up = np.array([0.0, 0.0, 1.0])
+    around = np.cross(up, out)
+    sine, cosine = radius / across, -points[:, 2] / along
+    meridian = (across * cosine)[:, None] * out + (along * sine)[:, None] * up
+    meridian /= np.linalg.norm(meridian, axis=1, keepdims=True)
+    angle = (0.5 * np.pi - np.pi * t)[:, None]
+    fibre = np.sin(angle) * meridian + np.cos(angle) * around
+    return fibre, np.cross(meridian, around)
+
+
+def _frame(domain):
+    """Fibres, normals of the wall and the third direction at the points of the quadrature."""
+    element = ufl.VectorElement("Quadrature", CELL, QUADRATURE, dim=3, quad_scheme="default")
+    space = fem.FunctionSpace(domain, element)
+    points, _ = basix.make_quadrature(getattr(basix.CellType, CELL), QUADRATURE)
+    cells = np.arange(domain.topology.index_map(3).size_local, dtype=np.int32)
+    places = fem.Expression(ufl.SpatialCoordinate(domain), points).eval(cells).reshape(-1, 3)
+    functions = []
+    for directions in frame_at(places):
+        function = fem.Function(space)
+        function.x.array.reshape(-1, 3)[space.dofmap.list.array] = directions
+        functions.append(function)
+    fibre, normal = functions
+    return fibre, normal, ufl.cross(fibre, normal)
+
+
+def _case(problem: str, folder: Path) -> dict:
+    """The case file of the second problem; for the third with what differs there."""
+    case = tomllib.loads((folder / "land_2" / "case.toml").read_text())
+    if problem == "land_3":
+        case["material"]["muscle"] |= {"constants": THIRD, "bulk_modulus": THIRD_BULK_MODULUS}
+        case["pressure"][0]["pressure"] = THIRD_PRESSURE
+        return case
+    for axis in "xy":
+        normal = [float(axis == other) for other in "xyz"]
+        where = {"plane": {"point": [0.0, 0.0, 0.0], "normal": normal}}
+        case["prescribe"].append({"name": axis, "where": where, "displacement": {axis: 0.0}})
+    return case
+
+
+def solve(problem: str, folder: Path, counts: tuple[int, int, int]) -> dict:
+    """Answers of `land_2` or `land_3` with so many cells as `ventricle` says."""
+    case = _case(problem, folder)
+    third = problem == "land_3"
+    points, cells = mesh_of_blocks(ventricle(*counts, quarter=not third), CELL)
+    domain = versions.create_mesh(CELL, 2, points, cells)
+    if third:
+        model = Model(case, domain, _frame, THIRD_TENSION)
+    else:
+        model = Model(case, domain)
+    answers = answers_of(model, case, equilibrium(model, case, STEPS[problem]))
+    kept = {name: value for name, value in answers.items() if not name.startswith("force")}
+    for probe in case["probe"]:
+        moved = kept[f"displacement/{probe['name']}/z"]
+        kept[f"position/{probe['name']}/z"] = probe["point"][2] + moved
+    return {"cells": len(cells), "unknowns": len(model.unknown.x.array), "answers": kept}
+
+
+def solve_on_meshes(
+    problem: str, folder: Path, meshes: list[tuple[int, int, int]], out: Path
+) -> None:
+    """Writes the answers on several meshes, with processor time and packages."""
+    solved = []
+    for counts in meshes:
+        start = seconds_apart_from_compiling()
+        mesh = solve(problem, folder, counts)
+        cpu = round(seconds_apart_from_compiling() - start, 2)
+        across, around, up = counts
+        named = {"cells_across": across, "cells_around_eighth": around, "cells_up": up}
+        solved.append({**named, "cpu_s": cpu, **mesh})
+        print(json.dumps(solved[-1]), flush=True)
+        result = {"problem": problem, "packages": versions.packages(), "meshes": solved}
+        out.write_text(json.dumps(result, indent=1) + "\n")
