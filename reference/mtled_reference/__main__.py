@@ -51,6 +51,7 @@ def _add_solving(commands) -> None:
     command.add_argument("case", type=Path)
     command.add_argument("--size", type=float, action="append", dest="sizes", required=True)
     command.add_argument("--out", type=Path, required=True)
+    command.add_argument("--steps", type=int, default=8, help="parts of the load")
     command.set_defaults(run=_fibres)
 
     command = commands.add_parser("published", help="solve a ventricle of Land's benchmark")
@@ -60,6 +61,12 @@ def _add_solving(commands) -> None:
     command.add_argument("--cells", type=int, nargs=3, action="append", required=True, help=cells)
     command.add_argument("--out", type=Path, required=True)
     command.set_defaults(run=_published)
+
+    command = commands.add_parser("strip", help="solve a strip in plane strain and time it")
+    command.add_argument("case", type=Path)
+    command.add_argument("--cells", type=int, nargs=2, required=True, help="along and across")
+    command.add_argument("--steps", type=int, default=8, help="parts of the load")
+    command.set_defaults(run=_strip)
 
     command = commands.add_parser("solve-mesh", help="solve one mesh in this process")
     command.add_argument("case", type=Path)
@@ -73,7 +80,7 @@ def _fibres(options) -> None:
     # Needs FEniCSx.
     from .fibres import solve_on_meshes
 
-    solve_on_meshes(options.case, options.sizes, options.out)
+    solve_on_meshes(options.case, options.sizes, options.out, options.steps)
 
 
 def _published(options) -> None:
@@ -82,6 +89,13 @@ def _published(options) -> None:
 
     meshes = [tuple(counts) for counts in options.cells]
     solve_on_meshes(options.problem, options.published, meshes, options.out)
+
+
+def _strip(options) -> None:
+    # Needs FEniCSx.
+    from .published import time_strip
+
+    time_strip(options.case, tuple(options.cells), options.steps)
 
 
 def _add_race(commands) -> None:

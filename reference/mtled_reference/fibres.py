@@ -1,6 +1,6 @@
 """Boxes, most with fibres, by FEniCSx: hexahedra with quadratic displacements and a linear pressure
-in each, ψ̄(C̄) + p (J − 1) − U*(p) (Simo, Taylor and Pister, Comput. Methods Appl. Mech. Eng. 51, 177,
-1985), which is ψ̄(C̄) + U(J) for a pressure that is free at each point: U = K/2 (J − 1)² with
+in each, ψ̄(C̄) + p (J − 1) − U*(p) (Simo, Taylor and Pister, Comput. Methods Appl. Mech. Eng. 51,
+177, 1985), which is ψ̄(C̄) + U(J) for a pressure that is free at each point: U = K/2 (J − 1)² with
 U* = p²/2K, or the volumetric energy `simo_taylor`, K/4 (J² − 1 − 2 ln J)."""
 
 import json
@@ -245,19 +245,19 @@ def seconds_apart_from_compiling() -> float:
     return processor_time() - versions.compile_seconds()
 
 
-def solve(case: dict, size: float) -> dict[str, float]:
-    """Answers of a case on cells of about `size` [m]."""
+def solve(case: dict, size: float, steps: int = STEPS) -> dict[str, float]:
+    """Answers of a case on cells of about `size` [m], loaded in steps."""
     model = Model(case, box_mesh(case, size))
-    return answers_of(model, case, equilibrium(model, case))
+    return answers_of(model, case, equilibrium(model, case, steps))
 
 
-def solve_on_meshes(path: Path, sizes: list[float], out: Path) -> None:
+def solve_on_meshes(path: Path, sizes: list[float], out: Path, steps: int = STEPS) -> None:
     """Writes the answers on meshes of falling size, with packages."""
     case = tomllib.loads(path.read_text())
     meshes = []
     for size in sizes:
         start = seconds_apart_from_compiling()
-        answers = solve(case, size)
+        answers = solve(case, size, steps)
         cpu = round(seconds_apart_from_compiling() - start, 2)
         meshes.append({"size_m": size, "cpu_s": cpu, "answers": answers})
         print(json.dumps(meshes[-1]), flush=True)

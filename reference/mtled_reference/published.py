@@ -1,7 +1,8 @@
 """The left ventricles of Land's benchmark (Proc. R. Soc. A 471:20150641, 2015) by FEniCSx, with the
 elements of `fibres.py` on hexahedra whose edges are curved: half an ellipsoid with a thick wall,
 held at its base, under a pressure that follows the inner surface. In the second problem a quarter
-is enough; in the third the fibres turn across the wall and pull, and the whole body twists."""
+is enough; in the third the fibres turn across the wall and pull, and the whole body twists. And
+strips in plane strain, in quadrilaterals with quadratic displacements."""
 
 import json
 import tomllib
@@ -13,7 +14,13 @@ import ufl
 from dolfinx import fem
 
 from .fenicsx import versions
+from .fenicsx.conditions import Conditions
+from .fenicsx.kinematics import PlaneStrain
 from .fenicsx.mesh_blocks import Block, mesh_of_blocks
+from .fenicsx.mesh_shapes import box
+from .fenicsx.model import Model as PlaneModel
+from .fenicsx.model import Recipe
+from .fenicsx.newton import Newton, solve_static
 from .fibres import (
     CELL,
     QUADRATURE,
@@ -22,6 +29,8 @@ from .fibres import (
     equilibrium,
     seconds_apart_from_compiling,
 )
+from .shared.case import read_case
+from .shared.selection import bounding_box
 
 INNER = np.array([0.007, 0.017])
 """Radius across the axis and along it of the inner surface [m]."""
@@ -192,3 +201,32 @@ def solve_on_meshes(
         print(json.dumps(solved[-1]), flush=True)
         result = {"problem": problem, "packages": versions.packages(), "meshes": solved}
         out.write_text(json.dumps(result, indent=1) + "\n")
+
+
+def solve_strip(path: Path, counts: tuple[int, int], steps: int) -> dict[str, float]:
+    """Displacements [m] of the probes of a rectangle in plane strain, of so many cells along and
+    across, loaded in equal steps. The probes must be nodes."""
+    case = read_case(path)
+    low, high = (end[:2] for end in bounding_box(case.shape))
+    points, cells = mesh_of_blocks(box(low, high, counts), "quadrilateral")
+    kinematics = PlaneStrain(case.thickness, case.plane_z)
+    size = float(high[0] - low[0]) / counts[0]
+    recipe = Recipe("quadrilateral", 2, points, cells, size, "strip", kinematics)
+    model = PlaneModel(case, recipe)
+    solve_static(model, Conditions(model), Newton(model), steps, lambda *_: None)
+    answers = {}
+    for probe in tomllib.loads(path.read_text())["probe"]:
+        distances = np.linalg.norm(model.points[:, :2] - probe["point"][:2], axis=1)
+        if distances.min() > 1e-9:
+            raise ValueError(f"no node lies at {probe['point']}")
+        for axis, value in zip("xy", model.u()[int(np.argmin(distances))]):
+            answers[f"displacement/{probe['name']}/{axis}"] = float(value)
+    return answers
+
+
+def time_strip(path: Path, counts: tuple[int, int], steps: int) -> None:
+    """Prints the answers of a strip with processor time."""
+    start = seconds_apart_from_compiling()
+    answers = solve_strip(path, counts, steps)
+    cpu = round(seconds_apart_from_compiling() - start, 3)
+    print(json.dumps({"case": path.stem, "cells": counts, "cpu_s": cpu, "answers": answers}))
