@@ -40,6 +40,8 @@ BASE = 0.005
 """Height of the base [m]."""
 CAP = 0.2
 """Half-width of the square of cells around the apex over the arc from apex to base [–]."""
+GRADING = 2.0
+"""Exponent by which cells shrink towards the base, whose edges are singular [–]."""
 BISECTIONS = 50
 
 THIRD = {"C": 2e3, "b_f": 8.0, "b_t": 2.0, "b_fs": 4.0}
@@ -48,7 +50,6 @@ THIRD_BULK_MODULUS = 1e6
 THIRD_PRESSURE = 15e3
 THIRD_TENSION = 60e3
 """Second Piola–Kirchhoff stress along the fibres [Pa]."""
-STEPS = {"land_2": 8, "land_3": 16}
 
 
 def _side(turn: int):
@@ -56,7 +57,7 @@ def _side(turn: int):
     cosine, sine = ((1, 0), (0, 1), (-1, 0), (0, -1))[turn]
 
     def placed(s):
-        out, angle = s[:, 0], 0.25 * np.pi * s[:, 1]
+        out, angle = 1.0 - (1.0 - s[:, 0]) ** GRADING, 0.25 * np.pi * s[:, 1]
         circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         # A side of the square, bulged half way to a circle.
         side = CAP * (0.5 * np.stack([np.ones_like(angle), np.tan(angle)], axis=1) + 0.5 * circle)
@@ -178,7 +179,7 @@ def solve(problem: str, folder: Path, counts: tuple[int, int, int]) -> dict:
         model = Model(case, domain, _frame, THIRD_TENSION)
     else:
         model = Model(case, domain)
-    answers = answers_of(model, case, equilibrium(model, case, STEPS[problem]))
+    answers = answers_of(model, case, equilibrium(model, case))
     kept = {name: value for name, value in answers.items() if not name.startswith("force")}
     for probe in case["probe"]:
         moved = kept[f"displacement/{probe['name']}/z"]
