@@ -115,18 +115,20 @@ def _volumetric(material: dict, J, p):
 class Model:
     """A case on a mesh of hexahedra: the residual of displacements and pressures. Pressures on
     faces follow them, tractions do not; `active` is a stress [Pa] along the fibres, second
-    Piola–Kirchhoff, that grows with the load."""
+    Piola–Kirchhoff, that grows with the load. Subclasses have other kinematics."""
 
     three_fields = True
+    cell = CELL
 
     def __init__(self, case: dict, domain, frame: Callable | None = None, active: float = 0.0):
         self.domain = domain
-        element = [versions.vector_element(CELL, 2, 3), versions.discontinuous_element(CELL)]
+        element = [versions.vector_element(self.cell, 2, 3)]
+        element.append(versions.discontinuous_element(self.cell))
         self.space = versions.function_space(self.domain, versions.mixed_element(element))
         self.unknown = fem.Function(self.space)
         self.u_space, dofs = self.space.sub(0).collapse()
         self.fields = np.asarray(dofs, dtype=np.int32).reshape(-1, 3)
-        self.points = self.u_space.tabulate_dof_coordinates()
+        self.points = self.positions(self.u_space.tabulate_dof_coordinates())
         self.loads = []
         material = next(iter(case["material"].values()))
         axes = frame(domain) if frame else _frame(material, ufl.SpatialCoordinate(domain))
@@ -135,7 +137,7 @@ class Model:
     def _make_forms(self, case: dict, material: dict, axes, active: float) -> None:
         dx = ufl.Measure("dx", self.domain, metadata={"quadrature_degree": QUADRATURE})
         u, p = ufl.split(self.unknown)
-        F = ufl.Identity(3) + ufl.grad(u)
+        F, volume = self.gradient(u), self.volume_factor()
         J = ufl.det(F)
         Q = ufl.as_matrix([[axis[i] for i in range(3)] for axis in axes]).T
         C = Q.T * (J ** (-2.0 / 3.0) * F.T * F) * Q
@@ -145,19 +147,39 @@ class Model:
         if active:
             along = F * axes[0]
             energy += 0.5 * self._load(active) * (ufl.inner(along, along) - 1)
-        residual = ufl.derivative(energy * dx, self.unknown)
+        residual = ufl.derivative(energy * volume * dx, self.unknown)
         v, _ = ufl.TestFunctions(self.space)
-        normal = ufl.FacetNormal(self.domain)
+        v, normal = self.virtual(v, u), self.normal()
         for row in case.get("pressure", []):
             force = self._load(row["pressure"]) * J * ufl.dot(ufl.inv(F).T, normal)
-            residual += ufl.inner(force, v) * self._on(row["where"])
+            residual += ufl.inner(force, v) * volume * self._on(row["where"])
         for row in case.get("traction", []):
             size = self._load(1.0)
             force = ufl.as_vector([size * float(part) for part in row["traction"]])
-            residual -= ufl.inner(force, v) * self._on(row["where"])
+            residual -= ufl.inner(force, v) * volume * self._on(row["where"])
         self.residual_form = versions.form(residual)
         self.jacobian_form = versions.form(ufl.derivative(residual, self.unknown))
-        self.energy_form = versions.form((shape + stored) * dx)
+        self.energy_form = versions.form((shape + stored) * volume * dx)
+
+    def gradient(self, u):
+        """F."""
+        return ufl.Identity(3) + ufl.grad(u)
+
+    def volume_factor(self):
+        """dV/dx, which is also dA/ds."""
+        return 1.0
+
+    def virtual(self, v, u):
+        """The virtual displacements of a test function."""
+        return v
+
+    def normal(self):
+        """The normal of facets."""
+        return ufl.FacetNormal(self.domain)
+
+    def positions(self, points: np.ndarray) -> np.ndarray:
+        """Positions (n, 3) [m] of points (n, 3) of the mesh."""
+        return points
 
     def _load(self, value: float):
         """A load that grows to the value."""
@@ -169,10 +191,11 @@ class Model:
         """The measure of the facets of a selection."""
 
         def on(x):
-            return selected(where, x.T, ON_PLANE)
+            return selected(where, self.positions(x.T), ON_PLANE)
 
-        facets = mesh.locate_entities_boundary(self.domain, 2, on)
-        tags = mesh.meshtags(self.domain, 2, np.sort(facets), np.ones(len(facets), np.int32))
+        size = self.domain.topology.dim - 1
+        facets = mesh.locate_entities_boundary(self.domain, size, on)
+        tags = mesh.meshtags(self.domain, size, np.sort(facets), np.ones(len(facets), np.int32))
         metadata = {"quadrature_degree": QUADRATURE}
         return ufl.Measure("ds", self.domain, subdomain_data=tags, metadata=metadata)(1)
 

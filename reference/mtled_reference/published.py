@@ -1,7 +1,8 @@
 """The left ventricles of Land's benchmark (Proc. R. Soc. A 471:20150641, 2015) by FEniCSx, with the
 elements of `fibres.py` on hexahedra whose edges are curved: half an ellipsoid with a thick wall,
 held at its base, under a pressure that follows the inner surface. In the second problem a quarter
-is enough; in the third the fibres turn across the wall and pull, and the whole body twists. And
+is enough; in the third the fibres turn across the wall and pull, and the whole body twists. Both
+are bodies of revolution, which a mesh of a half section solves too, with an angle of twist. And
 strips in plane strain, in quadrilaterals with quadratic displacements."""
 
 import json
@@ -22,7 +23,6 @@ from .fenicsx.model import Model as PlaneModel
 from .fenicsx.model import Recipe
 from .fenicsx.newton import Newton, solve_static
 from .fibres import (
-    CELL,
     QUADRATURE,
     Model,
     answers_of,
@@ -43,6 +43,8 @@ CAP = 0.2
 GRADING = 2.0
 """Exponent by which cells shrink towards the base, whose edges are singular [–]."""
 BISECTIONS = 50
+ARM = 0.01
+"""Length [m] by which angles of twist are multiplied to be of the size of displacements."""
 
 THIRD = {"C": 2e3, "b_f": 8.0, "b_t": 2.0, "b_fs": 4.0}
 """Constants of the third problem."""
@@ -141,11 +143,14 @@ def frame_at(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _frame(domain):
     """Fibres, normals of the wall and the third direction at the points of the quadrature."""
-    element = ufl.VectorElement("Quadrature", CELL, QUADRATURE, dim=3, quad_scheme="default")
+    cell, size = domain.ufl_cell().cellname(), domain.topology.dim
+    element = ufl.VectorElement("Quadrature", cell, QUADRATURE, dim=3, quad_scheme="default")
     space = fem.FunctionSpace(domain, element)
-    points, _ = basix.make_quadrature(getattr(basix.CellType, CELL), QUADRATURE)
-    cells = np.arange(domain.topology.index_map(3).size_local, dtype=np.int32)
-    places = fem.Expression(ufl.SpatialCoordinate(domain), points).eval(cells).reshape(-1, 3)
+    points, _ = basix.make_quadrature(getattr(basix.CellType, cell), QUADRATURE)
+    cells = np.arange(domain.topology.index_map(size).size_local, dtype=np.int32)
+    places = fem.Expression(ufl.SpatialCoordinate(domain), points).eval(cells).reshape(-1, size)
+    if size == 2:
+        places = np.stack([places[:, 0], np.zeros(len(places)), places[:, 1]], axis=1)
     functions = []
     for directions in frame_at(places):
         function = fem.Function(space)
@@ -155,49 +160,102 @@ def _frame(domain):
     return fibre, normal, ufl.cross(fibre, normal)
 
 
-def _case(problem: str, folder: Path) -> dict:
-    """The case file of the second problem; for the third with what differs there."""
+class Turned(Model):
+    """A body of revolution on its half section in R and Z: displacements away from the axis, the
+    angle of twist times `ARM`, and displacements along the axis."""
+
+    cell = "quadrilateral"
+
+    def gradient(self, u):
+        out, twist, along = (ufl.grad(u[i]) for i in range(3))
+        turn, R = twist / ARM, ufl.SpatialCoordinate(self.domain)[0]
+        r = R + u[0]
+        return ufl.as_matrix(
+            [
+                [1 + out[0], 0, out[1]],
+                [r * turn[0], r / R, r * turn[1]],
+                [along[0], 0, 1 + along[1]],
+            ]
+        )
+
+    def volume_factor(self):
+        return 2.0 * np.pi * ufl.SpatialCoordinate(self.domain)[0]
+
+    def virtual(self, v, u):
+        r = ufl.SpatialCoordinate(self.domain)[0] + u[0]
+        return ufl.as_vector([v[0], r * v[1] / ARM, v[2]])
+
+    def normal(self):
+        normal = ufl.FacetNormal(self.domain)
+        return ufl.as_vector([normal[0], 0.0, normal[1]])
+
+    def positions(self, points: np.ndarray) -> np.ndarray:
+        return np.stack([points[:, 0], np.zeros(len(points)), points[:, 1]], axis=1)
+
+
+def section(wall: int, up: int) -> list[Block]:
+    """The half section of the wall in two blocks of half of `up` cells each, which shrink towards
+    the apex and towards the base."""
+
+    def part(ends: tuple[float, float]):
+        def placed(s):
+            way = ends[0] + (ends[1] - ends[0]) * s[:, 1] ** GRADING
+            return _on_wall(np.stack([way, 0.0 * way], axis=1), s[:, 0])[:, [0, 2]]
+
+        return placed
+
+    return [Block(part((end, 0.5)), (wall, up // 2)) for end in (0.0, 1.0)]
+
+
+def _case(problem: str, folder: Path, planes: str) -> dict:
+    """The case file of the second problem, for the third with what differs there; planes of
+    symmetry, or the axis, stay where they are along x or y."""
     case = tomllib.loads((folder / "land_2" / "case.toml").read_text())
     if problem == "land_3":
         case["material"]["muscle"] |= {"constants": THIRD, "bulk_modulus": THIRD_BULK_MODULUS}
         case["pressure"][0]["pressure"] = THIRD_PRESSURE
-        return case
-    for axis in "xy":
+    for axis in planes:
         normal = [float(axis == other) for other in "xyz"]
         where = {"plane": {"point": [0.0, 0.0, 0.0], "normal": normal}}
         case["prescribe"].append({"name": axis, "where": where, "displacement": {axis: 0.0}})
     return case
 
 
-def solve(problem: str, folder: Path, counts: tuple[int, int, int]) -> dict:
-    """Answers of `land_2` or `land_3` with so many cells as `ventricle` says."""
-    case = _case(problem, folder)
-    third = problem == "land_3"
-    points, cells = mesh_of_blocks(ventricle(*counts, quarter=not third), CELL)
-    domain = versions.create_mesh(CELL, 2, points, cells)
-    if third:
-        model = Model(case, domain, _frame, THIRD_TENSION)
+def solve(problem: str, folder: Path, counts: tuple[int, ...]) -> dict:
+    """Answers of `land_2` or `land_3` with so many cells as `ventricle` says, or `section` where
+    there are two counts."""
+    third, turned = problem == "land_3", len(counts) == 2
+    if turned:
+        blocks, planes, kind = section(*counts), "x", Turned
     else:
-        model = Model(case, domain)
+        blocks, planes, kind = ventricle(*counts, quarter=not third), "" if third else "xy", Model
+    case = _case(problem, folder, planes)
+    points, cells = mesh_of_blocks(blocks, kind.cell)
+    if turned:
+        # On the axis up to round-off.
+        points[np.abs(points[:, 0]) < 1e-12, 0] = 0.0
+    domain = versions.create_mesh(kind.cell, 2, points, cells)
+    model = kind(case, domain, _frame, THIRD_TENSION) if third else kind(case, domain)
     answers = answers_of(model, case, equilibrium(model, case))
-    kept = {name: value for name, value in answers.items() if not name.startswith("force")}
+    kept = {}
     for probe in case["probe"]:
-        moved = kept[f"displacement/{probe['name']}/z"]
+        moved = answers[f"displacement/{probe['name']}/z"]
+        kept[f"displacement/{probe['name']}/z"] = moved
         kept[f"position/{probe['name']}/z"] = probe["point"][2] + moved
+    whole = 1.0 if turned or third else 4.0
+    kept["strain_energy"] = whole * answers["strain_energy"]
     return {"cells": len(cells), "unknowns": len(model.unknown.x.array), "answers": kept}
 
 
-def solve_on_meshes(
-    problem: str, folder: Path, meshes: list[tuple[int, int, int]], out: Path
-) -> None:
+def solve_on_meshes(problem: str, folder: Path, meshes: list[tuple[int, ...]], out: Path) -> None:
     """Writes the answers on several meshes, with processor time and packages."""
     solved = []
     for counts in meshes:
         start = seconds_apart_from_compiling()
         mesh = solve(problem, folder, counts)
         cpu = round(seconds_apart_from_compiling() - start, 2)
-        across, around, up = counts
-        named = {"cells_across": across, "cells_around_eighth": around, "cells_up": up}
+        names = ("across", "along_eighth", "up") if len(counts) == 3 else ("across", "up")
+        named = {f"cells_{name}": count for name, count in zip(names, counts)}
         solved.append({**named, "cpu_s": cpu, **mesh})
         print(json.dumps(solved[-1]), flush=True)
         result = {"problem": problem, "packages": versions.packages(), "meshes": solved}
