@@ -57,7 +57,9 @@ def _add_solving(commands) -> None:
     command = commands.add_parser("published", help="solve a ventricle of Land's benchmark")
     command.add_argument("problem", choices=("land_2", "land_3"))
     command.add_argument("--published", type=Path, required=True, help="folder of the problems")
-    cells = "across the wall, along an eighth of the circumference, up; of a half section two of them"
+    cells = (
+        "across the wall, along an eighth of the circumference, up; of a half section two of them"
+    )
     command.add_argument("--cells", type=int, nargs="+", action="append", required=True, help=cells)
     command.add_argument("--out", type=Path, required=True)
     command.set_defaults(run=_published)
