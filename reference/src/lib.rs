@@ -105,6 +105,7 @@ published! {
     "l_block": "case";
     "land_1":;
     "land_2": "case";
+    "land_3": "case";
     "plate_strip": "case";
     "reese_block": "load_20" "load_40" "load_60" "load_80";
     "rubber_seal": "half_stroke" "whole_stroke";
@@ -117,8 +118,10 @@ published! {
 }
 
 /// (file, text) of what their cases name.
-pub static PUBLISHED_FILES: &[(&str, &str)] =
-    &[("twisted_beam.obj", include_str!("../published/twisted_beam/twisted_beam.obj"))];
+pub static PUBLISHED_FILES: &[(&str, &str)] = &[
+    ("twisted_beam.obj", include_str!("../published/twisted_beam/twisted_beam.obj")),
+    ("fibres.csv", include_str!("../published/land_3/fibres.csv")),
+];
 
 /// (file, bytes) of the label maps in `brain`.
 pub static LABEL_MAPS: &[(&str, &[u8])] = &[

@@ -59,7 +59,10 @@ fn report(
         let (_, problem) = of_run.context("a run without a problem")?;
         for number in problem.numbers.iter().filter(|number| number.case == run.case.name) {
             let row = row(run, number)?;
-            if run.is_own {
+            // Figures of the quick suite alone are stored.
+            let of = problem.cases.iter().find(|of| of.name == run.case.name);
+            let is_stored = number.missed.is_empty() || of.is_some_and(|of| !of.only_full);
+            if run.is_own && is_stored {
                 study.checks.push(check(bench, &problem.title, &row, number));
             }
             rows.push((row, number));
