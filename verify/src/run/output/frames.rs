@@ -12,7 +12,7 @@ use crate::run::prepare::Prepared;
 use crate::run::record::{Frame, Recording};
 use crate::scene::Case;
 use anyhow::Result;
-use mtled::problem::Motion;
+use mtled::problem::{Motion, Problem};
 use mtled_checks::escape::file_name;
 use std::path::{Path, PathBuf};
 
@@ -55,10 +55,11 @@ pub fn lists_frames(collection: &Path) -> bool {
     std::fs::read_to_string(collection).is_ok_and(lists)
 }
 
-/// A static run has no physical time: its frames are numbered.
-fn order(motion: &Motion) -> Order {
-    match motion {
+/// A static run has no physical time, unless a material has a memory: its frames are numbered.
+fn order(problem: &Problem) -> Order {
+    match problem.motion {
         Motion::Dynamic { .. } => Order::Time,
+        _ if problem.has_memory() => Order::Time,
         Motion::Static(_) | Motion::Relaxed(_) | Motion::Newton(_) => Order::Number,
     }
 }
@@ -100,7 +101,7 @@ pub fn write_frames(
     let problem = &case.problem;
     let positions = &prepared.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
-    let order = order(&problem.motion);
+    let order = order(problem);
     let body = if record.frames.is_empty() { None } else { BodyFrames::new(problem, prepared)? };
     let (mut at, mut last) = (Vec::new(), None);
     for (number, frame) in record.frames.iter().enumerate() {
@@ -108,7 +109,7 @@ pub fn write_frames(
         let indicator = indicator.filter(|_| is_last);
         let mode = record.unstable_mode.as_ref().filter(|_| is_last);
         let fields = NodeFields::new(problem, prepared, frame, indicator)?;
-        let numbers = numbers(&problem.motion, frame);
+        let numbers = numbers(problem, frame);
         let of_body =
             body.as_ref().map(|body| body.frame(prepared, frame, &fields, mode, numbers.clone()));
         let of_nodes = node_frame(prepared, &points, fields, mode, numbers)?;
@@ -140,16 +141,16 @@ pub fn body_at_end(
     let Some(body) = BodyFrames::new(problem, prepared)? else { return Ok(None) };
     let fields = NodeFields::new(problem, prepared, frame, indicator)?;
     let mode = record.unstable_mode.as_ref();
-    let numbers = numbers(&problem.motion, frame);
+    let numbers = numbers(problem, frame);
     Ok(Some(body.drawn(body.frame(prepared, frame, &fields, mode, numbers))))
 }
 
 /// Time of a frame \[s\], or how far a static run had come.
-fn numbers(motion: &Motion, frame: &Frame) -> Vec<(&'static str, f64)> {
-    match order(motion) {
+fn numbers(problem: &Problem, frame: &Frame) -> Vec<(&'static str, f64)> {
+    match order(problem) {
         Order::Time => vec![("TimeValue", frame.time)],
         Order::Number => {
-            vec![("step", frame.step as f64), ("load_fraction", frame.time / motion.end())]
+            vec![("step", frame.step as f64), ("load_fraction", frame.time / problem.motion.end())]
         }
     }
 }

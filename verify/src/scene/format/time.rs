@@ -114,7 +114,7 @@ pub struct LatticeFormat {
 pub struct OutputFormat {
     /// Number of VTU frames after the first, at equal parts of the progress, the end among
     /// them; 20 if left out. A static run that ends early has fewer, and solver "newton" at
-    /// most one for each part of the load; their frames are numbered, since they have no time.
+    /// most one for each part of the load; their frames are numbered, since they have no time without viscosity.
     pub frames: Option<usize>,
     /// Times of the frames [s]; equal parts of the progress, `frames` of them, if left out. A
     /// step ends at each, and a sample of histories is taken too; the first state and the last

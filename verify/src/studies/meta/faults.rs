@@ -33,6 +33,8 @@ pub const FAULTS: &[(&str, &str)] = bundled![
     "18_thickness_forgotten",
     "19_no_number_swallowed",
     "20_neighbour_dropped",
+    "21_fibre_frame",
+    "22_branch_forgotten",
 ];
 
 /// Number of checks that the table names.
