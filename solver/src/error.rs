@@ -238,7 +238,7 @@ pub enum Error {
         indefinite: bool,
     },
     #[error(
-        "sensitivities of a body with viscosity depend on all equilibria before the last one, and are not computed: remove `viscosity` for those of a sudden load"
+        "sensitivities of a body with viscosity depend on all equilibria before the last one, and are not computed: remove `prony` for those of a sudden load"
     )]
     MemoryToVary,
     #[error(

@@ -136,6 +136,41 @@ fn a_dead_load_creeps_to_the_strain_of_what_is_left_of_the_stiffness() {
 }
 
 #[test]
+fn what_is_released_goes_at_once_whatever_the_parts() {
+    let mut problem = with_law(cube(2), isochoric_neo_hookean());
+    for axis in 0..3 {
+        let mut values = [None; 3];
+        values[axis] = Some(0.0);
+        problem.conditions.push(condition("symmetry", face(axis, 0.0), values));
+    }
+    let mut top = condition("top", face(0, EDGE), [Some(0.03), None, None]);
+    top.release = Some(1.0);
+    problem.conditions.push(top);
+    problem.regions[0].viscosity =
+        Some(PronySeries::new(&[PronyTerm { g: 0.5, tau: 1.0 }]).unwrap());
+    let left = |parts| {
+        let Solved { model, state, .. } = solve_by(&problem, followed(1.0, parts));
+        state.displacement_of(model.positions.len() - 1, 3).x
+    };
+    let (few, many) = (left(3), left(24));
+    assert!(many > 0.001 && (few / many - 1.0).abs() < 2e-3, "{few} {many}");
+}
+
+#[test]
+fn the_time_step_allows_for_the_tension_that_is_to_come() {
+    let step = |tension: f64, amplitude| {
+        let mut problem = pulling(isochoric_neo_hookean(), Vector3::x(), tension);
+        problem.regions[0].active = Some(ActiveStress { tension, amplitude });
+        solve_by(&problem, Motion::dynamic(1e-6, 0.0)).summary.critical_time_step
+    };
+    let ramp = || Amplitude::Linear { duration: 0.02 };
+    let table = Amplitude::Table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 0.2)]);
+    let whole = step(6e4, Amplitude::Constant);
+    assert_eq!([step(6e4, ramp()), step(6e4, table)], [whole; 2]);
+    assert!(whole < 0.5 * step(1.0, ramp()));
+}
+
+#[test]
 fn works_close_the_balance_and_relaxation_takes_energy_from_a_slow_cycle() {
     let cycle = Amplitude::Table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)]);
     let solved = solve_by(&sheared(isochoric_neo_hookean(), cycle), followed(2.0, 20));

@@ -128,10 +128,15 @@ fn a_state_that_does_not_belong_to_the_case_is_refused() {
     let with = |set: &'static str| [&state[..], &["--set", set]].concat();
     refused(&with("material.soft.young_modulus=3001.0"), "it is of another body");
     refused(&with("discretisation.spacing=0.006"), "it is of another body");
+    refused(&with("material.muscle.prony=[{ g = 0.3, tau = 0.02 }]"), "it is of another body");
+    refused(&with("material.muscle.fibres.direction=[1.0, 0.2, 0.0]"), "it is of another body");
     let ended = [&with("time.end=0.02")[..], &["--set", "output.states=[0.02]"]].concat();
     refused(&ended, "leaves nothing of the motion");
     refused(&["--from", "whole/result.json"], "this is not a state");
     refused(&["--from", "whole/nothing.json"], "nothing.json");
+    let (code, text) = solve(path, &[&state[..], &["--out", "whole"]].concat());
+    assert_eq!(code, 2, "{text}");
+    assert!(text.contains("would replace the folder of its own state"), "{text}");
     // Other loads are allowed.
     let longer = with("time.end=0.07");
     assert_eq!(solve(path, &[&longer[..], &["--out", "longer"]].concat()).0, 0);

@@ -142,7 +142,8 @@ fn integrate(
     let mut buffers = Buffers::new(model, observer.tracks_work());
     let mut control = StepController::new(model, settings, state, &mut buffers)?;
     let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
-    let mut start = state.time;
+    let began = state.time;
+    let mut start = began;
     if !model.contact.obstacles.is_empty() && !state.contact.impacts.is_active() {
         state.contact.impacts = Impacts::new(&state.velocity, model.components);
     }
@@ -160,7 +161,7 @@ fn integrate(
         let report = step(model, &scheme, now, then, state, &mut buffers);
         control.record(model, state, &mut buffers, &report);
         check_divergence(model, state, &report)?;
-        let progress = state.time / end;
+        let progress = (state.time - began) / (end - began);
         let jacobian = report.smallest_jacobian.jacobian;
         stopped = notify(model, state, jacobian, progress, observer) == Continue::Stop;
         let view = View { model, state, smallest_jacobian: jacobian, progress };

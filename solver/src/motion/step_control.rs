@@ -75,11 +75,19 @@ pub(crate) struct StepController {
     summary: Summary,
 }
 
-/// By Lanczos from nothing, with the extra stresses of a state.
-fn critical_step(model: &Model, state: &State, buffers: &mut Buffers) -> CriticalStep {
+/// By Lanczos from nothing or from what is known, with the extra stresses of a state and the largest
+/// tension that is to come.
+fn critical_step(
+    model: &Model,
+    state: &State,
+    known: Option<&CriticalStep>,
+    buffers: &mut Buffers,
+) -> CriticalStep {
     let (u, t) = (&state.displacement, state.time);
+    state.extra.act_at_most(model, t, &mut buffers.workspace);
+    let critical = critical_time_step(model, u, t, known, &mut buffers.workspace);
     state.extra.act(model, t, &mut buffers.workspace);
-    critical_time_step(model, u, t, None, &mut buffers.workspace)
+    critical
 }
 
 impl StepController {
@@ -89,7 +97,7 @@ impl StepController {
         state: &State,
         buffers: &mut Buffers,
     ) -> Result<StepController, Error> {
-        let critical = critical_step(model, state, buffers);
+        let critical = critical_step(model, state, None, buffers);
         let u = &state.displacement;
         // A displacement that is no number ends the run where it is, as diverged.
         let can_step = critical.time_step > 0.0 || !u.iter().all(|u| u.is_finite());
@@ -131,7 +139,7 @@ impl StepController {
 
     /// Goes on as a new one would.
     pub fn renew(&mut self, model: &Model, state: &State, buffers: &mut Buffers) {
-        self.critical = critical_step(model, state, buffers);
+        self.critical = critical_step(model, state, None, buffers);
         if self.control.fixed.is_none() {
             self.time_step = self.control.safety_factor * self.critical.time_step;
         }
@@ -151,9 +159,7 @@ impl StepController {
         if self.control.fixed.is_some() || !(due || stage != self.stage) {
             return false;
         }
-        let (u, t) = (&state.displacement, state.time);
-        self.critical =
-            critical_time_step(model, u, t, Some(&self.critical), &mut buffers.workspace);
+        self.critical = critical_step(model, state, Some(&self.critical), buffers);
         self.time_step = self.control.safety_factor * self.critical.time_step;
         self.summary.lanczos_evaluations += self.critical.products;
         self.growth = None;

@@ -26,7 +26,8 @@ pub struct SolveArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Go on with a motion from a state that `output.states` of its case has written: the bits are
-    /// those of the run that wrote it. Loads and times may be others.
+    /// those of the run that wrote it. Loads and times may be others. There are no error bars then, since
+    /// coarser clouds have no such state.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
     /// Leave out the error bars, which take coarser clouds and up to a third of the time of the
@@ -39,6 +40,14 @@ pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
     let case = load(&arguments.case, &arguments.set.overrides)?;
     let preset = || PathBuf::from("reports").join(file_name(&case.name));
     let out = arguments.out.clone().unwrap_or_else(preset);
+    if let Some(state) = &arguments.from {
+        let folder = state.parent().and_then(|folder| folder.canonicalize().ok());
+        anyhow::ensure!(
+            folder.is_none() || folder != out.canonicalize().ok(),
+            "{}: the run would replace the folder of its own state; name another with --out",
+            state.display()
+        );
+    }
     ensure_writable(&out)?;
     match solve_to(&case, &out, arguments, common) {
         Ok(code) => code,

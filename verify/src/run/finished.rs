@@ -81,6 +81,8 @@ pub fn solve_recorded(
         Err(error) => return Err(failed(error, solved.prepared, record)),
     };
     let audit_seconds = cpu_seconds() - cpu;
+    // Coarser clouds have no state to go on from.
+    let with_bars = with_bars && solved.prepared.start.is_none();
     let bars = with_bars.then(|| error_bars(case, &solved, &record, !record.frames.is_empty()));
     Ok(Finished { solved, record, contacts, bars, audit, audit_seconds })
 }

@@ -67,7 +67,7 @@ impl SavedState {
         let fits = saved.body == fingerprint(model) && saved.state.misfit(model).is_none();
         ensure!(
             fits,
-            "{}: it is of another body: nodes, materials and masses must be those of the run that wrote it; loads and times may differ",
+            "{}: it is of another body: nodes, materials, masses and what conditions hold must be those of the run that wrote it; loads and times may differ",
             named()
         );
         let time = saved.time_s;
@@ -107,5 +107,12 @@ fn fingerprint(model: &Model) -> String {
     let mut add = |number: f64| hash.update(number.to_bits().to_le_bytes());
     model.positions.iter().flat_map(|X| X.iter()).for_each(|number| add(*number));
     model.inertia.iter().chain(&model.stiffness).for_each(|number| add(*number));
+    for block in &model.blocks {
+        block.frames.iter().flatten().flat_map(|entry| entry.0).for_each(&mut add);
+    }
+    for block in &model.blocks {
+        let material = (&block.law, &block.viscosity, &block.active);
+        hash.update(format!("{material:?}").as_bytes());
+    }
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

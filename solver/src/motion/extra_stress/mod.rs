@@ -125,10 +125,26 @@ impl ExtraState {
     /// since what is remembered the isochoric stress is taken to grow by equal parts (method book,
     /// eq. 3.25).
     pub fn act(&self, model: &Model, t: f64, workspace: &mut Workspace) {
+        self.act_with(model, |block| tension(block, t), workspace);
+    }
+
+    /// As [`ExtraState::act`] with the largest tension that active fibres have at any time from `t`
+    /// \[s\] on, for a time step that is stable with all of them.
+    pub fn act_at_most(&self, model: &Model, t: f64, workspace: &mut Workspace) {
+        let largest = |block: &Block| {
+            let Some(active) = &block.active else { return 0.0 };
+            let corners = active.amplitude.corners();
+            let later = corners.into_iter().filter(|corner| *corner > t).chain([t]);
+            later.map(|time| tension(block, time)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        self.act_with(model, largest, workspace);
+    }
+
+    fn act_with(&self, model: &Model, tension: impl Fn(&Block) -> f64, workspace: &mut Workspace) {
         let interval = self.interval;
         for (index, (block, state)) in model.blocks.iter().zip(&self.blocks).enumerate() {
             let (Some(state), Some(extra)) = (state, workspace.extra(index)) else { continue };
-            let tension = tension(block, t);
+            let tension = tension(block);
             let decay = || terms(block).map(|term| (term, term.left_after(interval)));
             extra.relaxed = decay().map(|(term, (_, mean))| term.g * (1.0 - mean)).sum();
             let ExtraStress { stress, .. } = extra;

@@ -10,6 +10,9 @@ use crate::motion::step::{add_pressures, external_force};
 use crate::motion::summary::{NewtonCounts, Summary};
 use crate::problem::Newton;
 
+/// Time that a sudden change takes, over that of the run \[–\].
+const SUDDEN: f64 = 1e-9;
+
 /// Follows a body whose materials have viscosity: first to the equilibrium of a sudden load at the
 /// start, then to those at the ends of parts of the time, each by [`equilibrate`]. After an error
 /// the state is the last equilibrium.
@@ -58,13 +61,18 @@ fn acts(model: &Model, state: &State) -> bool {
 fn times(model: &Model, settings: &Newton, start: f64) -> Vec<f64> {
     let end = settings.load_end;
     let within = |time: &f64| *time > start && *time < end;
-    let mut corners: Vec<f64> = model.corners().into_iter().filter(within).collect();
+    let mut corners = model.corners();
+    // What a condition held until its release goes at once.
+    let sudden = SUDDEN * (end - start);
+    let releases = model.constraints.conditions.iter().filter_map(|condition| condition.release);
+    corners.extend(releases.map(|release| release - sudden));
+    corners.retain(within);
     corners.extend([start, end]);
     corners.sort_by(f64::total_cmp);
     corners.dedup();
-    let count = settings.parts;
     let parts = |pair: &[f64]| {
         let (from, to) = (pair[0], pair[1]);
+        let count = if to - from < 1.5 * sudden { 1 } else { settings.parts };
         let inner = (1..count).map(|n| from + (to - from) * n as f64 / count as f64);
         inner.chain([to]).collect::<Vec<_>>()
     };
