@@ -14,7 +14,7 @@ pub fn strain_energy(model: &Model, u: &[f64]) -> f64 {
 }
 
 /// As [`strain_energy`], of a sudden strain, with Σ_q w_q ½ S_q : (C_q − 1) of the extra stresses S
-/// of a workspace: what [`internal_force`] is the derivative of while nothing relaxes.
+/// of a workspace: what [`internal_force`](super::internal_force) is the derivative of while nothing relaxes.
 pub fn potential_energy(model: &Model, u: &[f64], workspace: &Workspace) -> f64 {
     let blocks = model.blocks.iter().zip(&workspace.blocks);
     blocks.map(|(block, own)| block_energy(model, block, u, own.extra.as_ref())).sum()
