@@ -55,6 +55,15 @@ fn shear_stress(solved: &Solved) -> f64 {
     moments.sum::<f64>() / EDGE.powi(3)
 }
 
+/// Has the cube stand on its three faces through the origin, which slide.
+fn stand(problem: &mut Problem) {
+    for axis in 0..3 {
+        let mut values = [None; 3];
+        values[axis] = Some(0.0);
+        problem.conditions.push(condition("symmetry", face(axis, 0.0), values));
+    }
+}
+
 fn followed(end: f64, parts: usize) -> Motion {
     Motion::Newton(Newton { load_end: end, tolerance: 1e-10, parts })
 }
@@ -102,11 +111,7 @@ fn the_stress_of_a_strain_that_grows_is_the_convolution_to_second_order() {
 #[test]
 fn a_dead_load_creeps_to_the_strain_of_what_is_left_of_the_stiffness() {
     let mut problem = with_law(cube(2), isochoric_neo_hookean());
-    for axis in 0..3 {
-        let mut values = [None; 3];
-        values[axis] = Some(0.0);
-        problem.conditions.push(condition("symmetry", face(axis, 0.0), values));
-    }
+    stand(&mut problem);
     let traction = Vector3::new(600.0, 0.0, 0.0);
     problem.loads.tractions.push(Traction {
         name: "pull".into(),
@@ -138,11 +143,7 @@ fn a_dead_load_creeps_to_the_strain_of_what_is_left_of_the_stiffness() {
 #[test]
 fn what_is_released_goes_at_once_whatever_the_parts() {
     let mut problem = with_law(cube(2), isochoric_neo_hookean());
-    for axis in 0..3 {
-        let mut values = [None; 3];
-        values[axis] = Some(0.0);
-        problem.conditions.push(condition("symmetry", face(axis, 0.0), values));
-    }
+    stand(&mut problem);
     let mut top = condition("top", face(0, EDGE), [Some(0.03), None, None]);
     top.release = Some(1.0);
     problem.conditions.push(top);
@@ -220,11 +221,7 @@ fn muscle_that_nothing_holds_shortens_until_its_law_balances_its_tension() {
     let guccione = Law::Guccione(isochoric(&[2000.0, 8.0, 2.0, 4.0]));
     for law in [isochoric_neo_hookean(), neo_hookean(3000.0, 0.3), guccione] {
         let mut problem = pulling(law, Vector3::x(), 900.0);
-        for axis in 0..3 {
-            let mut values = [None; 3];
-            values[axis] = Some(0.0);
-            problem.conditions.push(condition("symmetry", face(axis, 0.0), values));
-        }
+        stand(&mut problem);
         let mut simulation =
             Simulation::new(&Problem { motion: statics::newton(), ..problem }).unwrap();
         simulation.run(&mut mtled::Unobserved).unwrap();
