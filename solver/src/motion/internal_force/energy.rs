@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::forces::{Workspace, deformation_gradient, with_local};
-use crate::material::PronySeries;
+use crate::material::{ConstitutiveLaw, PronySeries, with_law};
 use crate::model::blocks::LocalVectors;
 use crate::model::{Block, Chunk, Model};
 use crate::motion::kernel::{ExtraStress, Local};
@@ -21,14 +21,17 @@ pub fn potential_energy(model: &Model, u: &[f64], workspace: &Workspace) -> f64 
 }
 
 fn block_energy(model: &Model, block: &Block, u: &[f64], extra: Option<&ExtraStress>) -> f64 {
-    with_local(|Local { u: local, .. }| match model.components {
-        2 => block_energy_in::<2>(block, u, extra, local),
-        _ => block_energy_in::<3>(block, u, extra, local),
+    with_local(|Local { u: local, .. }| {
+        with_law!(&block.law, law => match model.components {
+            2 => block_energy_in::<2, _>(block, law, u, extra, local),
+            _ => block_energy_in::<3, _>(block, law, u, extra, local),
+        })
     })
 }
 
-fn block_energy_in<const D: usize>(
+fn block_energy_in<const D: usize, L: ConstitutiveLaw>(
     block: &Block,
+    law: &L,
     u: &[f64],
     extra: Option<&ExtraStress>,
     local: &mut LocalVectors,
@@ -43,9 +46,9 @@ fn block_energy_in<const D: usize>(
         for lane in lanes.clone() {
             let F = deformation_gradient::<D>(block, lane, local);
             let own = block.as_the_law_needs(&F, lane);
-            let (mut density, J) = (block.law.strain_energy(&own), F.determinant());
+            let (mut density, J) = (law.strain_energy(&own), F.determinant());
             if relaxing > 0.0 {
-                density -= relaxing * (density - block.law.bulk_energy(J));
+                density -= relaxing * (density - law.bulk_energy(J));
             }
             if let Some(extra) = extra {
                 density += extra.energy(lane, &(F.transpose() * F));
