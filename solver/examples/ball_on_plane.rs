@@ -4,9 +4,9 @@
 //! The cap on top moves down by a tenth of the radius and the ball comes to rest, damped.
 
 use mtled::{
-    Amplitude, Continue, ElasticConstants, EssentialCondition, Friction, Law, Material, Motion,
-    NeoHookeanLogJ, Observer, Obstacle, ObstacleSide, Problem, Recipe, Selector, Shape, Simulation,
-    Vector3, View,
+    Amplitude, Continue, ElasticConstants, EssentialCondition, Law, Material, Motion,
+    NeoHookeanLogJ, Observer, Obstacle, Problem, Recipe, Selector, Shape, Simulation, Vector3,
+    View,
 };
 
 /// The largest number of nodes in contact.
@@ -33,13 +33,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ramp = Amplitude::Smooth { duration: 0.3 };
     let down = Vector3::new(0.0, 0.0, -push);
     problem.conditions = vec![EssentialCondition::on_surface("cap", cap, down, ramp)];
-    problem.obstacles = vec![Obstacle {
-        name: "plane".into(),
-        shape: Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::z() },
-        offset: 0.0,
-        side: ObstacleSide::Outside,
-        friction: Friction::Frictionless,
-    }];
+    problem.obstacles = vec![Obstacle::new(
+        "plane",
+        Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::z() },
+    )];
     problem.motion = Motion::dynamic(0.6, 40.0); // s, 1/s
 
     let mut simulation = Simulation::new(&problem)?;

@@ -4,9 +4,8 @@
 //! negative inside. Boundary nodes, panels and cut cells all come from this function.
 
 use mtled::{
-    Amplitude, BodyForce, DistanceFunction, ElasticConstants, Friction, Law, Material, Motion,
-    NeoHookeanLogJ, Obstacle, ObstacleSide, Problem, Recipe, Selector, Shape, Simulation,
-    Unobserved, Vector3,
+    Amplitude, BodyForce, DistanceFunction, ElasticConstants, Law, Material, Motion,
+    NeoHookeanLogJ, Obstacle, Problem, Recipe, Selector, Shape, Simulation, Unobserved, Vector3,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -26,13 +25,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         acceleration: gravity,
         amplitude: Amplitude::Constant,
     }];
-    problem.obstacles = vec![Obstacle {
-        name: "floor".into(),
-        shape: Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::z() },
-        offset: 0.0,
-        side: ObstacleSide::Outside,
-        friction: Friction::Frictionless,
-    }];
+    problem.obstacles = vec![Obstacle::new(
+        "floor",
+        Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::z() },
+    )];
     problem.motion = Motion::dynamic(0.12, 10.0); // s, 1/s
 
     let mut simulation = Simulation::new(&problem)?;

@@ -6,7 +6,6 @@ use common::*;
 use mtled::algebra::tensor::{Vector3, rotation};
 use mtled::geometry::{DistanceFunction, Selector, Shape};
 use mtled::model::Model;
-use mtled::model::contact::gap;
 use mtled::model::rigid_motions::free_rigid_motions;
 use mtled::motion::observe::{Unobserved, View};
 use mtled::motion::simulate::simulate;
@@ -28,10 +27,8 @@ fn falling(friction: Friction) -> Problem {
 fn smallest_gap(model: &Model, state: &State) -> f64 {
     let place = |n: usize| model.positions[n] + state.displacement_of(n, model.components);
     let nodes = 0..model.positions.len();
-    nodes
-        .flat_map(|n| model.contact.obstacles.iter().map(move |o| (o, n)))
-        .map(|(o, n)| gap(o, &place(n)))
-        .fold(f64::INFINITY, f64::min)
+    let gaps = |n| model.contact.all_placed(state.time).map(move |(_, o)| o.gap(&place(n)));
+    nodes.flat_map(gaps).fold(f64::INFINITY, f64::min)
 }
 
 /// Runs a problem and asserts at every step that no node is inside.

@@ -9,7 +9,7 @@ use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::discretisation::Discretisation;
 use mtled::geometry::{LabelField, LabelMap, Selector, Shape};
 use mtled::model::Model;
-use mtled::model::contact::{ContactSurface, gap};
+use mtled::model::contact::ContactSurface;
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -48,7 +48,7 @@ fn smallest_gap(solved: &Solved) -> f64 {
         model.positions[node] + rows.interpolate(node, &state.displacement, model.components)
     };
     let gaps =
-        model.contact.nodes.iter().map(|node| gap(&model.contact.obstacles[0], &place(node)));
+        model.contact.nodes.iter().map(|node| model.contact.placed(0, 0.0).gap(&place(node)));
     gaps.fold(f64::INFINITY, f64::min)
 }
 
@@ -142,7 +142,8 @@ fn the_area_of_contact_is_that_of_the_face_and_not_of_the_sides_beside_it() {
     let Solved { discretisation, model, state, .. } = solve(&problem);
     let surface = ContactSurface::new(&problem, &discretisation).unwrap();
     let (forces, u) = (state.contact_forces(), &state.displacement);
-    let results = surface.results(&model.contact, &discretisation, &forces, u).unwrap();
+    let results =
+        surface.results((&model.contact, state.time), &discretisation, &forces, u).unwrap();
     assert!((results[0].area / (EDGE * EDGE) - 1.0).abs() < 1e-9, "{} m²", results[0].area);
 }
 

@@ -35,7 +35,7 @@ fn force_of(problem: &Problem) -> (f64, usize) {
     let mut state = State::new(&model);
     simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();
     let force = state.contact_forces().iter().map(|contact| contact.force.z).sum();
-    (force, model.contact.unresolved(&discretisation, &state.displacement).len())
+    (force, model.contact.unresolved(&discretisation, state.time, &state.displacement).len())
 }
 
 fn ball(aside: f64) -> Shape {

@@ -147,8 +147,8 @@ fn nodes_that_an_obstacle_cannot_push_are_reported_where_they_end_inside_it() {
     problem.obstacles.push(floor(-(EDGE + 0.01), -Vector3::y(), Friction::Frictionless));
     let (_, model) = build(&problem);
     let moved = |by: f64| field(&model, |X| Vector3::y() * (X.y / EDGE * by));
-    assert_eq!(model.contact.penetrations(&model.positions, &moved(0.01)), []);
-    let found = model.contact.penetrations(&model.positions, &moved(0.02));
+    assert_eq!(model.contact.penetrations(&model.positions, 1.0, &moved(0.01)), []);
+    let found = model.contact.penetrations(&model.positions, 1.0, &moved(0.02));
     let [Warning::EndInsideObstacle { nodes: 5, depth, .. }] = found[..] else { panic!() };
     assert!((depth - 0.01).abs() < 1e-12);
 }

@@ -7,6 +7,7 @@ use crate::discretisation::Warning;
 use crate::discretisation::neighbours::Neighbours;
 use crate::error::Error;
 use crate::problem::{Obstacle, ObstacleSide};
+use nalgebra::Point3;
 
 /// Depth between nodes over the spacing \[–\]: nodes on the surface of a ball of one spacing let
 /// the chord between them enter by an eighth, and those in the folds of a brain by a quarter.
@@ -45,7 +46,7 @@ impl Run<'_> {
         };
         let facets = self.sampled.facets.iter();
         let now: Vec<Vector3> = facets.map(|facet| moved(&self.at(facet.centre()))).collect();
-        let swallowed = self.model.contact.unresolved(self.discretisation, u);
+        let swallowed = self.model.contact.unresolved(self.discretisation, self.state.time, u);
         let row = |(index, obstacle): (usize, &Obstacle)| {
             let inside = swallowed.iter().find_map(|warning| match warning {
                 Warning::ObstacleInBody { name, position } if *name == obstacle.name => {
@@ -65,16 +66,16 @@ impl Run<'_> {
     }
 
     fn depth(&self, obstacle: &Obstacle, now: &[Vector3]) -> Result<Row, Error> {
-        let mut near: Vec<(f64, Vector3)> = Vec::new();
+        let (t, mut near) = (self.state.time, Vec::<(f64, Vector3)>::new());
         for (facet, x) in self.sampled.facets.iter().zip(now) {
-            let far = gap(obstacle, x);
+            let far = gap(obstacle, t, x);
             let size = facet.area().sqrt();
             if far < 2.0 * size + 0.5 * self.spacing {
                 let parts = if size > 0.2 * self.spacing { PARTS } else { 1 };
                 let shift = x - self.at(facet.centre());
                 near.extend(facet.places(parts).map(|X| {
                     let X = self.at(X);
-                    (gap(obstacle, &(X + shift)), X)
+                    (gap(obstacle, t, &(X + shift)), X)
                 }));
             }
         }
@@ -86,7 +87,7 @@ impl Run<'_> {
         let placed = places.iter().enumerate().map(|(i, X)| X + rows.interpolate(i, u, d));
         // Facets are chords of the boundary, and may lie outside of it.
         let beyond = |X: &Vector3| self.body.signed_distance(X).max(0.0);
-        let depths = placed.zip(&places).map(|(x, X)| -gap(obstacle, &x) - beyond(X));
+        let depths = placed.zip(&places).map(|(x, X)| -gap(obstacle, t, &x) - beyond(X));
         let depth = depths.fold(0.0, f64::max);
         Ok(Row::numbers(Kind::Depth, &obstacle.name, 0.0, depth, DEPTH * self.spacing))
     }
@@ -137,10 +138,12 @@ impl Run<'_> {
     }
 }
 
-/// Distance \[m\] of a place from an obstacle; negative inside. Not that of the contact, which the
-/// audit checks.
-fn gap(obstacle: &Obstacle, x: &Vector3) -> f64 {
-    let from_surface = obstacle.shape.signed_distance(x) - obstacle.offset;
+/// Distance \[m\] of a place from an obstacle at time `t` \[s\]; negative inside. Not that of the
+/// contact, which the audit checks.
+fn gap(obstacle: &Obstacle, t: f64, x: &Vector3) -> f64 {
+    let back = obstacle.place(t).map(|place| place.inverse() * Point3::from(*x));
+    let from_surface =
+        obstacle.shape.signed_distance(&back.map_or(*x, |x| x.coords)) - obstacle.offset;
     match obstacle.side {
         ObstacleSide::Outside => from_surface,
         ObstacleSide::Inside => -from_surface,

@@ -6,8 +6,8 @@ use crate::geometry::{Field, Selector};
 use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use crate::motion::observe::Observer;
 use crate::problem::{
-    Amplitude, BodyForce, EssentialCondition, Friction, Motion, Newton, Obstacle, ObstacleSide,
-    Prescribed, Pressure, Recipe, Region, Traction,
+    Amplitude, BodyForce, EssentialCondition, Motion, Newton, Obstacle, Prescribed, Pressure,
+    Recipe, Region, Traction,
 };
 use crate::simulation::Simulation;
 
@@ -223,13 +223,10 @@ fn an_obstacle_that_has_been_entered_between_nodes_is_doubted() {
         problem.loads = Default::default();
         problem.conditions = vec![held("all", 0.0, 0.04)];
         problem.conditions[0].part = Selector::All;
-        problem.obstacles = vec![Obstacle {
-            name: "ball".into(),
-            shape: Shape::Sphere { centre: Vector3::new(0.05, 0.05, -0.03), radius },
-            offset: 0.0,
-            side: ObstacleSide::Outside,
-            friction: Friction::Frictionless,
-        }];
+        problem.obstacles = vec![Obstacle::new(
+            "ball",
+            Shape::Sphere { centre: Vector3::new(0.05, 0.05, -0.03), radius },
+        )];
         let mut simulation = Simulation::new(&problem).unwrap();
         simulation.state.displacement.iter_mut().skip(2).step_by(3).for_each(|u| *u = -fall);
         row(&simulation, Kind::Depth)
@@ -318,13 +315,10 @@ fn falling_on_a_plane() -> Problem {
     problem.loads = Default::default();
     problem.conditions.clear();
     problem.loads.initial_velocities = vec![(Selector::All, Vector3::new(0.0, 0.0, -0.5).into())];
-    problem.obstacles = vec![Obstacle {
-        name: "floor".into(),
-        shape: Shape::HalfSpace { point: Vector3::new(0.0, 0.0, -0.001), normal: Vector3::z() },
-        offset: 0.0,
-        side: ObstacleSide::Outside,
-        friction: Friction::Frictionless,
-    }];
+    problem.obstacles = vec![Obstacle::new(
+        "floor",
+        Shape::HalfSpace { point: Vector3::new(0.0, 0.0, -0.001), normal: Vector3::z() },
+    )];
     problem.motion = Motion::dynamic(0.02, 0.0);
     problem
 }

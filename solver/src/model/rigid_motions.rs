@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 /// their kernel in the rigid motions. A closed contact counts as if it could not open.
 pub fn free_rigid_motions(model: &Model, t: f64, u: &[f64]) -> usize {
     let mut rows = prescribed_places(model, t);
-    rows.extend(model.contact.closed(&model.positions, u));
+    rows.extend(model.contact.closed(&model.positions, t, u));
     kernel(model, &rows)
 }
 

@@ -11,7 +11,7 @@ use crate::motion::state::State;
 use crate::motion::step::{Buffers, Scheme, StepReport, add_pressures, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};
 use crate::motion::summary::{ContactLoss, NewtonFailure, Summary};
-use crate::problem::{Motion, Relaxation, StepControl, refuse, sticks};
+use crate::problem::{Motion, Relaxation, StepControl, depends_on_way, refuse};
 
 /// Runs the motion of a problem from `state`, and notifies `observer` after every step.
 /// After an error the state is the last one reached, and the observer keeps its records.
@@ -60,7 +60,7 @@ fn solve_static(
     if model.has_memory() {
         return follow(model, &settings.newton(), state, observer);
     }
-    if sticks(&model.contact.obstacles) {
+    if depends_on_way(&model.contact.obstacles) {
         return relax(model, settings, state, observer);
     }
     let start = state.copy();

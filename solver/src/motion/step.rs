@@ -113,7 +113,8 @@ pub fn step(
     state.contact.impacts.begin(&state.velocity);
     predict(model, scheme, state, buffers);
     state.force_factor = 1.0 / (scheme.time_step * scheme.push);
-    let largest_increment = constrain(model, scheme, target_time, state);
+    let times = (load_time, target_time);
+    let largest_increment = constrain(model, scheme, times, state);
     if buffers.track_work {
         add_work(model, scheme, state, buffers);
     }
@@ -184,22 +185,29 @@ fn predict_chunk(
 
 /// Prescribed displacements, then contact, on u(t + Δt). Returns the largest
 /// change of a component \[m\].
-fn constrain(model: &Model, scheme: &Scheme, t: f64, state: &mut State) -> f64 {
+fn constrain(model: &Model, scheme: &Scheme, times: (f64, f64), state: &mut State) -> f64 {
     let State { displacement, velocity, constraint_forces, contact, .. } = state;
     let rate = 1.0 / scheme.time_step;
     let (positions, mass) = (&model.positions, &model.inertia);
-    model.constraints.enforce(t, positions, mass, displacement, constraint_forces, |i, delta| {
-        velocity[i] += delta * rate;
-    });
+    model.constraints.enforce(
+        times.1,
+        positions,
+        mass,
+        displacement,
+        constraint_forces,
+        |i, delta| {
+            velocity[i] += delta * rate;
+        },
+    );
     let increment = largest_or_nan(velocity) * scheme.time_step;
     if model.contact.obstacles.is_empty() {
         return increment;
     }
     let time_step = scheme.time_step;
-    let moving = ContactStep { mass, displacement, velocity, time_step };
+    let moving = ContactStep { mass, displacement, velocity, times, time_step };
     contact.enforce(&model.contact, positions, increment, moving);
     let (time_step, keep) = (scheme.time_step, scheme.keep);
-    let moved = Moved { positions, mass, displacement, velocity, time_step, keep };
+    let moved = Moved { positions, mass, displacement, velocity, times, time_step, keep };
     contact.impacts.settle(&model.contact, &contact.forces, moved);
     // What contact takes back is no movement: a node that is pressed against an obstacle
     // in equilibrium would seem to move for ever.

@@ -55,6 +55,10 @@ pub enum Wrong {
         "is by relaxation, which has no time for a material with viscosity: use Newton's method, or a motion"
     )]
     NoTime,
+    #[error(
+        "is by Newton's method, which has no friction that slides: use relaxation, or a motion"
+    )]
+    NoFriction,
     #[error("is empty; it needs rows of time and factor")]
     Empty,
     #[error("has time {after} after {before}; times must increase")]
@@ -90,7 +94,7 @@ impl Mistakes {
         self.add_if(!value.is_finite(), field, Wrong::NotFinite(value));
     }
 
-    fn not_negative(&mut self, field: &str, value: f64) {
+    pub(super) fn not_negative(&mut self, field: &str, value: f64) {
         self.add_if(value.is_nan() || value < 0.0, field, Wrong::Negative(value));
     }
 

@@ -1,7 +1,7 @@
-//! What acts on the body: prescribed displacements, loads and obstacles.
+//! What acts on the body: prescribed displacements and loads.
 
 use crate::algebra::tensor::Vector3;
-use crate::geometry::{Extent, Field, Selector, Shape};
+use crate::geometry::{Extent, Field, Selector};
 use crate::problem::amplitude::Amplitude;
 
 /// A prescribed displacement on a selection of nodes.
@@ -116,42 +116,4 @@ pub struct Pressure {
     pub pressure: f64,
     /// The factor over time.
     pub amplitude: Amplitude,
-}
-
-/// A rigid obstacle that nodes may not enter.
-#[derive(Debug, Clone)]
-pub struct Obstacle {
-    /// Name in reports and messages.
-    pub name: String,
-    /// The solid, or the cavity.
-    pub shape: Shape,
-    /// The shape is grown by this much first \[m\].
-    pub offset: f64,
-    /// Where the body is.
-    pub side: ObstacleSide,
-    /// What happens along the surface.
-    pub friction: Friction,
-}
-
-/// On which side of the obstacle's surface the body lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ObstacleSide {
-    /// The shape is solid; the body stays outside.
-    Outside,
-    /// The shape is a cavity, as in a skull; the body stays inside.
-    Inside,
-}
-
-/// What happens along the surface of an obstacle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Friction {
-    /// Nodes slide freely.
-    Frictionless,
-    /// Nodes that touch do not slide while they touch.
-    NoSlip,
-}
-
-/// Whether a body sticks to one of these obstacles.
-pub(crate) fn sticks(obstacles: &[Obstacle]) -> bool {
-    obstacles.iter().any(|obstacle| obstacle.friction == Friction::NoSlip)
 }

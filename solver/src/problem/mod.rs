@@ -7,19 +7,18 @@ mod conditions;
 pub mod defaults;
 mod fibres;
 mod motion;
+mod obstacles;
 mod recipe;
 
 pub use crate::geometry::{Dimension, Field};
 pub use amplitude::Amplitude;
 pub(crate) use check::refuse;
 pub use check::{Mistake, Wrong};
-pub(crate) use conditions::sticks;
-pub use conditions::{
-    BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed, Pressure,
-    Traction,
-};
+pub use conditions::{BodyForce, EssentialCondition, Loads, Prescribed, Pressure, Traction};
 pub use fibres::{ActiveStress, Fibres, NoDirection};
 pub use motion::{Motion, Newton, Relaxation, RelaxationMass, StepControl};
+pub(crate) use obstacles::depends_on_way;
+pub use obstacles::{Friction, Obstacle, ObstacleSide, RigidMotion, RigidWay};
 pub use recipe::{
     BackgroundGrid, Basis, Cloud, Enforcement, GradientStorage, Gradients, InsideRule, MassRule,
     MaterialBorders, Recipe, Refinement, VolumetricProjection, WeightFunction,
@@ -90,7 +89,11 @@ impl Problem {
                 found.part(&format!("{list}[{n}].amplitude"), amplitude.check());
             }
         }
+        for (n, obstacle) in self.obstacles.iter().enumerate() {
+            found.part(&format!("obstacles[{n}]"), obstacle.check());
+        }
         found.part("motion", self.motion.check());
+        found.add("motion", self.rubs_in_newton().then_some(Wrong::NoFriction));
         found.add("motion", self.follows_no_time().then_some(Wrong::NoTime));
         found.0
     }
@@ -99,10 +102,16 @@ impl Problem {
     fn follows_no_time(&self) -> bool {
         let relaxes = match self.motion {
             Motion::Relaxed(_) => true,
-            Motion::Static(_) => sticks(&self.obstacles),
+            Motion::Static(_) => depends_on_way(&self.obstacles),
             Motion::Newton(_) | Motion::Dynamic { .. } => false,
         };
         relaxes && self.has_memory()
+    }
+
+    /// Whether friction is asked of Newton's method, which has only its limits.
+    fn rubs_in_newton(&self) -> bool {
+        let rubs = |obstacle: &Obstacle| matches!(obstacle.friction, Friction::Coulomb(_));
+        matches!(self.motion, Motion::Newton(_)) && self.obstacles.iter().any(rubs)
     }
 
     /// Whether a stress depends on what was before.
@@ -113,7 +122,7 @@ impl Problem {
     /// Whether Newton's method is what is tried at first.
     pub fn by_newton(&self) -> bool {
         match self.motion {
-            Motion::Static(_) => !sticks(&self.obstacles),
+            Motion::Static(_) => !depends_on_way(&self.obstacles),
             Motion::Newton(_) => true,
             Motion::Relaxed(_) | Motion::Dynamic { .. } => false,
         }

@@ -182,7 +182,7 @@ pub fn gravity(problem: &mut Problem, acceleration: Vector3) {
 }
 
 pub fn obstacle(shape: Shape, side: ObstacleSide, friction: Friction) -> Obstacle {
-    Obstacle { name: "obstacle".into(), shape, offset: 0.0, side, friction }
+    Obstacle { side, friction, ..Obstacle::new("obstacle", shape) }
 }
 
 /// The half-space below `height` \[m\] along `normal`.

@@ -76,6 +76,8 @@ def test_dataclasses_have_all_keys_of_the_case_file_and_no_others():
     assert own(p.Static, p.Dynamic) == keys(definitions["TimeFormat"])
     motions = {"displacement", "rotation", "formula", "data"}
     assert own(p.Prescribe) - {"motion"} | motions == keys(definitions["PrescribeFormat"])
+    ways = {"displacement", "rotation"}
+    assert own(p.RigidMotion) - {"way"} | ways == keys(definitions["RigidMotionFormat"])
     assert own(p.Problem) - {"shape"} | {"geometry", "dimension"} == keys(schema)
 
     shapes = {kind.kind: kind for kind in (p.Box, p.Cylinder, p.Sphere, p.Ellipsoid, p.Polygon, p.HalfSpace, p.Stl,

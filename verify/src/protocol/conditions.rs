@@ -4,9 +4,9 @@ use super::geometry::{Selection, Shape};
 use crate::scene::Case;
 use crate::scene::format::{
     BeyondFormat, CaseFormat, DataFormat, ExtentFormat, FormulaFormat, FrictionFormat,
-    PrescribeFormat, SelectorFormat, SideFormat, Triple, UnitFormat,
+    ObstacleFormat, PrescribeFormat, SelectorFormat, SideFormat, Triple, UnitFormat,
 };
-use mtled::problem::Amplitude;
+use mtled::problem::{Amplitude, Obstacle, RigidMotion, RigidWay};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -154,6 +154,31 @@ pub struct Contact {
     pub offset_m: f64,
     pub side: SideFormat,
     pub friction: FrictionFormat,
+    /// Its motions, one after the other in axes that stay; empty where it stands still.
+    pub motions: Vec<ContactMotion>,
+}
+
+/// A displacement or a rotation of an obstacle times the factor of each instant.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ContactMotion {
+    pub motion: SupportMotion,
+    pub history: History,
+}
+
+impl ContactMotion {
+    fn new(known: &RigidMotion, instants: &[f64]) -> ContactMotion {
+        let motion = match known.way {
+            RigidWay::Translation(way) => {
+                SupportMotion::Displacement { x_m: Some(way.x), y_m: Some(way.y), z_m: Some(way.z) }
+            }
+            RigidWay::Rotation { point, axis, angle } => SupportMotion::Rotation {
+                point_m: point.into(),
+                axis: axis.into(),
+                angle_rad: angle,
+            },
+        };
+        ContactMotion { motion, history: History::new(&known.amplitude, instants) }
+    }
 }
 
 impl History {
@@ -264,13 +289,17 @@ pub fn loads(format: &CaseFormat, case: &Case, tolerance_m: f64, instants: &[f64
 }
 
 /// The obstacles of a sound case.
-pub fn obstacles(format: &CaseFormat) -> Vec<Contact> {
-    let contact = |row: &crate::scene::format::ObstacleFormat| Contact {
+pub fn obstacles(format: &CaseFormat, case: &Case, instants: &[f64]) -> Vec<Contact> {
+    let pairs = format.obstacle.iter().zip(&case.problem.obstacles);
+    let contact = |(row, known): (&ObstacleFormat, &Obstacle)| Contact {
         name: row.name.clone(),
         shape: (&row.shape).into(),
         offset_m: row.offset,
         side: row.side,
         friction: row.friction,
+        motions: (known.motions.iter())
+            .map(|motion| ContactMotion::new(motion, instants))
+            .collect(),
     };
-    format.obstacle.iter().map(contact).collect()
+    pairs.map(contact).collect()
 }

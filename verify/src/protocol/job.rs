@@ -124,7 +124,7 @@ impl Job {
             regions: regions(&format, case, tolerance_m, instants_s),
             supports: supports(&format, case, tolerance_m, instants_s),
             loads: loads(&format, case, tolerance_m, instants_s),
-            obstacles: obstacles(&format),
+            obstacles: obstacles(&format, case, instants_s),
             motion: match &case.problem.motion {
                 Motion::Dynamic { end, damping, .. } => {
                     JobMotion::Dynamic { end_s: *end, damping_per_s: *damping }

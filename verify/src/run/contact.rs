@@ -5,7 +5,7 @@ use super::prepare::Prepared;
 use crate::scene::Case;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::model::contact::{ContactPlan, ContactResult, gap};
+use mtled::model::contact::{ContactPlan, ContactResult};
 use mtled::motion::state::State;
 use mtled::problem::Problem;
 use mtled_checks::escape::printable;
@@ -20,7 +20,8 @@ pub fn contact_results(
 ) -> Result<Vec<ContactResult>, Error> {
     let (discretisation, plan) = (&prepared.discretisation, &prepared.model.contact);
     let Some(surface) = prepared.contact_surface(problem)? else { return Ok(Vec::new()) };
-    surface.results(plan, discretisation, &state.contact_forces(), &state.displacement)
+    let forces = state.contact_forces();
+    surface.results((plan, state.time), discretisation, &forces, &state.displacement)
 }
 
 /// `contacts` of `result.json`.
@@ -69,13 +70,18 @@ pub fn contacts_text(case: &Case, results: &[ContactResult]) -> Vec<String> {
     case.problem.obstacles.iter().zip(results).map(line).collect()
 }
 
-/// The gap to the nearest obstacle \[m\] at positions that have moved by `displacement`
+/// The gap to the nearest obstacle \[m\] at time `t` \[s\] at positions that have moved by `displacement`
 /// \[position\]\[x, y, z\] \[m\].
-pub fn contact_gaps(plan: &ContactPlan, positions: &[Vector3], displacement: &[f64]) -> Vec<f64> {
+pub fn contact_gaps(
+    (plan, t): (&ContactPlan, f64),
+    positions: &[Vector3],
+    displacement: &[f64],
+) -> Vec<f64> {
+    let obstacles: Vec<_> = plan.all_placed(t).map(|(_, placed)| placed).collect();
     let moved = positions.iter().zip(displacement.as_chunks::<3>().0);
     let gap_at = |(X, u): (&Vector3, &[f64; 3])| {
         let x = X + Vector3::from(*u);
-        plan.obstacles.iter().map(|obstacle| gap(obstacle, &x)).fold(f64::INFINITY, f64::min)
+        obstacles.iter().map(|obstacle| obstacle.gap(&x)).fold(f64::INFINITY, f64::min)
     };
     moved.map(gap_at).collect()
 }

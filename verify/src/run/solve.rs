@@ -53,11 +53,13 @@ impl Solved {
     /// Reasons to doubt a finished run, beside those of [`Prepared::doubts`].
     pub fn doubts(&self) -> Vec<String> {
         let model = &self.prepared.model;
-        let inside = model.contact.penetrations(&model.positions, &self.state.displacement);
+        let inside =
+            model.contact.penetrations(&model.positions, self.state.time, &self.state.displacement);
         let mut doubts = self.summary.doubts(model);
         doubts.extend(inside.iter().map(Warning::to_string));
         let discretisation = &self.prepared.discretisation;
-        let unresolved = model.contact.unresolved(discretisation, &self.state.displacement);
+        let unresolved =
+            model.contact.unresolved(discretisation, self.state.time, &self.state.displacement);
         doubts.extend(unresolved.iter().map(Warning::to_string));
         let strained = strain_warnings(model, discretisation, &self.state.displacement);
         doubts.extend(strained.iter().map(Warning::to_string));

@@ -182,12 +182,12 @@ fn by_newton(case: &mut Case) -> Result<(), Unmeasured> {
     if let Motion::Relaxed(relaxation) = case.problem.motion {
         case.problem.motion = Motion::Static(relaxation);
     }
-    let holds = |obstacle: &Obstacle| obstacle.friction == Friction::NoSlip;
+    let holds = |obstacle: &Obstacle| obstacle.friction != Friction::Frictionless;
     let (key, reason) = if let Motion::Dynamic { .. } = case.problem.motion {
         let reason = "is \"dynamic\"; sensitivities are those of a static solution: set time = { method = \"static\" }";
         ("time.method".to_string(), reason)
     } else if let Some(index) = case.problem.obstacles.iter().position(holds) {
-        let reason = "is \"no_slip\": a solution then depends on the way to it; sensitivities are those of one \
+        let reason = "is not \"frictionless\": a solution then depends on the way to it; sensitivities are those of one \
                       that does not, with friction = \"frictionless\"";
         (format!("obstacle[{index}].friction"), reason)
     } else {

@@ -8,7 +8,6 @@ use crate::studies::workbench::Workbench;
 use anyhow::{Context, Result};
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{LabelField, Shape};
-use mtled::model::contact::gap;
 use mtled::problem::{Dimension, Motion};
 use mtled_checks::study::{
     Bound, Cell, Check, Column, Drawing, Figure, Kind, Layer, LayerStyle, Study, Table, number,
@@ -126,12 +125,8 @@ impl SliceRun {
             for k in 0..model.components {
                 x[k] += moment.displacement[model.components * node + k];
             }
-            -model
-                .contact
-                .obstacles
-                .iter()
-                .map(|skull| gap(skull, &x))
-                .fold(f64::INFINITY, f64::min)
+            let gaps = model.contact.all_placed(0.0).map(|(_, skull)| skull.gap(&x));
+            -gaps.fold(f64::INFINITY, f64::min)
         };
         let nodes = || model.contact.nodes.iter();
         self.moments.iter().flat_map(|m| nodes().map(move |&n| depth(m, n))).fold(0.0, f64::max)

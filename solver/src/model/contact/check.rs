@@ -1,8 +1,9 @@
 //! Obstacles that contradict the body or its conditions.
 #![allow(non_snake_case)]
 
-use super::plan::{ContactPlan, gap};
-use crate::algebra::tensor::{Vector3, vector_at};
+use super::placed::{Placed, instants};
+use super::plan::ContactPlan;
+use crate::algebra::tensor::{Vector3, bounding_box, vector_at};
 use crate::discretisation::Warning;
 use crate::discretisation::nodes::NodeCloud;
 use crate::error::Error;
@@ -15,8 +16,6 @@ use rayon::prelude::*;
 const DEEPEST: f64 = 0.1;
 /// Less than this is round-off \[–\].
 const ROUND_OFF: f64 = 1e-3;
-/// Instants at which prescribed nodes are followed.
-const INSTANTS: usize = 33;
 /// Samples of an obstacle along each axis.
 const SAMPLES: usize = 24;
 
@@ -53,11 +52,12 @@ pub(crate) fn check_obstacles(
     end: f64,
 ) -> Result<Vec<Warning>, Error> {
     let mut warnings = Vec::new();
-    for obstacle in &plan.obstacles {
+    for (index, placed) in plan.all_placed(0.0) {
+        let obstacle = placed.obstacle;
         if is_empty(obstacle) {
             return Err(Error::EmptyObstacle { name: obstacle.name.clone() });
         }
-        let gaps: Vec<f64> = cloud.positions.par_iter().map(|X| gap(obstacle, X)).collect();
+        let gaps: Vec<f64> = cloud.positions.par_iter().map(|X| placed.gap(X)).collect();
         let at_start = || gaps.iter().copied().enumerate();
         if let Some(inside) = Inside::of(at_start(), DEEPEST, &cloud.spacing) {
             let Inside { nodes, node, depth } = inside;
@@ -69,28 +69,31 @@ pub(crate) fn check_obstacles(
             let Inside { nodes, node, depth } = inside;
             warnings.push(Warning::StartInsideObstacle { name, nodes, node, position, depth });
         }
-        refuse_driven(obstacle, &gaps, cloud, constraints, components, end)?;
+        refuse_driven((plan, index), &gaps, cloud, constraints, components, end)?;
     }
     Ok(warnings)
 }
 
 /// Refuses conditions that move nodes into an obstacle, from `gaps` \[node\] \[m\] at the start.
 fn refuse_driven(
-    obstacle: &Obstacle,
+    (plan, index): (&ContactPlan, u32),
     gaps: &[f64],
     cloud: &NodeCloud,
     constraints: &Constraints,
     components: usize,
     end: f64,
 ) -> Result<(), Error> {
-    for instant in 0..INSTANTS {
-        let time = end * instant as f64 / (INSTANTS - 1) as f64;
+    let around = bounding_box(&cloud.positions);
+    for time in instants(end) {
+        let (placed, travelled) = (plan.placed(index, time), plan.travel((0.0, time), around));
         let prescribed = constraints.prescribed_nodes(time, components, &cloud.positions);
-        // A gap shrinks no faster than its node moves.
-        let near = prescribed.par_iter().filter(|(node, u, _)| u.norm() > gaps[*node as usize]);
+        // A gap shrinks no faster than its node and the obstacle move.
+        let near = prescribed
+            .par_iter()
+            .filter(|(node, u, _)| u.norm() + travelled > gaps[*node as usize]);
         let driven: Vec<(usize, f64)> = near
             .map(|(node, u, _)| {
-                (*node as usize, gap(obstacle, &(cloud.positions[*node as usize] + u)))
+                (*node as usize, placed.gap(&(cloud.positions[*node as usize] + u)))
             })
             .collect();
         let inside = Inside::of(driven.into_iter(), DEEPEST, &cloud.spacing);
@@ -99,7 +102,7 @@ fn refuse_driven(
             let condition = index.map_or(0, |index| prescribed[index].2);
             return Err(Error::DrivenIntoObstacle {
                 condition: constraints.conditions[condition as usize].name.clone(),
-                obstacle: obstacle.name.clone(),
+                obstacle: placed.obstacle.name.clone(),
                 nodes,
                 node,
                 position: cloud.positions[node],
@@ -133,20 +136,20 @@ fn is_empty(obstacle: &Obstacle) -> bool {
 }
 
 impl ContactPlan {
-    /// Warnings of nodes that are inside an obstacle at nodal parameters `u` \[component of
+    /// Warnings of nodes that are inside an obstacle at time `t` \[s\] and nodal parameters `u` \[component of
     /// node\] \[m\] because conditions hold them in the way in which the obstacle would push.
-    pub fn penetrations(&self, positions: &[Vector3], u: &[f64]) -> Vec<Warning> {
+    pub fn penetrations(&self, positions: &[Vector3], t: f64, u: &[f64]) -> Vec<Warning> {
         let components = u.len() / positions.len();
         let spacing = vec![self.mean_spacing; positions.len()];
-        let warning = |obstacle: &Obstacle| {
+        let warning = |(_, placed): (u32, Placed)| {
             let gaps = self.held.iter().map(|&node| {
                 let node = node as usize;
-                (node, gap(obstacle, &(positions[node] + vector_at(u, node, components))))
+                (node, placed.gap(&(positions[node] + vector_at(u, node, components))))
             });
             let Inside { nodes, node, depth } = Inside::of(gaps, DEEPEST, &spacing)?;
-            let (name, position) = (obstacle.name.clone(), positions[node]);
+            let (name, position) = (placed.obstacle.name.clone(), positions[node]);
             Some(Warning::EndInsideObstacle { name, nodes, node, position, depth })
         };
-        self.obstacles.iter().filter_map(warning).collect()
+        self.all_placed(t).filter_map(warning).collect()
     }
 }

@@ -1,7 +1,8 @@
 //! Kinetic energy of nodes that strike an obstacle: kept while they touch it, given back when
 //! they leave (method book, eqs. 16.4 and 16.5).
 
-use super::plan::{ContactForce, ContactPlan, normal};
+use super::placed::Placed;
+use super::plan::{ContactForce, ContactPlan};
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::problem::Friction;
 
@@ -48,6 +49,8 @@ pub(crate) struct Moved<'a> {
     pub displacement: &'a mut [f64],
     /// \[component of node\] \[m/s\]
     pub velocity: &'a mut [f64],
+    /// Times before the step and after it \[s\].
+    pub times: (f64, f64),
     /// \[s\]
     pub time_step: f64,
     /// Factor that damping leaves of a velocity in the step \[–\].
@@ -118,19 +121,21 @@ impl Impacts {
         left
     }
 
-    /// The energy to keep of a push \[J\]: less its work, J·½(v(t − Δt/2) + v(t + Δt/2)).
+    /// The energy to keep of a push \[J\]: less its work as the obstacle sees it,
+    /// J·(½(v(t − Δt/2) + v(t + Δt/2)) − w) with the velocity w of the obstacle there.
     fn strike(&mut self, plan: &ContactPlan, push: &ContactForce, moved: &Moved) -> f64 {
         let d = moved.components();
-        let obstacle = &plan.obstacles[push.obstacle as usize];
+        let obstacle = plan.placed(push.obstacle, moved.times.1);
         let node = push.node as usize;
         let impulse = push.force / moved.time_step;
         let mean = 0.5 * (vector_at(&self.before, node, d) + vector_at(moved.velocity, node, d));
+        let mean = mean - moved.velocity_of(plan, (push.obstacle, &obstacle), node);
         let work = impulse.dot(&mean);
         self.work += work;
-        let along = match obstacle.friction {
+        let along = match obstacle.obstacle.friction {
             Friction::Frictionless => work,
-            Friction::NoSlip => {
-                let n = normal(obstacle, &moved.place(node), plan.free(push.node));
+            Friction::NoSlip | Friction::Coulomb(_) => {
+                let n = obstacle.normal(&moved.place(node), plan.free(push.node));
                 impulse.dot(&n) * mean.dot(&n)
             }
         };
@@ -146,14 +151,15 @@ impl Impacts {
         if self.pushed[node] {
             return Some(Kept { energy, ..*kept });
         }
-        let obstacle = &plan.obstacles[kept.obstacle as usize];
-        let n = normal(obstacle, &moved.place(node), plan.free(kept.node));
+        let obstacle = plan.placed(kept.obstacle, moved.times.1);
+        let n = obstacle.normal(&moved.place(node), plan.free(kept.node));
         if energy <= 0.0 || n == Vector3::zeros() {
             self.lost += energy;
             return None;
         }
         let mean = 0.5 * (vector_at(&self.before, node, d) + vector_at(moved.velocity, node, d));
-        // J s + J²/2m is the energy.
+        let mean = mean - moved.velocity_of(plan, (kept.obstacle, &obstacle), node);
+        // J s + J²/2m is the energy, with the speed away from the obstacle.
         let (mass, speed) = (moved.mass[node], mean.dot(&n));
         let impulse = (mass * mass * speed * speed + 2.0 * mass * energy).sqrt() - mass * speed;
         self.work += energy;
@@ -173,6 +179,16 @@ impl Moved<'_> {
 
     fn place(&self, node: usize) -> Vector3 {
         self.positions[node] + vector_at(self.displacement, node, self.components())
+    }
+
+    /// Of the material of an obstacle at a node, in the step \[m/s\].
+    fn velocity_of(
+        &self,
+        plan: &ContactPlan,
+        (index, now): (u32, &Placed),
+        node: usize,
+    ) -> Vector3 {
+        now.way_since(&plan.placed(index, self.times.0), &self.place(node)) / self.time_step
     }
 
     /// \[J\]

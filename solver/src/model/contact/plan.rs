@@ -6,7 +6,7 @@ use crate::algebra::tensor::{Vector3, vector_at};
 use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::model::essential::Constraints;
-use crate::problem::{Friction, Obstacle, ObstacleSide, Problem};
+use crate::problem::{Friction, Obstacle, Problem};
 
 /// The obstacles of a problem and the nodes that may touch them: boundary nodes of
 /// which some component is not prescribed for ever. Obstacles push them in such components
@@ -73,11 +73,25 @@ impl ContactPlan {
         };
         let obstacles: Vec<Obstacle> =
             problem.obstacles.iter().map(section).collect::<Result<_, _>>()?;
+        let mut plan = ContactPlan {
+            obstacles,
+            nodes,
+            held,
+            free,
+            mean_spacing,
+            narrow: Vec::new(),
+            outside: None,
+        };
         let around = problem.body.bounding_box();
-        let narrow: Vec<Option<f64>> =
-            obstacles.iter().map(|obstacle| narrow(obstacle, around, mean_spacing)).collect();
-        let outside = narrow.iter().any(Option::is_some).then(|| Outside::new(problem));
-        Ok(ContactPlan { obstacles, nodes, held, free, mean_spacing, narrow, outside })
+        plan.narrow = (0..plan.obstacles.len() as u32)
+            .map(|index| {
+                let around =
+                    around.map(|around| plan.seen_from(index, around, problem.motion.end()));
+                narrow(&plan.obstacles[index as usize], around, mean_spacing)
+            })
+            .collect();
+        plan.outside = plan.narrow.iter().any(Option::is_some).then(|| Outside::new(problem));
+        Ok(plan)
     }
 
     /// Which components of a node obstacles may push.
@@ -90,21 +104,21 @@ impl ContactPlan {
 const CLOSED: f64 = 1e-6;
 
 impl ContactPlan {
-    /// Reference positions \[m\] of nodes in contact at displacements `u` \[component of
-    /// node\] \[m\], with the directions in which obstacles hold them.
-    pub fn closed(&self, positions: &[Vector3], u: &[f64]) -> Vec<(Vector3, Vector3)> {
+    /// Reference positions \[m\] of nodes in contact at time `t` \[s\] and displacements `u`
+    /// \[component of node\] \[m\], with the directions in which obstacles hold them.
+    pub fn closed(&self, positions: &[Vector3], t: f64, u: &[f64]) -> Vec<(Vector3, Vector3)> {
         let components = u.len() / positions.len();
         let mut closed = Vec::new();
-        for obstacle in &self.obstacles {
+        for (_, placed) in self.all_placed(t) {
             for &node in &self.nodes {
                 let X = positions[node as usize];
                 let x = X + vector_at(u, node as usize, components);
-                if gap(obstacle, &x) < CLOSED * self.mean_spacing {
-                    match obstacle.friction {
+                if placed.gap(&x) < CLOSED * self.mean_spacing {
+                    match placed.obstacle.friction {
                         Friction::Frictionless => {
-                            closed.push((X, normal(obstacle, &x, self.free(node))));
+                            closed.push((X, placed.normal(&x, self.free(node))));
                         }
-                        Friction::NoSlip => {
+                        Friction::NoSlip | Friction::Coulomb(_) => {
                             let free = self.free(node);
                             let along = (0..3).filter(|k| free[*k]);
                             closed.extend(along.map(|k| (X, Vector3::ith(k, 1.0))));
@@ -115,59 +129,4 @@ impl ContactPlan {
         }
         closed
     }
-}
-
-/// Signed gap \[m\] at current position `x` \[m\], open if positive (method book,
-/// eq. 16.1).
-pub fn gap(obstacle: &Obstacle, x: &Vector3) -> f64 {
-    let distance = obstacle.shape.signed_distance(x) - obstacle.offset;
-    match obstacle.side {
-        ObstacleSide::Outside => distance,
-        ObstacleSide::Inside => -distance,
-    }
-}
-
-/// Least part of a normal in the free components, over its length, with which an obstacle
-/// pushes \[–\].
-const PUSHES: f64 = 0.1;
-
-/// The unit normal that points out of the obstacle towards the body, in the free components
-/// (method book, eq. 16.3); zero where the obstacle faces along the others.
-pub(crate) fn normal(obstacle: &Obstacle, x: &Vector3, free: Components) -> Vector3 {
-    let outward = match obstacle.side {
-        ObstacleSide::Outside => obstacle.shape.gradient(x),
-        ObstacleSide::Inside => -obstacle.shape.gradient(x),
-    };
-    let part = Vector3::from_fn(|k, _| if free[k] { outward[k] } else { 0.0 });
-    let least = (PUSHES * outward.norm()).max(1e-12);
-    part.try_normalize(least).unwrap_or_else(Vector3::zeros)
-}
-
-/// Gap left after a node is moved to the surface, over the depth of its entry \[–\].
-const LEFT_OPEN: f64 = 1e-6;
-/// Secants towards the surface; a gap that is a distance needs none.
-const MOST_SECANTS: usize = 6;
-
-/// Moves `x` \[m\], where the gap is `opening` \[m\], along the normal to the surface; where that
-/// is zero, `x` stays. A gap that is not a distance, as between the samples of a label map, would leave it beside
-/// the surface by a length in proportion to its last move, and each change of the step or
-/// of the damping would strike all nodes in contact.
-pub(crate) fn onto_surface(
-    obstacle: &Obstacle,
-    x: &Vector3,
-    opening: f64,
-    free: Components,
-) -> Vector3 {
-    let n = normal(obstacle, x, free);
-    let (mut last, mut moved) = ((0.0, opening), -opening);
-    for _ in 0..MOST_SECANTS {
-        let left = gap(obstacle, &(x + n * moved));
-        let slope = (left - last.1) / (moved - last.0);
-        if left.abs() <= LEFT_OPEN * opening.abs() || slope.is_nan() || slope < 0.1 {
-            break;
-        }
-        last = (moved, left);
-        moved -= left / slope;
-    }
-    x + n * moved
 }

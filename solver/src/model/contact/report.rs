@@ -1,7 +1,7 @@
 //! Force, pressure, area and depth of contact (method book, section 16).
 #![allow(non_snake_case)]
 
-use super::plan::{ContactForce, ContactPlan, gap, normal};
+use super::plan::{ContactForce, ContactPlan};
 use crate::algebra::tensor::{Vector3, cofactor};
 use crate::discretisation::{Discretisation, Rows};
 use crate::error::Error;
@@ -61,19 +61,19 @@ impl ContactSurface {
         Ok(ContactSurface { panels, nodes: cloud.positions.len() })
     }
 
-    /// Contact pressure \[Pa\] at the nodes at nodal parameters `u` \[component of node\]
+    /// Contact pressure \[Pa\] at the nodes at time `t` \[s\] and nodal parameters `u` \[component of node\]
     /// \[m\]: the normal force over the area that faces the obstacle.
     pub fn pressures(
         &self,
-        plan: &ContactPlan,
+        (plan, t): (&ContactPlan, f64),
         discretisation: &Discretisation,
         forces: &[ContactForce],
         u: &[f64],
     ) -> Result<Vec<f64>, Error> {
         let near = self.near(discretisation, forces, u)?;
-        let along = along_normals(plan, discretisation, forces, u)?;
+        let along = along_normals((plan, t), discretisation, forces, u)?;
         let mut pressures = vec![0.0; self.nodes];
-        for ((force, along), area) in forces.iter().zip(along).zip(near.areas(plan, forces)) {
+        for ((force, along), area) in forces.iter().zip(along).zip(near.areas((plan, t), forces)) {
             if area > 0.0 {
                 pressures[force.node as usize] += along / area;
             }
@@ -81,18 +81,18 @@ impl ContactSurface {
         Ok(pressures)
     }
 
-    /// What each obstacle does at nodal parameters `u` \[component of node\] \[m\].
+    /// What each obstacle does at time `t` \[s\] and nodal parameters `u` \[component of node\] \[m\].
     pub fn results(
         &self,
-        plan: &ContactPlan,
+        (plan, t): (&ContactPlan, f64),
         discretisation: &Discretisation,
         forces: &[ContactForce],
         u: &[f64],
     ) -> Result<Vec<ContactResult>, Error> {
         let mut results = vec![ContactResult::default(); plan.obstacles.len()];
         let near = self.near(discretisation, forces, u)?;
-        let along = along_normals(plan, discretisation, forces, u)?;
-        for ((force, along), area) in forces.iter().zip(along).zip(near.areas(plan, forces)) {
+        let along = along_normals((plan, t), discretisation, forces, u)?;
+        for ((force, along), area) in forces.iter().zip(along).zip(near.areas((plan, t), forces)) {
             let result = &mut results[force.obstacle as usize];
             result.nodes += 1;
             result.force += force.force;
@@ -102,7 +102,7 @@ impl ContactSurface {
                 result.largest_pressure = result.largest_pressure.max(along / area);
             }
         }
-        near.find_deepest(plan, &mut results);
+        near.find_deepest((plan, t), &mut results);
         Ok(results)
     }
 
@@ -149,13 +149,13 @@ struct NearPanels<'a> {
 
 impl NearPanels<'_> {
     /// Undeformed area \[force\] \[m²\] of the node's panels that face the obstacle.
-    fn areas(&self, plan: &ContactPlan, forces: &[ContactForce]) -> Vec<f64> {
+    fn areas(&self, (plan, t): (&ContactPlan, f64), forces: &[ContactForce]) -> Vec<f64> {
         let mut panels_of: BTreeMap<u32, Vec<&NearPanel>> = BTreeMap::new();
         self.panels.iter().for_each(|near| panels_of.entry(near.node).or_default().push(near));
         let area = |force: &ContactForce| {
-            let obstacle = &plan.obstacles[force.obstacle as usize];
+            let obstacle = plan.placed(force.obstacle, t);
             let faces = |near: &&&NearPanel| {
-                let towards = normal(obstacle, &near.place, plan.free(force.node));
+                let towards = obstacle.normal(&near.place, plan.free(force.node));
                 near.normal.dot(&towards) <= -FACING
             };
             let own = panels_of.get(&force.node).into_iter().flatten();
@@ -165,10 +165,10 @@ impl NearPanels<'_> {
     }
 
     /// The deepest of them in each obstacle.
-    fn find_deepest(&self, plan: &ContactPlan, results: &mut [ContactResult]) {
-        for near in &self.panels {
-            for (obstacle, result) in plan.obstacles.iter().zip(results.iter_mut()) {
-                let depth = -gap(obstacle, &near.place);
+    fn find_deepest(&self, (plan, t): (&ContactPlan, f64), results: &mut [ContactResult]) {
+        for ((_, placed), result) in plan.all_placed(t).zip(results) {
+            for near in &self.panels {
+                let depth = -placed.gap(&near.place);
                 if depth > result.depth {
                     (result.depth, result.deepest) = (depth, near.panel.centre);
                 }
@@ -180,7 +180,7 @@ impl NearPanels<'_> {
 /// The parts of the forces along the normals \[N\], where the nodes that touch are by the values
 /// of the displacement.
 fn along_normals(
-    plan: &ContactPlan,
+    (plan, t): (&ContactPlan, f64),
     discretisation: &Discretisation,
     forces: &[ContactForce],
     u: &[f64],
@@ -191,20 +191,22 @@ fn along_normals(
         forces.iter().map(|force| positions[force.node as usize]).collect();
     let rows = discretisation.rows_at(&touching)?;
     let places = touching.iter().enumerate().map(|(i, X)| X + rows.interpolate(i, u, components));
-    let normals = plan.normals(forces, places);
+    let normals = plan.normals(t, forces, places);
     Ok(forces.iter().zip(normals).map(|(force, normal)| force.force.dot(&normal)).collect())
 }
 
 impl ContactPlan {
-    /// Normals of the obstacles towards the body at the current places \[m\] of the nodes on
+    /// Normals of the obstacles at time `t` \[s\] towards the body at the current places \[m\] of the nodes on
     /// which they exert forces.
     pub fn normals(
         &self,
+        t: f64,
         forces: &[ContactForce],
         places: impl Iterator<Item = Vector3>,
     ) -> impl Iterator<Item = Vector3> {
-        forces.iter().zip(places).map(|(force, x)| {
-            normal(&self.obstacles[force.obstacle as usize], &x, self.free(force.node))
-        })
+        let normal = move |(force, x): (&ContactForce, Vector3)| {
+            self.placed(force.obstacle, t).normal(&x, self.free(force.node))
+        };
+        forces.iter().zip(places).map(normal)
     }
 }

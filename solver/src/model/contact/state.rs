@@ -2,7 +2,8 @@
 #![allow(non_snake_case)]
 
 use super::impact::Impacts;
-use super::plan::{ContactForce, ContactPlan, gap, onto_surface};
+use super::placed::Placed;
+use super::plan::{Components, ContactForce, ContactPlan};
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::problem::Friction;
 
@@ -14,7 +15,10 @@ pub struct ContactState {
     /// Bound of the movement of any node since the last search \[m\].
     travelled: f64,
     searched: bool,
-    /// Where a sticking node first touched: (obstacle, node, current position).
+    /// A box around the nodes at the last search \[m\].
+    around: (Vector3, Vector3),
+    /// Where a sticking node first touched, or last slid to: (obstacle, node, place as the obstacle
+    /// sees it \[m\]).
     anchors: Vec<(u32, u32, Vector3)>,
     /// Nodes in contact after the last step.
     pub touching: Vec<u32>,
@@ -35,6 +39,8 @@ pub struct ContactStep<'a> {
     pub displacement: &'a mut [f64],
     /// \[component of node\] \[m/s\]
     pub velocity: &'a mut [f64],
+    /// Times of amplitudes before the step and after it \[s\].
+    pub times: (f64, f64),
     /// \[s\]
     pub time_step: f64,
 }
@@ -52,32 +58,37 @@ impl ContactState {
     ) {
         let components = step.displacement.len() / positions.len();
         let increment = largest_increment * (components as f64).sqrt();
-        self.travelled += increment;
+        self.travelled += increment + plan.travel(step.times, self.around);
         let search = !self.searched || self.travelled > plan.mean_spacing;
         if search {
-            self.search(plan, positions, step.displacement, increment);
+            self.search(plan, positions, &step, increment);
         }
         self.touching.clear();
         self.forces.clear();
+        let mut here: Option<Here> = None;
         for i in 0..self.candidates.len() {
             let (obstacle, node) = self.candidates[i];
+            let here = match &here {
+                Some(known) if known.index == obstacle => known,
+                _ => here.insert(Here::new(plan, obstacle, step.times)),
+            };
             let x =
                 positions[node as usize] + vector_at(step.displacement, node as usize, components);
             let moved = step.time_step * vector_at(step.velocity, node as usize, components);
-            let target = self.target(plan, (obstacle, node), &x, &moved);
+            let target = self.target(plan, (here, node), &x, &moved);
             let Some(target) = target else { continue };
             self.touching.push(node);
             let force = step.push(node, target - x);
             self.forces.push(ContactForce { obstacle, node, force });
         }
         if search {
-            self.look(plan, positions, step.displacement);
+            self.look(plan, positions, step.times.1, step.displacement);
         }
     }
 
     /// Keeps which narrow obstacles have gone in between nodes that were put back.
-    fn look(&mut self, plan: &ContactPlan, positions: &[Vector3], u: &[f64]) {
-        for (index, place) in plan.between_nodes(positions, u) {
+    fn look(&mut self, plan: &ContactPlan, positions: &[Vector3], t: f64, u: &[f64]) {
+        for (index, place) in plan.between_nodes(positions, t, u) {
             if self.entered.iter().all(|(known, _)| *known != index) {
                 self.entered.push((index, place));
             }
@@ -90,51 +101,104 @@ impl ContactState {
     fn target(
         &mut self,
         plan: &ContactPlan,
-        pair: (u32, u32),
+        (here, node): (&Here, u32),
         x: &Vector3,
         moved: &Vector3,
     ) -> Option<Vector3> {
-        let (obstacle, free) = (&plan.obstacles[pair.0 as usize], plan.free(pair.1));
-        let opening = gap(obstacle, x);
-        let stuck = self.anchors.iter().position(|anchor| (anchor.0, anchor.1) == pair);
-        let entered = plan.crossing(pair.0, &(x - moved), x);
+        let Here { index, before, now } = here;
+        let free = plan.free(node);
+        let opening = now.gap(x);
+        let stuck = self.anchors.iter().position(|anchor| (anchor.0, anchor.1) == (*index, node));
+        let entered = plan.crossing(*index, (before, &(x - moved)), (now, x));
         if opening >= 0.0 && entered.is_none() {
             stuck.map(|index| self.anchors.swap_remove(index));
             return None;
         }
-        let (from, depth) = entered.map_or((*x, opening), |x| (x, gap(obstacle, &x)));
-        let nearest = onto_surface(obstacle, &from, depth, free);
+        let (from, depth) = entered.map_or((*x, opening), |x| (x, now.gap(&x)));
+        let nearest = now.onto_surface(&from, depth, free);
         if nearest == *x {
             return None;
         }
-        match (obstacle.friction, stuck) {
-            (Friction::Frictionless, _) => Some(nearest),
-            (Friction::NoSlip, Some(index)) => {
-                let anchor = &self.anchors[index].2;
-                Some(Vector3::from_fn(|k, _| if free[k] { anchor[k] } else { x[k] }))
+        let anchor = stuck.map(|index| self.anchors[index].2);
+        let (target, anchor) = match (now.obstacle.friction, anchor) {
+            (Friction::Frictionless, _) => return Some(nearest),
+            (Friction::NoSlip, None) => (nearest, now.own(&nearest)),
+            (Friction::NoSlip, Some(anchor)) => {
+                let place = now.now(&anchor);
+                (Vector3::from_fn(|k, _| if free[k] { place[k] } else { x[k] }), anchor)
             }
-            (Friction::NoSlip, None) => {
-                self.anchors.push((pair.0, pair.1, nearest));
-                Some(nearest)
+            (Friction::Coulomb(coefficient), anchor) => {
+                // In the step in which it touches it would, without slip, not move along the surface.
+                let last = anchor.unwrap_or_else(|| before.own(&(x - moved)));
+                let (target, holds) = rub(now, coefficient, (x, &nearest), &now.now(&last), free);
+                (target, if holds { last } else { now.own(&target) })
             }
+        };
+        match stuck {
+            Some(index) => self.anchors[index].2 = anchor,
+            None => self.anchors.push((*index, node, anchor)),
         }
+        Some(target)
     }
 
     /// Lists the nodes with a gap below twice the mean spacing, before the last step too.
-    fn search(&mut self, plan: &ContactPlan, positions: &[Vector3], u: &[f64], increment: f64) {
-        let components = u.len() / positions.len();
+    fn search(
+        &mut self,
+        plan: &ContactPlan,
+        positions: &[Vector3],
+        step: &ContactStep,
+        increment: f64,
+    ) {
+        let components = step.displacement.len() / positions.len();
+        let place = |node: usize| positions[node] + vector_at(step.displacement, node, components);
         self.candidates.clear();
-        for (index, obstacle) in plan.obstacles.iter().enumerate() {
+        for (index, placed) in plan.all_placed(step.times.1) {
             for &node in &plan.nodes {
-                let x = positions[node as usize] + vector_at(u, node as usize, components);
-                if gap(obstacle, &x) < 2.0 * plan.mean_spacing + increment {
-                    self.candidates.push((index as u32, node));
+                if placed.gap(&place(node as usize)) < 2.0 * plan.mean_spacing + increment {
+                    self.candidates.push((index, node));
                 }
             }
         }
+        let first = (place(0), place(0));
+        let within = |(l, u): (Vector3, Vector3), x: Vector3| (l.inf(&x), u.sup(&x));
+        let (lower, upper) = (1..positions.len()).map(place).fold(first, within);
+        let margin = Vector3::repeat(2.0 * plan.mean_spacing);
+        self.around = (lower - margin, upper + margin);
         self.travelled = 0.0;
         self.searched = true;
     }
+}
+
+/// An obstacle before a step and after it.
+struct Here<'a> {
+    index: u32,
+    before: Placed<'a>,
+    now: Placed<'a>,
+}
+
+impl Here<'_> {
+    fn new(plan: &ContactPlan, index: u32, (before, now): (f64, f64)) -> Here<'_> {
+        Here { index, before: plan.placed(index, before), now: plan.placed(index, now) }
+    }
+}
+
+/// Where friction leaves a node at `x` that the obstacle pushes to the `nearest` place of its
+/// surface and that would be at `last` without slip \[m\], and whether it holds the node there
+/// (method book, eq. 16.6).
+fn rub(
+    now: &Placed,
+    coefficient: f64,
+    (x, nearest): (&Vector3, &Vector3),
+    last: &Vector3,
+    free: Components,
+) -> (Vector3, bool) {
+    let n = now.normal(nearest, free);
+    let push = (nearest - x).norm();
+    let back = Vector3::from_fn(|k, _| if free[k] { last[k] - x[k] } else { 0.0 });
+    let along = back - n * back.dot(&n);
+    let part = (coefficient * push / along.norm()).min(1.0);
+    let beside = nearest + part * along;
+    (now.onto_surface(&beside, now.gap(&beside), free), part == 1.0)
 }
 
 impl ContactStep<'_> {

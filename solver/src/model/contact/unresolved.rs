@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::between::Outside;
-use super::plan::{ContactPlan, gap};
+use super::plan::ContactPlan;
 use crate::algebra::tensor::{Vector3, bounding_box, vector_at};
 use crate::discretisation::{Discretisation, Warning};
 use crate::error::Error;
@@ -32,7 +32,7 @@ impl ContactPlan {
         body: &Shape,
     ) -> Result<(), Error> {
         for (index, obstacle) in self.obstacles.iter().enumerate() {
-            let samples = self.samples(index, bounding_box(positions));
+            let samples = self.samples(index, 0.0, bounding_box(positions));
             let deep = |y: &Vector3| body.signed_distance(y) < -DEEP * self.mean_spacing;
             if let Some(position) = samples.into_iter().find(deep) {
                 return Err(Error::ObstacleInBody { name: obstacle.name.clone(), position });
@@ -42,8 +42,8 @@ impl ContactPlan {
     }
 
     /// Warnings of narrow obstacles that the surface enters between nodes, or that lie inside the
-    /// body, at nodal parameters `u` \[component of node\] \[m\].
-    pub fn unresolved(&self, discretisation: &Discretisation, u: &[f64]) -> Vec<Warning> {
+    /// body, at time `t` \[s\] and nodal parameters `u` \[component of node\] \[m\].
+    pub fn unresolved(&self, discretisation: &Discretisation, t: f64, u: &[f64]) -> Vec<Warning> {
         let least = self.narrow.iter().flatten().copied().reduce(f64::min);
         let Some((outside, width)) = self.outside.as_ref().zip(least) else { return Vec::new() };
         // Where the surface has no panels, the set-up has refused or warned.
@@ -52,17 +52,18 @@ impl ContactPlan {
         };
         let now = between.current(u, u.len() / discretisation.cloud.positions.len());
         let mut warnings = Vec::new();
-        for (index, obstacle) in self.obstacles.iter().enumerate() {
+        for (index, placed) in self.all_placed(t) {
+            let index = index as usize;
             if self.narrow[index].is_none() {
                 continue;
             }
-            let depths = now.iter().map(|x| -gap(obstacle, x)).enumerate();
+            let depths = now.iter().map(|x| -placed.gap(x)).enumerate();
             let (place, depth) = depths.fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
-            let name = obstacle.name.clone();
+            let name = placed.obstacle.name.clone();
             if depth > DEEP * self.mean_spacing {
                 let position = between.positions[place];
                 warnings.push(Warning::SurfaceInObstacle { name, position, depth });
-            } else if let Some(position) = self.swallowed(index, discretisation, u) {
+            } else if let Some(position) = self.swallowed(index, discretisation, t, u) {
                 warnings.push(Warning::ObstacleInBody { name, position });
             }
         }
@@ -70,8 +71,13 @@ impl ContactPlan {
     }
 
     /// Narrow obstacles with nodes close around a place of them, which then have gone in between the
-    /// nodes: index, that place \[m\]. Without shape functions, for a look on the way.
-    pub(super) fn between_nodes(&self, positions: &[Vector3], u: &[f64]) -> Vec<(u32, Vector3)> {
+    /// nodes: index, that place \[m\]. Without shape functions, for a look on the way at time `t` \[s\].
+    pub(super) fn between_nodes(
+        &self,
+        positions: &[Vector3],
+        t: f64,
+        u: &[f64],
+    ) -> Vec<(u32, Vector3)> {
         let Some(Outside { body, .. }) = &self.outside else { return Vec::new() };
         let d = u.len() / positions.len();
         let (now, hash) = self.moved(positions, u);
@@ -95,7 +101,7 @@ impl ContactPlan {
         let around = bounding_box(&now);
         let narrow = (0..self.obstacles.len()).filter(|index| self.narrow[*index].is_some());
         let found = narrow.filter_map(|index| {
-            Some((index as u32, self.samples(index, around).into_iter().find(is_inside)?))
+            Some((index as u32, self.samples(index, t, around).into_iter().find(is_inside)?))
         });
         found.collect()
     }
@@ -105,6 +111,7 @@ impl ContactPlan {
         &self,
         index: usize,
         discretisation: &Discretisation,
+        t: f64,
         u: &[f64],
     ) -> Option<Vector3> {
         let cloud = &discretisation.cloud;
@@ -121,7 +128,7 @@ impl ContactPlan {
             let found = (x - y).norm() < FOUND * self.mean_spacing;
             (found && body.signed_distance(&X) < -DEEP * self.mean_spacing).then_some(X)
         };
-        self.samples(index, bounding_box(&now)).iter().find_map(origin)
+        self.samples(index, t, bounding_box(&now)).iter().find_map(origin)
     }
 
     /// Where nodes are now \[m\], and the same to look for those near a place.
@@ -134,12 +141,13 @@ impl ContactPlan {
         (now, hash)
     }
 
-    /// Points inside a narrow obstacle within a box \[m\].
-    fn samples(&self, index: usize, (lower, upper): (Vector3, Vector3)) -> Vec<Vector3> {
-        let obstacle = &self.obstacles[index];
+    /// Points inside a narrow obstacle at time `t` \[s\] within a box \[m\].
+    fn samples(&self, index: usize, t: f64, around: (Vector3, Vector3)) -> Vec<Vector3> {
+        let (placed, obstacle) = (self.placed(index as u32, t), &self.obstacles[index]);
         if self.narrow[index].is_none() {
             return Vec::new();
         }
+        let (lower, upper) = placed.own_box(around);
         let grown = Vector3::repeat(obstacle.offset);
         let (lower, upper) = match obstacle.shape.bounding_box() {
             Some((l, u)) => (lower.sup(&(l - grown)), upper.inf(&(u + grown))),
@@ -152,6 +160,7 @@ impl ContactPlan {
         let point = |ijk: [usize; 3]| {
             lower + Vector3::from_fn(|k, _| (ijk[k] as f64 + 0.5) / SAMPLES as f64 * edges[k])
         };
-        indices([SAMPLES; 3]).map(point).filter(|y| gap(obstacle, y) < 0.0).collect()
+        let own = indices([SAMPLES; 3]).map(point);
+        own.map(|own| placed.now(&own)).filter(|y| placed.gap(y) < 0.0).collect()
     }
 }

@@ -4,8 +4,8 @@
 use super::free_space::{ContactRow, place};
 use crate::algebra::tensor::{Matrix3, Vector3, vector_at};
 use crate::model::Model;
-use crate::model::contact::{Components, ContactForce, gap, normal, onto_surface};
-use crate::problem::{Friction, Obstacle};
+use crate::model::contact::{Components, ContactForce, Placed};
+use crate::problem::Friction;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Depth over the mean nodal spacing from which a node has entered an obstacle \[–\].
@@ -26,7 +26,7 @@ const PASSING: f64 = 0.2;
 struct Contact {
     obstacle: u32,
     node: u32,
-    /// Where it sticks \[m\].
+    /// Where it sticks, as the obstacle sees it \[m\].
     anchor: Option<Vector3>,
 }
 
@@ -41,11 +41,16 @@ impl Contact {
 pub(super) struct ActiveContacts {
     contacts: Vec<Contact>,
     changes: BTreeMap<(u32, u32), u32>,
+    /// Time of the load, at which obstacles are where they are \[s\].
+    t: f64,
+    /// The same at the start of the increment \[s\].
+    since: f64,
 }
 
 impl ActiveContacts {
-    /// Forgets how often contacts changed, at the start of an increment.
-    pub fn begin(&mut self) {
+    /// Forgets how often contacts changed, at the start of an increment between two times \[s\].
+    pub fn begin(&mut self, (since, t): (f64, f64)) {
+        (self.since, self.t) = (since, t);
         self.changes.clear();
     }
 
@@ -77,16 +82,18 @@ impl ActiveContacts {
         known: &BTreeSet<(u32, u32)>,
     ) -> usize {
         let count = self.contacts.len();
-        for (obstacle, shape) in (0..).zip(&model.contact.obstacles) {
+        for (obstacle, placed) in model.contact.all_placed(self.t) {
             for &node in &model.contact.nodes {
                 let (x, free) = (place(model, node, u), model.contact.free(node));
-                let depth = -gap(shape, &x);
+                let depth = -placed.gap(&x);
                 let entered = depth > ENTERED * model.contact.mean_spacing
                     && !known.contains(&(obstacle, node))
-                    && normal(shape, &x, free) != Vector3::zeros();
+                    && placed.normal(&x, free) != Vector3::zeros();
                 if entered {
-                    let anchor = (shape.friction == Friction::NoSlip)
-                        .then(|| crossing(shape, &place(model, node, before), &x, free));
+                    let anchor = (placed.obstacle.friction != Friction::Frictionless).then(|| {
+                        let start = model.contact.placed(obstacle, self.since);
+                        sticks((&start, &place(model, node, before)), (&placed, &x), free)
+                    });
                     self.contacts.push(Contact { obstacle, node, anchor });
                 }
             }
@@ -99,18 +106,19 @@ impl ActiveContacts {
     pub fn rows(&self, model: &Model, u: &[f64]) -> Vec<ContactRow> {
         let mut rows = Vec::new();
         for (index, contact) in self.contacts.iter().enumerate() {
-            let obstacle = &model.contact.obstacles[contact.obstacle as usize];
+            let obstacle = model.contact.placed(contact.obstacle, self.t);
             let (x, free) = (place(model, contact.node, u), model.contact.free(contact.node));
             let row =
                 |along: Vector3, way| ContactRow { contact: index, node: contact.node, along, way };
             match contact.anchor {
                 Some(anchor) => {
+                    let anchor = obstacle.now(&anchor);
                     let along = (0..3).filter(|k| free[*k]);
                     rows.extend(along.map(|k| row(Vector3::ith(k, 1.0), anchor[k] - x[k])))
                 }
                 None => {
-                    let along = normal(obstacle, &x, free);
-                    let target = onto_surface(obstacle, &x, gap(obstacle, &x), free);
+                    let along = obstacle.normal(&x, free);
+                    let target = obstacle.onto_surface(&x, obstacle.gap(&x), free);
                     rows.push(row(along, (target - x).dot(&along)));
                 }
             }
@@ -149,15 +157,15 @@ impl ActiveContacts {
             if contact.anchor.is_some() {
                 continue;
             }
-            let obstacle = &model.contact.obstacles[contact.obstacle as usize];
+            let obstacle = model.contact.placed(contact.obstacle, self.t);
             let (x, free) = (place(model, contact.node, u), model.contact.free(contact.node));
-            let n = normal(obstacle, &x, free);
+            let n = obstacle.normal(&x, free);
             let lambda = force.force.dot(&n).max(0.0);
             let turn = Matrix3::from_columns(&[0, 1, 2].map(|k| {
                 if free[k] {
                     let aside = step * Vector3::ith(k, 1.0);
-                    let ahead = normal(obstacle, &(x + aside), free);
-                    (ahead - normal(obstacle, &(x - aside), free)) / (2.0 * step)
+                    let ahead = obstacle.normal(&(x + aside), free);
+                    (ahead - obstacle.normal(&(x - aside), free)) / (2.0 * step)
                 } else {
                     Vector3::zeros()
                 }
@@ -185,10 +193,13 @@ impl ActiveContacts {
             let known: BTreeSet<u32> =
                 self.contacts.iter().filter(|c| c.obstacle == obstacle).map(|c| c.node).collect();
             let inside = PASSING * width.min(contact.mean_spacing);
+            let placed = contact.placed(obstacle, self.t);
             for &node in contact.nodes.iter().filter(|node| !known.contains(node)) {
                 let from = place(model, node, u);
                 let way = vector_at(change, node as usize, model.components);
-                if let Some(x) = contact.crossing(obstacle, &from, &(from + way)) {
+                if let Some(x) =
+                    contact.crossing(obstacle, (&placed, &from), (&placed, &(from + way)))
+                {
                     part = part.min(((x - from).norm() + inside) / way.norm());
                 }
             }
@@ -199,24 +210,30 @@ impl ActiveContacts {
     /// The parts of forces along the normals, positive where the obstacle pushes \[N\].
     pub fn normal_forces(&self, model: &Model, u: &[f64], forces: &[ContactForce]) -> Vec<f64> {
         let places = forces.iter().map(|force| place(model, force.node, u));
-        let normals = model.contact.normals(forces, places);
+        let normals = model.contact.normals(self.t, forces, places);
         normals.zip(forces).map(|(normal, force)| normal.dot(&force.force)).collect()
     }
 }
 
-/// Where the way from `outside` to `inside` \[m\] enters an obstacle.
-fn crossing(obstacle: &Obstacle, outside: &Vector3, inside: &Vector3, free: Components) -> Vector3 {
-    let (mut low, mut high) = (0.0, 1.0);
-    if gap(obstacle, outside) > 0.0 {
+/// Where a node sticks to an obstacle, as the obstacle sees it: where it entered on its way since the
+/// start of the increment, or, if it touched then, where it is, carried along since.
+fn sticks(before: (&Placed, &Vector3), now: (&Placed, &Vector3), free: Components) -> Vector3 {
+    let (outside, inside) = (before.0.own(before.1), now.0.own(now.1));
+    let (now, x) = (now.0, now.1);
+    let at = |part: f64| now.now(&outside.lerp(&inside, part));
+    let place = if now.gap(&at(0.0)) > 0.0 {
+        let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
-            if gap(obstacle, &outside.lerp(inside, middle)) >= 0.0 {
+            if now.gap(&at(middle)) >= 0.0 {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-    }
-    let x = outside.lerp(inside, high);
-    onto_surface(obstacle, &x, gap(obstacle, &x), free)
+        at(high)
+    } else {
+        now.now(&before.0.own(x))
+    };
+    now.own(&now.onto_surface(&place, now.gap(&place), free))
 }

@@ -2,10 +2,12 @@
 
 use super::active_contacts::ActiveContacts;
 use super::branch::{AHEAD, Branch};
+use super::free_space::place;
 use super::increment::{Load, Unsolved};
 use super::pressures::{Pressures, can_be_unknowns};
 use super::solver::{Equilibrium, Solver};
 use crate::algebra::packed::dot;
+use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::error::{Error, Instability};
 use crate::model::Model;
 use crate::motion::internal_force::strain_energy;
@@ -23,6 +25,9 @@ const SMALLEST_WITH_PRESSURES: f64 = 0.02;
 /// Fraction of the load above which it is halved where the body cannot be led away from an
 /// unstable equilibrium.
 const LARGEST_UNSTABLE: f64 = 0.1;
+/// Way of an obstacle in an increment over the mean nodal spacing \[–\]: nodes that it has passed by
+/// more may be nearer to another side of it.
+const LARGEST_WAY: f64 = 0.5;
 /// Residual of the increments before the last one, unless more is allowed at the end \[–\].
 const PASSING_TOLERANCE: f64 = 1e-4;
 
@@ -87,11 +92,34 @@ impl Loading<'_, '_> {
         Load { fraction, part: fraction - self.reached, tolerance }
     }
 
+    /// Of the load, to be tried next.
+    fn next_fraction(&mut self) -> f64 {
+        let Loading { solver, state, reached, .. } = self;
+        let (model, reached) = (solver.model, *reached);
+        if model.contact.has_moving() {
+            let nodes: Vec<Vector3> = (0..model.positions.len() as u32)
+                .map(|n| place(model, n, &state.displacement))
+                .collect();
+            let around = bounding_box(&nodes);
+            let way = |part: f64| {
+                let times =
+                    (solver.path.time(reached), solver.path.time((reached + part).min(1.0)));
+                model.contact.travel(times, around)
+            };
+            while way(self.increment) > LARGEST_WAY * model.contact.mean_spacing
+                && self.increment > SMALLEST_INCREMENT
+            {
+                self.increment *= 0.5;
+            }
+        }
+        // No tiny last increment.
+        let all = reached + 1.5 * self.increment > 1.0;
+        if all { 1.0 } else { reached + self.increment }
+    }
+
     /// Tries the next part of the load.
     fn next_part(&mut self) -> Result<(), Error> {
-        // No tiny last increment.
-        let all = self.reached + 1.5 * self.increment > 1.0;
-        let fraction = if all { 1.0 } else { self.reached + self.increment };
+        let fraction = self.next_fraction();
         let load = self.load_at(fraction);
         let Loading { solver, state, buffers, observer, .. } = self;
         let kept = (solver.contacts.clone(), solver.pressures.clone());

@@ -192,7 +192,7 @@ impl Solver<'_> {
     fn begin(&mut self, start: &[f64], load: Load, buffers: &mut Buffers) -> Course {
         let fraction = load.fraction;
         self.free.t = self.path.time(fraction);
-        self.contacts.begin();
+        self.contacts.begin((self.path.time(fraction - load.part), self.free.t));
         let jump = self.jump(start, fraction);
         let imbalance = self.imbalance(start, fraction, buffers);
         self.see_pressures(buffers);

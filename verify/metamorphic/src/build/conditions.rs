@@ -6,8 +6,7 @@ use crate::scene::{Place, Push, Scene, Wall, Way};
 use mtled::Vector3;
 use mtled::geometry::{Extent, Field, Shape};
 use mtled::problem::{
-    Amplitude, BodyForce, EssentialCondition, Friction, Loads, Obstacle, ObstacleSide, Prescribed,
-    Pressure, Traction,
+    Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Pressure, Traction,
 };
 
 /// When loads are complete \[s\]: at the end of a static problem, at half of a motion.
@@ -113,11 +112,5 @@ pub fn obstacles(scene: &Scene, frame: &Frame) -> Vec<Obstacle> {
 
 /// A frictionless obstacle.
 pub fn solid(name: &str, shape: Shape) -> Obstacle {
-    Obstacle {
-        name: name.into(),
-        shape,
-        offset: 0.0,
-        side: ObstacleSide::Outside,
-        friction: Friction::Frictionless,
-    }
+    Obstacle::new(name, shape)
 }

@@ -129,6 +129,14 @@ class InitialVelocity:
 
 
 @dataclass
+class RigidMotion:
+    """A motion of an obstacle: along a vector [m] or a rotation."""
+
+    way: Triple | Rotation
+    amplitude: Any = None
+
+
+@dataclass
 class Obstacle:
     """A rigid body that nodes may not enter, or not leave."""
 
@@ -136,4 +144,5 @@ class Obstacle:
     shape: Any
     offset_m: float | None = None
     side: Literal["outside", "inside"] | None = None
-    friction: Literal["frictionless", "no_slip"] | None = None
+    friction: Literal["frictionless", "no_slip"] | dict[str, float] | None = None
+    motion: Sequence[RigidMotion] = ()

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from .conditions import Data, Displacement, Formula, Prescribe, Rotation, Table
+from .conditions import Data, Displacement, Formula, Prescribe, RigidMotion, Rotation, Table
 from .shapes import Difference, InShape, Intersection, Not, Union
 
 #: Units at the ends of names.
@@ -25,6 +25,8 @@ def table_of(item: Any) -> Any:
     """A value of this module as what a case file has."""
     if isinstance(item, Prescribe):
         return _prescribe(item)
+    if isinstance(item, RigidMotion):
+        return _rigid_motion(item)
     if is_dataclass(item) and not isinstance(item, type):
         return _dataclass(item)
     if isinstance(item, Mapping):
@@ -51,6 +53,14 @@ def _dataclass(item: Any) -> Any:
 
 def _is_nothing(value: Any) -> bool:
     return value is None or (isinstance(value, tuple) and not value)
+
+
+def _rigid_motion(motion: RigidMotion) -> dict[str, Any]:
+    key = "rotation" if isinstance(motion.way, Rotation) else "displacement"
+    table = {key: table_of(motion.way)}
+    if motion.amplitude is not None:
+        table["amplitude"] = table_of(motion.amplitude)
+    return table
 
 
 def _prescribe(condition: Prescribe) -> dict[str, Any]:

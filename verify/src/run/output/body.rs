@@ -94,7 +94,8 @@ impl BodyFrames {
         ];
         if let Some(pressures) = &fields.contact_pressure {
             let displacement = &point_data[0].values;
-            let gaps = contact_gaps(&prepared.model.contact, &mesh.vertices, displacement);
+            let gaps =
+                contact_gaps((&prepared.model.contact, fields.time), &mesh.vertices, displacement);
             point_data.push(single("contact_gap", 1, gaps));
             point_data.push(single("contact_pressure", 1, self.not_negative(pressures)));
         }

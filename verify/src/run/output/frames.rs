@@ -166,7 +166,7 @@ fn node_frame<'a>(
     let pressure = fields.pressure();
     let gaps = fields.contact_pressure.as_ref().map(|_| {
         let positions = &prepared.discretisation.cloud.positions;
-        contact_gaps(&prepared.model.contact, positions, &fields.displacement)
+        contact_gaps((&prepared.model.contact, fields.time), positions, &fields.displacement)
     });
     let mut point_data = vec![
         PointArray::new("displacement", 3, fields.displacement),

@@ -23,6 +23,8 @@ pub struct NodeFields {
     pub strain: Vec<f64>,
     /// \[node\] \[Pa\]; nothing without obstacles.
     pub contact_pressure: Option<Vec<f64>>,
+    /// Of the frame \[s\].
+    pub time: f64,
     /// \[node\] \[m\]; of the last frame.
     pub error_bar: Option<Vec<f64>>,
 }
@@ -41,10 +43,11 @@ impl NodeFields {
         let (plan, discretisation) = (&prepared.model.contact, &prepared.discretisation);
         let contact_pressure = prepared
             .contact_surface(problem)?
-            .map(|surface| surface.pressures(plan, discretisation, &frame.contact, u))
+            .map(|surface| surface.pressures((plan, frame.time), discretisation, &frame.contact, u))
             .transpose()?;
         let error_bar = indicator.map(|indicator| indicator.sizes(&displacement));
-        Ok(NodeFields { displacement, jacobian, stress, strain, contact_pressure, error_bar })
+        let time = frame.time;
+        Ok(NodeFields { time, displacement, jacobian, stress, strain, contact_pressure, error_bar })
     }
 
     /// Pressure \[node\] \[Pa\].

@@ -3,13 +3,14 @@
 use crate::scene::build::builder::Builder;
 use crate::scene::build::field::near;
 use crate::scene::format::{
-    AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, FormulaFormat, ObstacleFormat,
-    PrescribeFormat, RotationFormat, Triple,
+    AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, FormulaFormat, FrictionFormat,
+    ObstacleFormat, PrescribeFormat, RigidMotionFormat, RotationFormat, Triple,
 };
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Field, Selector};
 use mtled::problem::{
-    Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Pressure, Traction,
+    Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Pressure, RigidMotion,
+    RigidWay, Traction,
 };
 
 impl Builder<'_> {
@@ -75,12 +76,18 @@ impl Builder<'_> {
     }
 
     fn rotation(&mut self, key: &str, format: &RotationFormat) -> Prescribed {
+        let (point, axis) = self.axis(key, format);
+        Prescribed::Rotation { point, axis, angle: format.angle }
+    }
+
+    /// A point on the axis of a rotation \[m\], and its direction.
+    fn axis(&mut self, key: &str, format: &RotationFormat) -> (Vector3, Vector3) {
         let axis = self.direction(&format!("{key}.axis"), &format.axis);
         if self.is_plane() && (axis.x != 0.0 || axis.y != 0.0) {
             let message = format!("is {:?}; in plane strain it must be along z", format.axis);
             self.mistake(&format!("{key}.axis"), message);
         }
-        Prescribed::Rotation { point: Vector3::from(format.point), axis, angle: format.angle }
+        (Vector3::from(format.point), axis)
     }
 
     pub(super) fn amplitude(&mut self, key: &str, format: &AmplitudeFormat) -> Amplitude {
@@ -165,14 +172,48 @@ impl Builder<'_> {
         }
     }
 
+    /// How an obstacle moves.
+    fn rigid_motion(&mut self, key: &str, row: &RigidMotionFormat) -> Option<RigidMotion> {
+        let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
+        let way = match (&row.displacement, &row.rotation) {
+            (Some(displacement), None) => {
+                self.no_z(&format!("{key}.displacement"), displacement);
+                RigidWay::Translation((*displacement).into())
+            }
+            (None, Some(format)) => {
+                let (point, axis) = self.axis(&format!("{key}.rotation"), format);
+                RigidWay::Rotation { point, axis, angle: format.angle }
+            }
+            (None, None) => {
+                self.mistake(key, "does not say how; it needs a displacement or a rotation");
+                return None;
+            }
+            (Some(_), Some(_)) => {
+                let message = "stands beside displacement; make it a motion of its own";
+                self.mistake(&format!("{key}.rotation"), message);
+                return None;
+            }
+        };
+        Some(RigidMotion { way, amplitude })
+    }
+
     pub fn obstacles(&mut self, rows: &[ObstacleFormat]) -> Vec<Obstacle> {
         let obstacle = |(n, row): (usize, &ObstacleFormat)| {
+            let key = format!("obstacle[{n}]");
+            if let FrictionFormat::Coulomb(coefficient) = row.friction {
+                self.not_negative(&format!("{key}.friction.coulomb"), coefficient);
+            }
+            let motions = row.motion.iter().enumerate();
+            let motions: Vec<RigidMotion> = motions
+                .filter_map(|(m, row)| self.rigid_motion(&format!("{key}.motion[{m}]"), row))
+                .collect();
             Some(Obstacle {
                 name: row.name.clone(),
-                shape: self.solid(&format!("obstacle[{n}].shape"), &row.shape)?,
+                shape: self.solid(&format!("{key}.shape"), &row.shape)?,
                 offset: row.offset,
                 side: row.side.into(),
                 friction: row.friction.into(),
+                motions,
             })
         };
         rows.iter().enumerate().filter_map(obstacle).collect()

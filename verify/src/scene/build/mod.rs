@@ -16,7 +16,7 @@ use crate::scene::document::Document;
 use crate::scene::format::{CaseFormat, DimensionFormat};
 use crate::scene::problem_hash::problem_hash;
 use builder::Builder;
-use mtled::problem::{Dimension, Problem, Wrong};
+use mtled::problem::{Dimension, Mistake, Problem, Wrong};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::path::Path;
@@ -94,8 +94,9 @@ impl Builder<'_> {
             motion,
         };
         // Each of the others has been refused where it stands.
-        let timeless = problem.check().into_iter().filter(|found| found.wrong == Wrong::NoTime);
-        self.refused(timeless.collect(), |_| "time.solver".into());
+        let unsolved = |found: &Mistake| matches!(found.wrong, Wrong::NoTime | Wrong::NoFriction);
+        let refused = problem.check().into_iter().filter(unsolved);
+        self.refused(refused.collect(), |_| "time.solver".into());
         Some(problem)
     }
 

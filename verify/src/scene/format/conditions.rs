@@ -5,7 +5,7 @@ use crate::scene::format::geometry::{SelectorFormat, ShapeFormat, Triple, UnitFo
 use mtled::geometry::Extent;
 use mtled::problem::{Friction, ObstacleSide};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A prescribed displacement: one of `displacement`, `rotation`, `formula` and `data`.
@@ -233,6 +233,21 @@ pub struct ObstacleFormat {
     pub side: SideFormat,
     #[serde(default)]
     pub friction: FrictionFormat,
+    /// How it moves, one motion after the other in axes that stay; left out where it stands still.
+    #[serde(default)]
+    pub motion: Vec<RigidMotionFormat>,
+}
+
+/// A motion of an obstacle: a displacement or a rotation.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RigidMotionFormat {
+    /// Its way at amplitude 1 [m]; left out where a rotation is given.
+    pub displacement: Option<Triple>,
+    /// A rotation; left out where a displacement is given.
+    pub rotation: Option<RotationFormat>,
+    #[serde(default)]
+    pub amplitude: AmplitudeFormat,
 }
 
 choice! {
@@ -247,14 +262,25 @@ choice! {
     }
 }
 
-choice! {
-    /// What happens along the surface of an obstacle.
-    #[derive(Default)]
-    FrictionFormat for Friction {
-        /// Nodes slide freely.
-        #[default]
-        "frictionless" Frictionless,
-        /// Nodes that touch do not slide.
-        "no_slip" NoSlip,
+/// What happens along the surface of an obstacle.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum FrictionFormat {
+    /// Nodes slide freely.
+    #[default]
+    Frictionless,
+    /// Nodes that touch do not slide.
+    NoSlip,
+    /// Coulomb's law: what acts along the surface is at most this coefficient [–] times what pushes.
+    Coulomb(f64),
+}
+
+impl From<FrictionFormat> for Friction {
+    fn from(format: FrictionFormat) -> Friction {
+        match format {
+            FrictionFormat::Frictionless => Friction::Frictionless,
+            FrictionFormat::NoSlip => Friction::NoSlip,
+            FrictionFormat::Coulomb(coefficient) => Friction::Coulomb(coefficient),
+        }
     }
 }

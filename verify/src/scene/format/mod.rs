@@ -13,7 +13,7 @@ mod time;
 pub use case::{CaseFormat, DimensionFormat};
 pub use conditions::{
     AmplitudeFormat, BeyondFormat, DataFormat, DisplacementFormat, ExtentFormat, FormulaFormat,
-    FrictionFormat, ObstacleFormat, PrescribeFormat, RotationFormat, SideFormat,
+    FrictionFormat, ObstacleFormat, PrescribeFormat, RigidMotionFormat, RotationFormat, SideFormat,
 };
 pub use fibres::DirectionFormat;
 pub use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};

@@ -14,8 +14,8 @@ use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
 use mtled::model::contact::ContactResult;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{
-    Amplitude, BodyForce, Cloud, Dimension, EssentialCondition, Field, Friction, Gradients, Motion,
-    Newton, Obstacle, ObstacleSide, Prescribed, Problem, Recipe, Refinement, Relaxation, defaults,
+    Amplitude, BodyForce, Cloud, Dimension, EssentialCondition, Field, Gradients, Motion, Newton,
+    Obstacle, ObstacleSide, Prescribed, Problem, Recipe, Refinement, Relaxation, defaults,
 };
 use std::f64::consts::PI;
 
@@ -246,7 +246,7 @@ fn fall(problem: &mut Problem, gravity: f64) {
 }
 
 fn obstacle(name: &str, shape: Shape, side: ObstacleSide) -> Obstacle {
-    Obstacle { name: name.into(), shape, offset: 0.0, side, friction: Friction::Frictionless }
+    Obstacle { side, ..Obstacle::new(name, shape) }
 }
 
 fn moved_face(axis: usize, at: f64, field: Field) -> EssentialCondition {

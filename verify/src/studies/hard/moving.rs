@@ -7,9 +7,7 @@ use crate::studies::workbench::Workbench;
 use anyhow::Result;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
-use mtled::problem::{
-    Amplitude, BodyForce, Friction, Motion, Obstacle, ObstacleSide, Problem, StepControl,
-};
+use mtled::problem::{Amplitude, BodyForce, Motion, Obstacle, Problem, StepControl};
 
 /// Adds the cases to the list.
 pub fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
@@ -80,13 +78,10 @@ fn pressed(spacing: f64) -> Result<Problem> {
     let there_and_back = Amplitude::Table(vec![(0.0, 0.0), (0.5, 1.0), (0.6, 1.0), (1.1, 0.0)]);
     let base = face(0.0, [Some(0.0), Some(0.0), Some(0.3 * SIZE)], there_and_back);
     problem.conditions = vec![base];
-    problem.obstacles = vec![Obstacle {
-        name: "ball".into(),
-        shape: Shape::Sphere { centre: Vector3::z() * (1.5 * SIZE), radius: 0.45 * SIZE },
-        offset: 0.0,
-        side: ObstacleSide::Outside,
-        friction: Friction::Frictionless,
-    }];
+    problem.obstacles = vec![Obstacle::new(
+        "ball",
+        Shape::Sphere { centre: Vector3::z() * (1.5 * SIZE), radius: 0.45 * SIZE },
+    )];
     let step = StepControl { safety_factor: 0.8, ..StepControl::default() };
     problem.motion = Motion::Dynamic { end: 3.0, step, damping: 30.0 };
     Ok(problem)

@@ -11,8 +11,7 @@ use mtled::geometry::{Selector, Shape};
 use mtled::motion::energy::Energies;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{
-    Amplitude, BackgroundGrid, BodyForce, Dimension, Friction, Motion, Obstacle, ObstacleSide,
-    Problem, StepControl,
+    Amplitude, BackgroundGrid, BodyForce, Dimension, Motion, Obstacle, Problem, StepControl,
 };
 use mtled_checks::measure::{larger, median};
 use mtled_checks::study::{
@@ -196,13 +195,10 @@ fn loaded(seed: u64, end: f64) -> anyhow::Result<Problem> {
         acceleration: Vector3::new(9.81, 0.0, 0.0).into(),
         amplitude: Amplitude::Linear { duration: 0.5 * end },
     }];
-    problem.obstacles = vec![Obstacle {
-        name: "wall".into(),
-        shape: Shape::HalfSpace { point: Vector3::x() * (1.03 * SIZE), normal: -Vector3::x() },
-        offset: 0.0,
-        side: ObstacleSide::Outside,
-        friction: Friction::Frictionless,
-    }];
+    problem.obstacles = vec![Obstacle::new(
+        "wall",
+        Shape::HalfSpace { point: Vector3::x() * (1.03 * SIZE), normal: -Vector3::x() },
+    )];
     problem.motion = Motion::Dynamic { end, step: StepControl::default(), damping: 5.0 };
     Ok(problem)
 }

@@ -12,14 +12,14 @@ use mtled::algebra::random::Random;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
 use mtled::model::Model;
-use mtled::model::contact::{ContactState, ContactStep, gap};
+use mtled::model::contact::{ContactState, ContactStep};
 use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
 use mtled::problem::{
-    Amplitude, BackgroundGrid, BodyForce, EssentialCondition, Friction, Motion, Obstacle,
-    ObstacleSide, Prescribed, StepControl,
+    Amplitude, BackgroundGrid, BodyForce, EssentialCondition, Motion, Obstacle, Prescribed,
+    StepControl,
 };
 use mtled_checks::measure::larger;
 use mtled_checks::study::Study;
@@ -94,26 +94,21 @@ pub fn contact(bench: &Workbench, study: &mut Study) -> Result<()> {
     const DEPTH: f64 = 0.02 * SIZE;
     let mut problem = cube(bench)?;
     let centre = Vector3::new(0.5 * SIZE, 0.5 * SIZE, -SIZE + DEPTH);
-    problem.obstacles.push(Obstacle {
-        name: "ball".into(),
-        shape: Shape::Sphere { centre, radius: SIZE },
-        side: ObstacleSide::Outside,
-        friction: Friction::Frictionless,
-        offset: 0.0,
-    });
+    problem.obstacles.push(Obstacle::new("ball", Shape::Sphere { centre, radius: SIZE }));
     problem.motion = steps(1, 0.0);
     let model = prepare(&problem)?.model;
     let mut contact = ContactState::default();
     let mut u = vec![0.0; model.size()];
     let mut velocity = vec![0.0; model.size()];
     let (displacement, velocity) = (&mut u[..], &mut velocity[..]);
-    let step = ContactStep { mass: &model.inertia, displacement, velocity, time_step: 1.0 };
+    let (mass, times) = (&model.inertia, (0.0, 1.0));
+    let step = ContactStep { mass, displacement, velocity, times, time_step: 1.0 };
     contact.enforce(&model.contact, &model.positions, 0.0, step);
-    let obstacle = &model.contact.obstacles[0];
+    let obstacle = model.contact.placed(0, 1.0);
     let position = |node: usize| {
         model.positions[node] + Vector3::from_column_slice(&u[3 * node..3 * node + 3])
     };
-    let inside = |node: usize| (-gap(obstacle, &position(node))).max(0.0);
+    let inside = |node: usize| (-obstacle.gap(&position(node))).max(0.0);
     let touching = contact.touching.len();
     let deepest = (0..model.positions.len()).map(inside).fold(0.0, larger);
     study.checks.push(exact(
