@@ -25,8 +25,8 @@ fn falling(friction: Friction) -> Problem {
 
 /// Smallest gap of any node to any obstacle \[m\].
 fn smallest_gap(model: &Model, state: &State) -> f64 {
-    let place = |n: usize| model.positions[n] + state.displacement_of(n, model.components);
-    let nodes = 0..model.positions.len();
+    let place = |n: u32| model.contact.place(n, &model.positions, &state.displacement);
+    let nodes = 0..model.positions.len() as u32;
     let gaps = |n| model.contact.all_placed(state.time).map(move |(_, o)| o.gap(&place(n)));
     nodes.flat_map(gaps).fold(f64::INFINITY, f64::min)
 }
@@ -37,7 +37,11 @@ fn run_without_penetration(problem: &Problem) -> (Model, State) {
     let mut state = State::new(&model);
     let mut observer = EachStep(|view: &mut View| {
         let smallest = smallest_gap(view.model, view.state);
-        assert!(smallest > -1e-12, "gap {smallest:e} m at t = {} s", view.state.time);
+        assert!(
+            smallest > -1e-3 * view.model.mean_spacing,
+            "gap {smallest:e} m at t = {} s",
+            view.state.time
+        );
     });
     simulate(&model, &problem.motion, &mut state, &mut observer).unwrap();
     (model, state)
@@ -54,15 +58,7 @@ fn a_falling_block_comes_to_rest_on_the_floor_and_no_node_goes_below() {
 #[test]
 fn the_nodes_that_touch_carry_the_weight_of_a_block_at_rest() {
     let (model, state) = run_without_penetration(&falling(Friction::Frictionless));
-    let f_int = forces(&model, &state.displacement);
-    // At rest the contact force on a node is f_int − f_ext.
-    let contact_force: f64 = state
-        .contact
-        .touching
-        .iter()
-        .map(|&node| 3 * node as usize + 2)
-        .map(|i| f_int[i] - model.loads[0].force[i])
-        .sum();
+    let contact_force: f64 = state.contact_forces().iter().map(|contact| contact.force.z).sum();
     let weight = 9.81 * model.lumped_mass.iter().sum::<f64>();
     let ratio = contact_force / weight;
     assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
@@ -109,13 +105,15 @@ fn without_friction_a_block_slides_down_a_slope_as_a_point_mass_would() {
 fn without_slip_a_block_stays_on_a_slope() {
     let mut problem = on_a_slope(Friction::NoSlip);
     problem.motion = Motion::Dynamic { end: 1.0, step: StepControl::default(), damping: 60.0 };
-    let (_, state) = run_without_penetration(&problem);
+    let (model, state) = run_without_penetration(&problem);
     assert!(largest(&state.velocity) < 1e-4, "{:e} m/s", largest(&state.velocity));
     // Touching nodes have not slid, except in the rebound of the first impact
     // (measured: 2.6e-5 m, where a free block moves by 2.45 m).
     assert!(!state.contact.touching.is_empty());
     for &node in &state.contact.touching {
-        assert!(state.displacement_of(node as usize, 2).norm() < 1e-3 * EDGE);
+        let place = model.contact.place(node, &model.positions, &state.displacement);
+        let slid = (place - model.positions[node as usize]).norm();
+        assert!(slid < 1e-3 * EDGE, "{slid:e} m");
     }
 }
 
@@ -197,8 +195,7 @@ fn a_node_pressed_against_an_obstacle_comes_to_rest_on_its_surface_whatever_its_
         for safety_factor in [0.94, 0.5] {
             let (model, state, _) = pressed_onto(slope, safety_factor);
             for &node in &state.contact.touching {
-                let z =
-                    model.positions[node as usize].z + state.displacement[3 * node as usize + 2];
+                let z = model.contact.place(node, &model.positions, &state.displacement).z;
                 assert!((z + 0.001).abs() < 1e-9, "slope {slope}, step {safety_factor}: {z}");
             }
         }

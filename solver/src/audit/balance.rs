@@ -52,7 +52,7 @@ impl Run<'_> {
             add(place(node), vector_at(&loads, node, d));
         }
         for contact in state.contact_forces() {
-            add(self.contact_place(contact.node as usize), contact.force);
+            add(model.contact.place(contact.node, &model.positions, u), contact.force);
         }
         for reaction in state.reactions(model, &self.centre) {
             force += reaction.force;
@@ -66,19 +66,6 @@ impl Run<'_> {
             Row::vectors(Kind::Forces, "", zero, force, limit),
             Row::vectors(Kind::Moments, "", zero, moment, limit * self.extent()),
         ]
-    }
-
-    /// Where an obstacle pushes a node now \[m\]: Newton's method keeps the values of the
-    /// displacement out of it, steps keep the parameters out.
-    fn contact_place(&self, node: usize) -> Vector3 {
-        let (model, u) = (self.model, &self.state.displacement);
-        let X = model.positions[node];
-        match &model.nodal_rows {
-            Some(rows) if self.state.time_step == 0.0 => {
-                X + rows.interpolate(node, u, model.components)
-            }
-            _ => X + vector_at(u, node, model.components),
-        }
     }
 
     /// f_int · u, by the loop that a run spends its time in, against the derivative of the strain
@@ -123,7 +110,7 @@ impl Run<'_> {
         let done = now.balance() - excess_of_mean(model, state);
         let balance = Row::numbers(Kind::Energy, "", start, done, ENERGY * largest);
         let mut rows = vec![balance];
-        if model.constraints.hold_still(0.0, state.time) {
+        if model.constraints.hold_still(0.0, state.time) && !model.contact.has_moving() {
             // Without what obstacles keep of the nodes that touch them, and with what they have taken.
             let done = now.constraint_work - now.contact_loss;
             rows.push(Row::numbers(Kind::ContactWork, "", 0.0, done, WORK * largest));

@@ -63,14 +63,6 @@ impl Imbalance {
         Imbalance { force, acceleration, scale, smallest_jacobian }
     }
 
-    /// Ignores the imbalance of some nodes, such as those in contact.
-    pub fn ignore(&mut self, model: &Model, nodes: &[u32]) {
-        let d = model.components;
-        for &node in nodes {
-            self.acceleration[d * node as usize..d * (node as usize + 1)].fill(0.0);
-        }
-    }
-
     /// Largest free unbalanced nodal force \[N\]; NaN if there is one.
     pub fn largest(&self, model: &Model) -> f64 {
         let d = model.components;

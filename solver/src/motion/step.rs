@@ -40,6 +40,11 @@ impl Scheme {
         }
     }
 
+    /// What makes forces of m Δu, 1/(Δt push) \[1/s²\].
+    fn force_factor(&self) -> f64 {
+        1.0 / (self.time_step * self.push)
+    }
+
     /// Dynamic relaxation (Joldes, Wittek, Miller 2011, eq. 10):
     /// u⁺ = α M⁻¹f + (1 + c²)u − c²u⁻ with α = ((c + 1)Δt/2)².
     pub fn relaxation(time_step: f64, c: f64) -> Scheme {
@@ -112,9 +117,9 @@ pub fn step(
     }
     state.contact.impacts.begin(&state.velocity);
     predict(model, scheme, state, buffers);
-    state.force_factor = 1.0 / (scheme.time_step * scheme.push);
+    let before = std::mem::replace(&mut state.force_factor, scheme.force_factor());
     let times = (load_time, target_time);
-    let largest_increment = constrain(model, scheme, times, state);
+    let largest_increment = constrain(model, (scheme, before), times, state);
     if buffers.track_work {
         add_work(model, scheme, state, buffers);
     }
@@ -185,7 +190,12 @@ fn predict_chunk(
 
 /// Prescribed displacements, then contact, on u(t + Δt). Returns the largest
 /// change of a component \[m\].
-fn constrain(model: &Model, scheme: &Scheme, times: (f64, f64), state: &mut State) -> f64 {
+fn constrain(
+    model: &Model,
+    (scheme, factor_before): (&Scheme, f64),
+    times: (f64, f64),
+    state: &mut State,
+) -> f64 {
     let State { displacement, velocity, constraint_forces, contact, .. } = state;
     let rate = 1.0 / scheme.time_step;
     let (positions, mass) = (&model.positions, &model.inertia);
@@ -204,14 +214,18 @@ fn constrain(model: &Model, scheme: &Scheme, times: (f64, f64), state: &mut Stat
         return increment;
     }
     let time_step = scheme.time_step;
-    let moving = ContactStep { mass, displacement, velocity, times, time_step };
+    contact.impacts.note_free(velocity);
+    let growth = factor_before / scheme.force_factor();
+    let moving = ContactStep { mass, displacement, velocity, times, time_step, growth };
     contact.enforce(&model.contact, positions, increment, moving);
     let (time_step, keep) = (scheme.time_step, scheme.keep);
     let moved = Moved { positions, mass, displacement, velocity, times, time_step, keep };
-    contact.impacts.settle(&model.contact, &contact.forces, moved);
+    contact.settle_impacts(&model.contact, moved);
     // What contact takes back is no movement: a node that is pressed against an obstacle
     // in equilibrium would seem to move for ever.
-    largest_or_nan(velocity) * scheme.time_step
+    let after = largest_or_nan(velocity) * scheme.time_step;
+    contact.has_moved(&model.contact, after - increment);
+    after
 }
 
 /// Largest size of an entry; NaN if there is one, which `f64::max` drops.

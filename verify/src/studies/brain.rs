@@ -120,11 +120,7 @@ impl SliceRun {
     fn penetration(&self) -> f64 {
         let model = &self.solved.prepared.model;
         let depth = |moment: &Moment, node: u32| {
-            let node = node as usize;
-            let mut x = model.positions[node];
-            for k in 0..model.components {
-                x[k] += moment.displacement[model.components * node + k];
-            }
+            let x = model.contact.place(node, &model.positions, &moment.displacement);
             let gaps = model.contact.all_placed(0.0).map(|(_, skull)| skull.gap(&x));
             -gaps.fold(f64::INFINITY, f64::min)
         };

@@ -1,9 +1,10 @@
 //! Kinetic energy of nodes that strike an obstacle: kept while they touch it, given back when
 //! they leave (method book, eqs. 16.4 and 16.5).
 
-use super::placed::Placed;
-use super::plan::{ContactForce, ContactPlan};
-use crate::algebra::tensor::{Vector3, vector_at};
+use super::plan::ContactPlan;
+use super::touch::Touch;
+use super::values::Pushed;
+use crate::algebra::tensor::Vector3;
 use crate::problem::Friction;
 
 /// The energy that contact takes from the nodes of a motion, and what becomes of it.
@@ -15,6 +16,10 @@ use crate::problem::Friction;
 pub struct Impacts {
     /// Velocities before the step \[component of node\] \[m/s\].
     before: Vec<f64>,
+    /// Those after it, had there been no contact.
+    free: Vec<f64>,
+    /// What nodes that left have been given beyond what was kept of them \[J\]; the next ones pay.
+    debt: f64,
     /// By obstacle and node.
     kept: Vec<Kept>,
     scratch: Vec<Kept>,
@@ -62,6 +67,7 @@ impl Impacts {
     pub(crate) fn new(velocity: &[f64], components: usize) -> Impacts {
         Impacts {
             before: velocity.to_vec(),
+            free: velocity.to_vec(),
             pushed: vec![false; velocity.len() / components],
             ..Impacts::default()
         }
@@ -74,7 +80,7 @@ impl Impacts {
 
     /// Kept by all obstacles \[J\].
     pub fn stored(&self) -> f64 {
-        self.kept.iter().map(|kept| kept.energy).sum()
+        self.kept.iter().map(|kept| kept.energy).sum::<f64>() - self.debt
     }
 
     /// Notes the velocities before a step \[m/s\].
@@ -84,33 +90,42 @@ impl Impacts {
         }
     }
 
-    /// Keeps what the `pushes` m Δu \[kg·m\] of a step, by obstacle and node, have taken from the
-    /// nodes, and gives back what is kept of nodes that nothing pushes any more.
-    pub(crate) fn settle(&mut self, plan: &ContactPlan, pushes: &[ContactForce], moved: Moved) {
-        if !self.is_active() || pushes.is_empty() && self.kept.is_empty() {
+    /// Notes the velocities of a step before contact changes them \[m/s\].
+    pub(crate) fn note_free(&mut self, velocity: &[f64]) {
+        if self.is_active() {
+            self.free.copy_from_slice(velocity);
+        }
+    }
+
+    /// Keeps what the touches of a step, by obstacle and node, have taken from the nodes, and gives
+    /// back what is kept of nodes that nothing pushes any more.
+    pub(super) fn settle(&mut self, plan: &ContactPlan, touches: &[Touch], moved: Moved) {
+        if !self.is_active() || touches.is_empty() && self.kept.is_empty() {
             return;
         }
         self.largest_kinetic = self.largest_kinetic.max(moved.kinetic());
         let before = std::mem::take(&mut self.kept);
         let mut after = std::mem::take(&mut self.scratch);
         after.clear();
-        pushes.iter().for_each(|push| self.pushed[push.node as usize] = true);
+        touches.iter().for_each(|touch| self.pushed[touch.node as usize] = true);
         let mut moved = moved;
-        let mut known = before.iter().peekable();
         let key = |kept: &Kept| (kept.obstacle, kept.node);
-        for push in pushes {
-            let pair = (push.obstacle, push.node);
-            while let Some(kept) = known.next_if(|kept| key(kept) < pair) {
+        for touch in touches {
+            let (obstacle, node) = (touch.obstacle, touch.node);
+            let kept = before.binary_search_by_key(&(obstacle, node), key);
+            let kept = kept.map_or(0.0, |index| before[index].energy);
+            let energy = self.damp(kept, moved.keep) + self.strike(plan, touch, &moved);
+            after.push(Kept { obstacle, node, energy });
+        }
+        // What leaves changes the velocities by which strikes work.
+        let touching = after.len();
+        for kept in &before {
+            if after[..touching].binary_search_by_key(&key(kept), key).is_err() {
                 after.extend(self.leave(plan, kept, &mut moved));
             }
-            let kept = known.next_if(|kept| key(kept) == pair).map_or(0.0, |kept| kept.energy);
-            let energy = self.damp(kept, moved.keep) + self.strike(plan, push, &moved);
-            after.push(Kept { obstacle: push.obstacle, node: push.node, energy });
         }
-        for kept in known {
-            after.extend(self.leave(plan, kept, &mut moved));
-        }
-        pushes.iter().for_each(|push| self.pushed[push.node as usize] = false);
+        after.sort_unstable_by_key(key);
+        touches.iter().for_each(|touch| self.pushed[touch.node as usize] = false);
         (self.kept, self.scratch) = (after, before);
     }
 
@@ -123,51 +138,62 @@ impl Impacts {
 
     /// The energy to keep of a push \[J\]: less its work as the obstacle sees it,
     /// J·(½(v(t − Δt/2) + v(t + Δt/2)) − w) with the velocity w of the obstacle there.
-    fn strike(&mut self, plan: &ContactPlan, push: &ContactForce, moved: &Moved) -> f64 {
-        let d = moved.components();
-        let obstacle = plan.placed(push.obstacle, moved.times.1);
-        let node = push.node as usize;
-        let impulse = push.force / moved.time_step;
-        let mean = 0.5 * (vector_at(&self.before, node, d) + vector_at(moved.velocity, node, d));
-        let mean = mean - moved.velocity_of(plan, (push.obstacle, &obstacle), node);
+    fn strike(&mut self, plan: &ContactPlan, touch: &Touch, moved: &Moved) -> f64 {
+        let impulse = touch.push / moved.time_step;
+        let mean = self.mean(plan, (touch.obstacle, touch.row), moved);
         let work = impulse.dot(&mean);
         self.work += work;
-        let along = match obstacle.obstacle.friction {
+        let along = match touch.friction {
             Friction::Frictionless => work,
             Friction::NoSlip | Friction::Coulomb(_) => {
-                let n = obstacle.normal(&moved.place(node), plan.free(push.node));
-                impulse.dot(&n) * mean.dot(&n)
+                impulse.dot(&touch.normal) * mean.dot(&touch.normal)
             }
         };
         self.lost += along - work;
         -along
     }
 
+    /// Mean velocity of a step, as a push on a value of a row does work on it, seen from an obstacle
+    /// \[m/s\].
+    fn mean(&self, plan: &ContactPlan, (obstacle, row): (u32, u32), moved: &Moved) -> Vector3 {
+        let value = |field: &[f64]| plan.pushed_value(row, field);
+        let mean = 0.5 * (value(&self.before) + value(moved.velocity));
+        let now = plan.placed(obstacle, moved.times.1);
+        let way = now.way_since(&plan.placed(obstacle, moved.times.0), &moved.place(plan, row));
+        mean - plan.share(row).component_mul(&way) / moved.time_step
+    }
+
     /// Gives back what is kept of a node, along the normal, or keeps it while another obstacle
     /// pushes the node.
     fn leave(&mut self, plan: &ContactPlan, kept: &Kept, moved: &mut Moved) -> Option<Kept> {
-        let (node, d) = (kept.node as usize, moved.components());
         let energy = self.damp(kept.energy, moved.keep);
-        if self.pushed[node] {
+        if self.pushed[kept.node as usize] {
             return Some(Kept { energy, ..*kept });
         }
-        let obstacle = plan.placed(kept.obstacle, moved.times.1);
-        let n = obstacle.normal(&moved.place(node), plan.free(kept.node));
-        if energy <= 0.0 || n == Vector3::zeros() {
+        let paid = energy.min(self.debt);
+        let (energy, row) = (energy - paid, plan.row_of(kept.node));
+        self.debt -= paid;
+        let row = row.filter(|_| energy > 0.0);
+        let normal = |row: u32| {
+            let place = moved.place(plan, row);
+            let n = plan.placed(kept.obstacle, moved.times.1).normal(&place, plan.free(kept.node));
+            let mobility = n.component_mul(&n).dot(&plan.mobility(row, moved.mass));
+            (mobility > 0.0).then_some((row, n, mobility))
+        };
+        let Some((row, n, mobility)) = row.and_then(normal) else {
             self.lost += energy;
             return None;
-        }
-        let mean = 0.5 * (vector_at(&self.before, node, d) + vector_at(moved.velocity, node, d));
-        let mean = mean - moved.velocity_of(plan, (kept.obstacle, &obstacle), node);
-        // J s + J²/2m is the energy, with the speed away from the obstacle.
-        let (mass, speed) = (moved.mass[node], mean.dot(&n));
-        let impulse = (mass * mass * speed * speed + 2.0 * mass * energy).sqrt() - mass * speed;
+        };
+        // J s + J² w/2 is the energy, with w = Σ φ²/m and the speed s away from the obstacle: with
+        // half of what contact has changed on top, by which J changes the work of the pushes before.
+        let changed = plan.pushed_value(row, moved.velocity) - plan.pushed_value(row, &self.free);
+        let speed = (self.mean(plan, (kept.obstacle, row), moved) + 0.5 * changed).dot(&n);
+        let impulse = ((speed * speed + 2.0 * mobility * energy).sqrt() - speed) / mobility;
         self.work += energy;
-        for k in 0..d {
-            let gained = impulse / mass * n[k];
-            moved.velocity[d * node + k] += gained;
-            moved.displacement[d * node + k] += moved.time_step * gained;
-        }
+        let Moved { mass, displacement, velocity, time_step, .. } = moved;
+        let (displacement, velocity) = (&mut displacement[..], &mut velocity[..]);
+        let mut pushed = Pushed { mass, displacement, velocity, time_step: *time_step };
+        plan.push(row, &(impulse * *time_step * n), &mut pushed);
         None
     }
 }
@@ -177,18 +203,9 @@ impl Moved<'_> {
         self.displacement.len() / self.mass.len()
     }
 
-    fn place(&self, node: usize) -> Vector3 {
-        self.positions[node] + vector_at(self.displacement, node, self.components())
-    }
-
-    /// Of the material of an obstacle at a node, in the step \[m/s\].
-    fn velocity_of(
-        &self,
-        plan: &ContactPlan,
-        (index, now): (u32, &Placed),
-        node: usize,
-    ) -> Vector3 {
-        now.way_since(&plan.placed(index, self.times.0), &self.place(node)) / self.time_step
+    /// Of the node of a row \[m\].
+    fn place(&self, plan: &ContactPlan, row: u32) -> Vector3 {
+        self.positions[plan.nodes[row as usize] as usize] + plan.value(row, self.displacement)
     }
 
     /// \[J\]

@@ -8,7 +8,9 @@ mod placed;
 mod plan;
 mod report;
 mod state;
+mod touch;
 mod unresolved;
+mod values;
 
 pub(crate) use check::check_obstacles;
 pub use impact::Impacts;

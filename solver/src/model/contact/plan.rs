@@ -3,7 +3,7 @@
 
 use super::between::{Outside, narrow};
 use crate::algebra::tensor::{Vector3, vector_at};
-use crate::discretisation::Discretisation;
+use crate::discretisation::{Discretisation, Rows};
 use crate::error::Error;
 use crate::model::essential::Constraints;
 use crate::problem::{Friction, Obstacle, Problem};
@@ -16,8 +16,12 @@ use crate::problem::{Friction, Obstacle, Problem};
 pub struct ContactPlan {
     /// As stated in the problem; in a plane their sections.
     pub obstacles: Vec<Obstacle>,
-    /// Boundary nodes with a component that is not prescribed for ever.
+    /// Boundary nodes with a component that is not prescribed for ever, ascending.
     pub nodes: Vec<u32>,
+    /// φ at these nodes \[node that may touch\].
+    pub(super) rows: Rows,
+    /// Displacement components of a node.
+    pub(super) components: usize,
     /// Boundary nodes with a component that is.
     pub held: Vec<u32>,
     /// Which components obstacles may push \[node\]\[component\].
@@ -64,7 +68,9 @@ impl ContactPlan {
             .collect();
         let boundary = || all.clone().filter(|node| cloud.on_boundary[*node as usize]);
         let count = |node: u32| free[node as usize].iter().filter(|free| **free).count();
-        let nodes = boundary().filter(|node| count(*node) > 0).collect();
+        let nodes: Vec<u32> = boundary().filter(|node| count(*node) > 0).collect();
+        let places: Vec<Vector3> = nodes.iter().map(|n| cloud.positions[*n as usize]).collect();
+        let rows = discretisation.rows_at(&places)?;
         let held = boundary().filter(|node| count(*node) < components).collect();
         let mean_spacing = cloud.mean_spacing();
         let section = |obstacle: &Obstacle| -> Result<Obstacle, Error> {
@@ -76,6 +82,8 @@ impl ContactPlan {
         let mut plan = ContactPlan {
             obstacles,
             nodes,
+            rows,
+            components,
             held,
             free,
             mean_spacing,

@@ -1,18 +1,20 @@
-//! Nodes that have entered an obstacle, and what puts them back.
+//! Which nodes touch obstacles, from step to step.
 #![allow(non_snake_case)]
 
-use super::impact::Impacts;
+use super::impact::{Impacts, Moved};
 use super::placed::Placed;
-use super::plan::{Components, ContactForce, ContactPlan};
-use crate::algebra::tensor::{Vector3, vector_at};
+use super::plan::{ContactForce, ContactPlan};
+use super::touch::{Touch, settle};
+use super::values::Pushed;
+use crate::algebra::tensor::Vector3;
 use crate::problem::Friction;
 
 /// The state of contact, which evolves from step to step.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct ContactState {
-    /// (obstacle, node) pairs that may touch before the next search.
-    candidates: Vec<(u32, u32)>,
-    /// Bound of the movement of any node since the last search \[m\].
+    /// Pairs that may touch before the next search, by obstacle and node.
+    candidates: Vec<Candidate>,
+    /// Bound of the movement of any value since the last search, past any obstacle \[m\].
     travelled: f64,
     searched: bool,
     /// A box around the nodes at the last search \[m\].
@@ -20,6 +22,10 @@ pub struct ContactState {
     /// Where a sticking node first touched, or last slid to: (obstacle, node, place as the obstacle
     /// sees it \[m\]).
     anchors: Vec<(u32, u32, Vector3)>,
+    #[serde(skip)]
+    touches: Vec<Touch>,
+    /// m Δu of the values that were pushed in the last step \[kg·m\], by obstacle and node.
+    pushes: Vec<ContactForce>,
     /// Nodes in contact after the last step.
     pub touching: Vec<u32>,
     /// What obstacles exert, to be multiplied by the force factor of the state: the values
@@ -29,6 +35,16 @@ pub struct ContactState {
     pub entered: Vec<(u32, Vector3)>,
     /// What strikes have taken from nodes; only of motions.
     pub impacts: Impacts,
+}
+
+/// A node that may touch an obstacle.
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
+struct Candidate {
+    obstacle: u32,
+    /// Of the rows of the plan.
+    row: u32,
+    /// It cannot have entered before values have travelled so far since the search \[m\].
+    clear: f64,
 }
 
 /// The step that contact corrects.
@@ -43,47 +59,75 @@ pub struct ContactStep<'a> {
     pub times: (f64, f64),
     /// \[s\]
     pub time_step: f64,
+    /// m Δu of this step over that of the last one for the same force \[–\].
+    pub growth: f64,
 }
 
+/// Largest change of a value over that of the largest nodal parameter, along each axis \[–\]: shape
+/// functions are negative in places.
+const OF_VALUES: f64 = 2.0;
+
 impl ContactState {
-    /// Moves nodes that entered an obstacle back to its surface (method book, eq.
-    /// 16.2), on u(t+Δt) as in Horton 2007, section 2.7, with their velocities, and keeps
-    /// m Δu as forces. No entry of `u` changed by more than `largest_increment` \[m\] before.
+    /// Moves nodes that entered an obstacle back to its surface, on values of u(t+Δt) with
+    /// their velocities, and keeps m Δu as forces (method book, eq. 16.2). No entry of `u` changed by
+    /// more than `largest_increment` \[m\] before.
     pub fn enforce(
         &mut self,
         plan: &ContactPlan,
         positions: &[Vector3],
         largest_increment: f64,
-        mut step: ContactStep,
+        step: ContactStep,
     ) {
-        let components = step.displacement.len() / positions.len();
-        let increment = largest_increment * (components as f64).sqrt();
-        self.travelled += increment + plan.travel(step.times, self.around);
+        let travelled = plan.bound(largest_increment) + plan.travel(step.times, self.around);
+        self.travelled += travelled;
         let search = !self.searched || self.travelled > plan.mean_spacing;
         if search {
-            self.search(plan, positions, &step, increment);
+            self.search(plan, positions, &step, travelled);
         }
-        self.touching.clear();
-        self.forces.clear();
+        let mut touches = std::mem::take(&mut self.touches);
+        touches.clear();
         let mut here: Option<Here> = None;
-        for i in 0..self.candidates.len() {
-            let (obstacle, node) = self.candidates[i];
+        for index in 0..self.candidates.len() {
+            let Candidate { obstacle, row, clear } = self.candidates[index];
+            if self.travelled < clear {
+                continue;
+            }
             let here = match &here {
                 Some(known) if known.index == obstacle => known,
                 _ => here.insert(Here::new(plan, obstacle, step.times)),
             };
-            let x =
-                positions[node as usize] + vector_at(step.displacement, node as usize, components);
-            let moved = step.time_step * vector_at(step.velocity, node as usize, components);
-            let target = self.target(plan, (here, node), &x, &moved);
-            let Some(target) = target else { continue };
-            self.touching.push(node);
-            let force = step.push(node, target - x);
-            self.forces.push(ContactForce { obstacle, node, force });
+            let X = &positions[plan.nodes[row as usize] as usize];
+            let (gap, touch) = self.touch(plan, here, (row, X), &step);
+            self.candidates[index].clear = self.travelled + gap;
+            touches.extend(touch);
         }
+        self.start(&mut touches, step.growth);
+        let (t, ContactStep { mass, displacement, velocity, time_step, .. }) = (step.times.1, step);
+        let mut pushed = Pushed { mass, displacement, velocity, time_step };
+        settle(&mut touches, plan, (positions, t), &mut pushed);
+        touches.retain(|touch| self.is_kept(touch));
+        self.keep(plan, positions, &touches, t, displacement);
         if search {
-            self.look(plan, positions, step.times.1, step.displacement);
+            self.look(plan, positions, t, displacement);
         }
+        self.touches = touches;
+    }
+
+    /// Notes that nodal parameters have moved by so much more in the step \[m\].
+    pub(crate) fn has_moved(&mut self, plan: &ContactPlan, more: f64) {
+        self.travelled += plan.bound(more.max(0.0));
+    }
+
+    /// Adds the forces on nodes \[component of node\] of what obstacles exert on values, times a factor.
+    pub(crate) fn add_forces(&self, plan: &ContactPlan, factor: f64, forces: &mut [f64]) {
+        for ContactForce { node, force, .. } in &self.pushes {
+            plan.row_of(*node).iter().for_each(|row| plan.add(*row, &(factor * force), forces));
+        }
+    }
+
+    /// What impacts keep of the pushes of a step.
+    pub(crate) fn settle_impacts(&mut self, plan: &ContactPlan, moved: Moved) {
+        self.impacts.settle(plan, &self.touches, moved);
     }
 
     /// Keeps which narrow obstacles have gone in between nodes that were put back.
@@ -95,50 +139,106 @@ impl ContactState {
         }
     }
 
-    /// Where a node at `x` that has entered the obstacle, in a step in which it has `moved` \[m\],
-    /// is put: the nearest point of the surface, that where it went in if it passed the middle
-    /// of a narrow one, or the place where it sticks. None if the obstacle cannot push it.
-    fn target(
+    /// The gap of a node in an obstacle \[m\], and what is to be done if it has entered, or, where the
+    /// obstacle is narrow, passed it.
+    fn touch(
         &mut self,
         plan: &ContactPlan,
-        (here, node): (&Here, u32),
-        x: &Vector3,
-        moved: &Vector3,
-    ) -> Option<Vector3> {
-        let Here { index, before, now } = here;
-        let free = plan.free(node);
-        let opening = now.gap(x);
-        let stuck = self.anchors.iter().position(|anchor| (anchor.0, anchor.1) == (*index, node));
-        let entered = plan.crossing(*index, (before, &(x - moved)), (now, x));
-        if opening >= 0.0 && entered.is_none() {
-            stuck.map(|index| self.anchors.swap_remove(index));
-            return None;
+        Here { index, before, now }: &Here,
+        (row, X): (u32, &Vector3),
+        step: &ContactStep,
+    ) -> (f64, Option<Touch>) {
+        let (node, friction) = (plan.nodes[row as usize], now.obstacle.friction);
+        let at = plan.value(row, step.displacement);
+        let (x, free) = (X + at, plan.free(node));
+        let gap = now.gap(&x);
+        let rubs = friction != Friction::Frictionless;
+        let looks_back = plan.width(*index).is_some() || (gap < 0.0 && rubs);
+        let moved = if looks_back { plan.value(row, step.velocity) } else { Vector3::zeros() };
+        let last = x - step.time_step * moved;
+        let entered = plan.crossing(*index, (before, &last), (now, &x));
+        if gap >= 0.0 && entered.is_none() {
+            self.forget_anchor(*index, node);
+            return (gap, None);
         }
-        let (from, depth) = entered.map_or((*x, opening), |x| (x, now.gap(&x)));
-        let nearest = now.onto_surface(&from, depth, free);
-        if nearest == *x {
-            return None;
+        let (from, depth) = entered.map_or((x, gap), |x| (x, now.gap(&x)));
+        let (normal, nearest) = (now.normal(&from, free), now.onto_surface(&from, depth, free));
+        if nearest == x {
+            return (gap, None);
         }
-        let anchor = stuck.map(|index| self.anchors[index].2);
-        let (target, anchor) = match (now.obstacle.friction, anchor) {
-            (Friction::Frictionless, _) => return Some(nearest),
-            (Friction::NoSlip, None) => (nearest, now.own(&nearest)),
-            (Friction::NoSlip, Some(anchor)) => {
-                let place = now.now(&anchor);
-                (Vector3::from_fn(|k, _| if free[k] { place[k] } else { x[k] }), anchor)
-            }
-            (Friction::Coulomb(coefficient), anchor) => {
-                // In the step in which it touches it would, without slip, not move along the surface.
-                let last = anchor.unwrap_or_else(|| before.own(&(x - moved)));
-                let (target, holds) = rub(now, coefficient, (x, &nearest), &now.now(&last), free);
-                (target, if holds { last } else { now.own(&target) })
-            }
+        // In the step in which it touches it would, without slip, not move along the surface.
+        let anchor = self.anchors.iter().find(|anchor| (anchor.0, anchor.1) == (*index, node));
+        let anchor = anchor.map_or_else(|| before.own(&last), |anchor| anchor.2);
+        let touch = Touch {
+            obstacle: *index,
+            node,
+            row,
+            free,
+            normal,
+            gap: (x - nearest).dot(&normal),
+            at,
+            back: now.now(&anchor) - x,
+            anchor,
+            friction,
+            mobility: plan.mobility(row, step.mass),
+            push: Vector3::zeros(),
         };
-        match stuck {
-            Some(index) => self.anchors[index].2 = anchor,
-            None => self.anchors.push((*index, node, anchor)),
+        (gap.min(0.0), Some(touch))
+    }
+
+    fn forget_anchor(&mut self, obstacle: u32, node: u32) {
+        self.anchors.retain(|anchor| (anchor.0, anchor.1) != (obstacle, node));
+    }
+
+    /// Begins with the pushes of the last step.
+    fn start(&self, touches: &mut [Touch], growth: f64) {
+        let mut known = self.pushes.iter().peekable();
+        for touch in touches {
+            let pair = (touch.obstacle, touch.node);
+            while known.next_if(|push| (push.obstacle, push.node) < pair).is_some() {}
+            if let Some(push) = known.next_if(|push| (push.obstacle, push.node) == pair) {
+                touch.begin(&(growth * push.force));
+            }
         }
-        Some(target)
+    }
+
+    /// Whether an obstacle pushes a node in the end; if not, it sticks no longer.
+    fn is_kept(&mut self, touch: &Touch) -> bool {
+        if !touch.is_closed() {
+            self.forget_anchor(touch.obstacle, touch.node);
+        }
+        touch.is_closed()
+    }
+
+    /// Keeps what the pushes of a step were, and where nodes stick.
+    fn keep(
+        &mut self,
+        plan: &ContactPlan,
+        positions: &[Vector3],
+        touches: &[Touch],
+        t: f64,
+        u: &[f64],
+    ) {
+        self.touching.clear();
+        self.forces.clear();
+        self.pushes.clear();
+        for touch in touches {
+            let &Touch { obstacle, node, row, push, .. } = touch;
+            self.touching.push(node);
+            self.pushes.push(ContactForce { obstacle, node, force: push });
+            let force = push.component_mul(&plan.share(row));
+            self.forces.push(ContactForce { obstacle, node, force });
+            if touch.friction == Friction::Frictionless {
+                continue;
+            }
+            let x = positions[node as usize] + plan.value(row, u);
+            let anchor =
+                if touch.holds() { touch.anchor } else { plan.placed(obstacle, t).own(&x) };
+            match self.anchors.iter_mut().find(|known| (known.0, known.1) == (obstacle, node)) {
+                Some(known) => known.2 = anchor,
+                None => self.anchors.push((obstacle, node, anchor)),
+            }
+        }
     }
 
     /// Lists the nodes with a gap below twice the mean spacing, before the last step too.
@@ -147,25 +247,34 @@ impl ContactState {
         plan: &ContactPlan,
         positions: &[Vector3],
         step: &ContactStep,
-        increment: f64,
+        travelled: f64,
     ) {
-        let components = step.displacement.len() / positions.len();
-        let place = |node: usize| positions[node] + vector_at(step.displacement, node, components);
+        let place = |row: u32| {
+            positions[plan.nodes[row as usize] as usize] + plan.value(row, step.displacement)
+        };
+        let rows = 0..plan.nodes.len() as u32;
         self.candidates.clear();
-        for (index, placed) in plan.all_placed(step.times.1) {
-            for &node in &plan.nodes {
-                if placed.gap(&place(node as usize)) < 2.0 * plan.mean_spacing + increment {
-                    self.candidates.push((index, node));
+        for (obstacle, placed) in plan.all_placed(step.times.1) {
+            for row in rows.clone() {
+                if placed.gap(&place(row)) < 2.0 * plan.mean_spacing + travelled {
+                    self.candidates.push(Candidate { obstacle, row, clear: 0.0 });
                 }
             }
         }
-        let first = (place(0), place(0));
+        let first = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         let within = |(l, u): (Vector3, Vector3), x: Vector3| (l.inf(&x), u.sup(&x));
-        let (lower, upper) = (1..positions.len()).map(place).fold(first, within);
+        let (lower, upper) = rows.map(place).fold(first, within);
         let margin = Vector3::repeat(2.0 * plan.mean_spacing);
         self.around = (lower - margin, upper + margin);
         self.travelled = 0.0;
         self.searched = true;
+    }
+}
+
+impl ContactPlan {
+    /// Bound of the change of a value where no nodal parameter changes by more \[m\].
+    fn bound(&self, largest_increment: f64) -> f64 {
+        OF_VALUES * largest_increment * (self.components as f64).sqrt()
     }
 }
 
@@ -179,38 +288,5 @@ struct Here<'a> {
 impl Here<'_> {
     fn new(plan: &ContactPlan, index: u32, (before, now): (f64, f64)) -> Here<'_> {
         Here { index, before: plan.placed(index, before), now: plan.placed(index, now) }
-    }
-}
-
-/// Where friction leaves a node at `x` that the obstacle pushes to the `nearest` place of its
-/// surface and that would be at `last` without slip \[m\], and whether it holds the node there
-/// (method book, eq. 16.6).
-fn rub(
-    now: &Placed,
-    coefficient: f64,
-    (x, nearest): (&Vector3, &Vector3),
-    last: &Vector3,
-    free: Components,
-) -> (Vector3, bool) {
-    let n = now.normal(nearest, free);
-    let push = (nearest - x).norm();
-    let back = Vector3::from_fn(|k, _| if free[k] { last[k] - x[k] } else { 0.0 });
-    let along = back - n * back.dot(&n);
-    let part = (coefficient * push / along.norm()).min(1.0);
-    let beside = nearest + part * along;
-    (now.onto_surface(&beside, now.gap(&beside), free), part == 1.0)
-}
-
-impl ContactStep<'_> {
-    /// Moves a node by `way` \[m\], and changes its velocity with it; returns m Δu.
-    fn push(&mut self, node: u32, way: Vector3) -> Vector3 {
-        let components = self.displacement.len() / self.mass.len();
-        let rate = 1.0 / self.time_step;
-        for k in 0..components {
-            let entry = components * node as usize + k;
-            self.displacement[entry] += way[k];
-            self.velocity[entry] += way[k] * rate;
-        }
-        way * self.mass[node as usize]
     }
 }

@@ -206,14 +206,12 @@ fn rate(c: f64, fallen: f64) -> f64 {
     (c + 0.2 * (1.0 - c)).max(observed)
 }
 
-/// Relative residual of the static equations without constraint forces and nodes
-/// in contact.
+/// Relative residual of the static equations without constraint forces, with those of contact.
 fn residual(model: &Model, state: &mut State, buffers: &mut Buffers) -> f64 {
     external_force(model, state.time, &mut buffers.f_ext);
-    let State { displacement, residual_scratch, time, contact, .. } = state;
-    let mut imbalance = Imbalance::new(model, displacement, *time, buffers, residual_scratch);
-    imbalance.ignore(model, &contact.touching);
-    imbalance.relative(model)
+    let State { displacement, residual_scratch, time, contact, force_factor, .. } = state;
+    contact.add_forces(&model.contact, *force_factor, &mut buffers.f_ext);
+    Imbalance::new(model, displacement, *time, buffers, residual_scratch).relative(model)
 }
 
 /// Loading counts as one half, the decay of the error as the other.

@@ -6,7 +6,7 @@ use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
-use mtled::motion::energy::Energies;
+use mtled::motion::energy::{Energies, excess_of_mean};
 use mtled::motion::internal_force::Workspace;
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::motion::simulate::simulate;
@@ -22,6 +22,9 @@ pub struct Log {
     pub rows: Vec<(f64, Energies)>,
     /// Most nodes that touched an obstacle at once.
     pub touched: usize,
+    /// By how much the mean of strain energies that the balance has exceeds what central differences
+    /// keep, of each row \[J\]; nothing where it is not asked for.
+    excess: Option<Vec<f64>>,
 }
 
 impl Observer for Log {
@@ -30,6 +33,8 @@ impl Observer for Log {
         if view.state.step.is_multiple_of(self.every) {
             let energies = view.energies();
             self.rows.push((view.state.time, energies));
+            let excess = self.excess.as_mut();
+            excess.into_iter().for_each(|e| e.push(excess_of_mean(view.model, view.state)));
         }
         Continue::Yes
     }
@@ -45,6 +50,11 @@ impl Log {
         Log { every, ..Log::default() }
     }
 
+    /// The same, whose imbalance is that of the energy which central differences keep.
+    pub fn of_what_is_kept(every: usize) -> Log {
+        Log { excess: Some(Vec::new()), ..Log::new(every) }
+    }
+
     /// Largest of all energies and works \[J\].
     fn largest(&self) -> f64 {
         let magnitudes = self.rows.iter().flat_map(|(_, e)| {
@@ -55,9 +65,11 @@ impl Log {
 
     /// (balance − first balance)/largest energy over time.
     pub fn imbalance(&self) -> Vec<(f64, f64)> {
-        let first = self.rows[0].1.balance();
+        let excess = |row: usize| self.excess.as_ref().map_or(0.0, |excess| excess[row]);
+        let balance = |row: usize| self.rows[row].1.balance() - excess(row);
         let largest = self.largest();
-        self.rows.iter().map(|(t, e)| (*t, (e.balance() - first) / largest)).collect()
+        let rows = self.rows.iter().enumerate();
+        rows.map(|(row, (t, _))| (*t, (balance(row) - balance(0)) / largest)).collect()
     }
 }
 

@@ -102,7 +102,7 @@ pub fn contact(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut velocity = vec![0.0; model.size()];
     let (displacement, velocity) = (&mut u[..], &mut velocity[..]);
     let (mass, times) = (&model.inertia, (0.0, 1.0));
-    let step = ContactStep { mass, displacement, velocity, times, time_step: 1.0 };
+    let step = ContactStep { mass, displacement, velocity, times, time_step: 1.0, growth: 1.0 };
     contact.enforce(&model.contact, &model.positions, 0.0, step);
     let obstacle = model.contact.placed(0, 1.0);
     let position = |node: usize| {
