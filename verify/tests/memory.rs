@@ -142,6 +142,10 @@ const CHANGED: &[Changed] = &[
     },
 ];
 
+/// Pages of the program itself that a system may not have mapped, by how its file lies in the cache of files
+/// \[bytes\]: the same program took 19.7 MB as the linker had left it, and 23.7 MB as a copy.
+const MAPPED: f64 = 4e6;
+
 /// The program and its threads \[bytes\]; a smaller run is not estimated closely.
 const FLOOR: f64 = 20e6;
 
@@ -158,7 +162,7 @@ fn largest_of(runs: usize, dir: &TempDir, text: &str) -> Option<(f64, f64)> {
         let timings = &serde_json::from_str::<Value>(&result).unwrap()["timings"];
         largest.0 = largest.0.max(timings["peak_memory_bytes"].as_f64()?);
         largest.1 = timings["estimated_memory_bytes"].as_f64().unwrap();
-        if largest.1 <= 1.25 * largest.0.max(FLOOR) {
+        if largest.1 <= 1.25 * (largest.0 + MAPPED).max(FLOOR) {
             break;
         }
     }
@@ -182,7 +186,7 @@ fn the_memory_of_a_run_is_at_most_what_is_estimated_and_at_least_a_1_3th_of_it()
         let Some((peak, estimate)) = largest_of(RUNS, &dir, &text) else { return };
         let line = format!("{name}: {:.1} MB estimated, {:.1} MB used", estimate / 1e6, peak / 1e6);
         println!("{line}");
-        if peak > estimate || estimate > 1.3 * peak.max(FLOOR) {
+        if peak > estimate || estimate > 1.3 * (peak + MAPPED).max(FLOOR) {
             wrong += &format!("{line}\n");
         }
     }
