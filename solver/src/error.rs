@@ -251,6 +251,15 @@ pub enum Error {
              body may be about to lose its stability, or contacts may be about to open; look at it under a little less load"
     )]
     NoSensitivity { residual: f64, limit: f64 },
+    /// No natural frequency was asked for.
+    #[error("no frequency is asked for: ask for 1 or more")]
+    NoFrequencies,
+    /// There are not so many natural frequencies.
+    #[error(
+        "{asked} frequencies are asked for, and the body has {has}: {components} components of its nodes, {held} of which \
+             conditions hold, without {rigid} rigid motions; ask for fewer, or make the nodal spacing smaller"
+    )]
+    TooManyFrequencies { asked: usize, has: usize, components: usize, held: usize, rigid: usize },
     #[error("{then}; newton's method, tried before, came to {reached:.4} of the load")]
     NeitherSolver { reached: f64, then: Box<Error> },
     #[error(

@@ -61,6 +61,7 @@ pub mod model;
 pub mod motion;
 
 pub mod audit;
+pub mod frequencies;
 pub mod sensitivity;
 
 pub mod simulation;
@@ -73,6 +74,7 @@ pub mod references {}
 pub use algebra::tensor::Vector3;
 pub use discretisation::Discretisation;
 pub use error::Error;
+pub use frequencies::{MassKind, NaturalMode, NaturalModes, body_at_rest};
 pub use geometry::{DistanceFunction, Selector, Shape};
 pub use material::{
     ElasticConstants, Law, Material, NeoHookeanIsochoric, NeoHookeanLogJ, VolumetricTerm,

@@ -1,6 +1,7 @@
 //! Numbers, vectors, tensors and packed fields.
 
 pub(crate) mod lanes;
+pub(crate) mod lowest_modes;
 pub(crate) mod packed;
 pub(crate) mod pseudo_inverse;
 pub mod random;

@@ -18,5 +18,6 @@ pub mod zero_energy;
 pub use assembly::Model;
 pub(crate) use blocks::{Block, Chunk};
 pub use load::LoadPattern;
+pub(crate) use mass::masses;
 pub use pressure::{Following, PressureLoad};
 pub(crate) use stiffness::{ModuliAtRest, stiffness_diagonal};

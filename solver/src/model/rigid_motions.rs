@@ -39,6 +39,29 @@ pub fn free_pieces(model: &Model, t: f64) -> Vec<FreePiece> {
     rows.iter().zip(0..).filter_map(piece).collect()
 }
 
+/// The free rigid motions \[component of node\] of each piece of a body for itself, under the
+/// conditions of time `t` \[s\]. Each has displacements of about 1 over the extent.
+pub(crate) fn free_rigid_fields(model: &Model, t: f64) -> Vec<Vec<f64>> {
+    let pieces = model.bodies.iter().max().map_or(0, |&last| last + 1);
+    let mut rows = vec![Vec::new(); pieces as usize];
+    for (node, along) in prescribed(model, t) {
+        let piece = model.bodies[node as usize] as usize;
+        rows[piece].push((model.positions[node as usize], along));
+    }
+    let mut fields = Vec::new();
+    for (rows, piece) in rows.iter().zip(0..) {
+        for motion in rigid_motions_beside(model, rows, ROUND_OFF) {
+            let still = Vector3::zeros();
+            let of_node =
+                |(X, own): (&Vector3, &u32)| if *own == piece { motion(X) } else { still };
+            let values = model.positions.iter().zip(&model.bodies).map(of_node);
+            let components = |value: Vector3| (0..model.components).map(move |k| value[k]);
+            fields.push(values.flat_map(components).collect());
+        }
+    }
+    fields
+}
+
 /// Number of rigid motions that the conditions at time `t` \[s\] leave to contact.
 pub fn rigid_motions_left_to_contact(model: &Model, t: f64) -> usize {
     kernel(model, &prescribed_places(model, t))

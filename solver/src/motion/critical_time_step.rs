@@ -1,12 +1,11 @@
 //! The largest stable step of the tangent operator, by Lanczos.
 #![allow(non_snake_case)]
 
-use crate::algebra::packed::{axpy, dot};
+use crate::algebra::packed::{axpy, combine, dot, norm, normalise, orthogonalise};
 use crate::algebra::random::noise;
 use crate::model::Model;
 use crate::motion::internal_force::Workspace;
 use crate::motion::tangent::Tangent;
-use rayon::prelude::*;
 
 /// The critical step and what it cost.
 #[derive(Debug, Clone, PartialEq)]
@@ -149,42 +148,6 @@ fn level(model: &Model, field: &mut [f64], squares: &[f64]) {
     }
 }
 
-/// Components processed together, few enough to stay in the first cache.
-const PIECE: usize = 1024;
-
-/// Removes from a vector its components along an orthonormal basis. Twice is
-/// enough: round-off of one pass is removed by the second. Overlaps are summed piece
-/// by piece, in the order of the pieces on any number of threads.
-pub(super) fn orthogonalise(vector: &mut [f64], basis: &[Vec<f64>]) {
-    let pass = |vector: &mut [f64], known: &[f64]| -> Vec<f64> {
-        let piece = |(index, piece): (usize, &mut [f64])| {
-            let range = index * PIECE..index * PIECE + piece.len();
-            for (factor, basis) in known.iter().zip(basis) {
-                axpy(piece, -factor, &basis[range.clone()]);
-            }
-            basis.iter().map(|basis| overlap(piece, &basis[range.clone()])).collect()
-        };
-        let pieces: Vec<Vec<f64>> = vector.par_chunks_mut(PIECE).enumerate().map(piece).collect();
-        (0..basis.len()).map(|i| pieces.iter().map(|piece| piece[i]).sum()).collect()
-    };
-    let first = pass(vector, &[]);
-    let second = pass(vector, &first);
-    for (factor, basis) in second.iter().zip(basis) {
-        axpy(vector, -factor, basis);
-    }
-}
-
-/// The dot product in eight sums, which need not wait for each other.
-fn overlap(a: &[f64], b: &[f64]) -> f64 {
-    let (a, a_rest) = a.as_chunks::<8>();
-    let (b, b_rest) = b.as_chunks::<8>();
-    let mut sums = [0.0; 8];
-    for (a, b) in a.iter().zip(b) {
-        (0..8).for_each(|lane| sums[lane] += a[lane] * b[lane]);
-    }
-    sums.iter().sum::<f64>() + dot(a_rest, b_rest)
-}
-
 /// Noise, or the last mode and pattern in equal parts with a little of it.
 fn starting_vector(tangent: &mut Tangent, earlier: Option<&CriticalStep>) -> Vec<f64> {
     let mut noise = noise();
@@ -233,23 +196,4 @@ fn pattern(model: &Model, basis: &[Vec<f64>], diagonal: &[f64], off_diagonal: &[
     let squares = local_squares(model, &field);
     level(model, &mut field, &squares);
     field
-}
-
-fn combine(basis: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
-    let mut sum = vec![0.0; basis[0].len()];
-    for (vector, &weight) in basis.iter().zip(weights) {
-        axpy(&mut sum, weight, vector);
-    }
-    sum
-}
-
-fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
-}
-
-pub(super) fn normalise(a: &mut [f64]) {
-    let length = norm(a);
-    if length > 0.0 {
-        a.iter_mut().for_each(|x| *x /= length);
-    }
 }

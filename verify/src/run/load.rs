@@ -94,6 +94,7 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         | Error::NotHeld { .. }
         | Error::NeitherSolver { .. }
         | Error::FictitiousMass => "time",
+        Error::NoFrequencies | Error::TooManyFrequencies { .. } => "discretisation",
     };
     case.diagnostic(key, error.to_string() + &searched_elsewhere(case, error))
 }

@@ -3,11 +3,11 @@
 
 use super::free_space::FreeSpace;
 use super::linear::{MOST_WITH_PRESSURES, Saddle, SaddlePatch, Solver, System};
-use crate::algebra::packed::{axpy, dot, largest};
+use crate::algebra::packed::{axpy, dot, largest, normalise, orthogonalise};
 use crate::algebra::random::noise;
 use crate::model::rigid_motions::free_rigid_motions;
 use crate::model::{Model, ModuliAtRest};
-use crate::motion::critical_time_step::{largest_ritz_pair, normalise, orthogonalise};
+use crate::motion::critical_time_step::largest_ritz_pair;
 use crate::motion::internal_force::{OwnPressures, Workspace};
 use crate::motion::tangent::Tangent;
 

@@ -14,8 +14,10 @@ mod load_path;
 mod pressures;
 mod solver;
 mod taken;
+mod vibration;
 
 pub(crate) use adjoint::Balanced;
 pub(crate) use equilibrate::equilibrate;
 pub(crate) use follow::follow;
 pub use inf_sup::{InfSup, inf_sup};
+pub(crate) use vibration::{MassPlaces, Vibration};
