@@ -256,8 +256,8 @@ pub enum Error {
     NoFrequencies,
     /// There are not so many natural frequencies.
     #[error(
-        "{asked} frequencies are asked for, and the body has {has}: {components} components of its nodes, {held} of which \
-             conditions hold, without {rigid} rigid motions; ask for fewer, or make the nodal spacing smaller"
+        "{asked} frequencies are asked for, and the body has {has}: its nodes have {components} components of displacement, \
+             {held} are held and {rigid} are rigid motions; ask for fewer, or make the nodal spacing smaller"
     )]
     TooManyFrequencies { asked: usize, has: usize, components: usize, held: usize, rigid: usize },
     #[error("{then}; newton's method, tried before, came to {reached:.4} of the load")]

@@ -1,6 +1,6 @@
 //! Verification harness of the meshless solver `mtled`: case files
 //! ([`scene`]) become problems, runs ([`run`]) become results, studies
-//! ([`studies`], [`lab`], [`contests`], [`suite`], [`sensitivity`]) become the plain data of [`mtled_checks::study`],
+//! ([`studies`], [`lab`], [`contests`], [`suite`], [`frequencies`], [`sensitivity`]) become the plain data of [`mtled_checks::study`],
 //! and [`mtled_checks::report`] turns those into pages and files.
 
 // A module uses only modules above it.
@@ -29,6 +29,7 @@ pub mod lab;
 pub mod contests;
 pub mod suite;
 
+pub mod frequencies;
 pub mod sensitivity;
 
 pub mod cli;

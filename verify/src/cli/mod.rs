@@ -2,6 +2,7 @@
 
 mod case;
 mod common;
+mod frequencies;
 mod init;
 mod inspect;
 mod lab;
@@ -56,6 +57,7 @@ const EXAMPLES: &str = "Examples:
   mtled inspect my_case.toml                    are its nodes and supports suitable?
   mtled budget my_case.toml                     how large is the error, why, and at what cost?
   mtled sensitivity my_case.toml                which of its numbers matter most?
+  mtled frequencies my_case.toml                how fast does its body vibrate, and how?
   mtled tune my_case.toml --target-error 1%     the cheapest recipe with this accuracy
   mtled study convergence my_case.toml          errors over spacings, with orders
   mtled case new block -o my_case.toml          a commented case to start from
@@ -85,6 +87,8 @@ enum Command {
     Budget(budget::BudgetArgs),
     /// Find which numbers of a static case matter most for its answers, in per cent per per cent.
     Sensitivity(sensitivity::SensitivityArgs),
+    /// Find the lowest natural frequencies of the body of a case at rest, and how it vibrates.
+    Frequencies(frequencies::FrequenciesArgs),
     /// Find the cheapest recipe with at most a given error, or the most accurate one for a given
     /// cost.
     Tune(tune::TuneArgs),
@@ -192,6 +196,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Init(arguments) => init::init(arguments, &cli.common),
         Command::Budget(arguments) => budget::budget(arguments, &cli.common),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(arguments, &cli.common),
+        Command::Frequencies(arguments) => frequencies::frequencies(arguments, &cli.common),
         Command::Tune(arguments) => tune::tune_cases(arguments, &cli.common),
         Command::Report(arguments) => report::report(arguments, &cli.common),
         Command::Study(command) => study::study(command, &cli.common),

@@ -121,6 +121,19 @@ impl BodyFrames {
         VtuFrame { numbers, points: &self.points, cells: Some(cells), point_data }
     }
 
+    /// Motions \[component of node\] with their names, as fields.
+    pub fn motions(&self, motions: &[(String, Vec<f64>)], components: usize) -> VtuFrame<'_> {
+        let mesh = &self.display.mesh;
+        let field = |(name, motion): &(String, Vec<f64>)| {
+            PointArray::new(name, 3, vectors(&self.rows, motion, components)).stored(Stored::Single)
+        };
+        let point_data = motions.iter().map(field).collect();
+        let regions = mesh.regions.iter().map(|region| f64::from(*region)).collect();
+        let data = vec![PointArray::new("region", 1, regions).stored(Stored::Integer)];
+        let cells = VtuCells { corners: mesh.corners, points: &mesh.cells, data, purpose: PURPOSE };
+        VtuFrame { numbers: Vec::new(), points: &self.points, cells: Some(cells), point_data }
+    }
+
     /// A frame as what pictures are drawn from.
     pub fn drawn(&self, frame: VtuFrame) -> Body {
         let field = |array: PointArray| Field {

@@ -5,6 +5,7 @@ mod body;
 mod earlier;
 mod frames;
 mod history;
+mod modes;
 mod node_fields;
 pub mod vtu;
 
@@ -24,6 +25,7 @@ use earlier::remove_earlier_run;
 pub use earlier::PAGE_FILE;
 pub use frames::{body_at_end, last_body_frame};
 pub use history::history;
+pub use modes::write_modes;
 pub use node_fields::field_at_nodes;
 
 use frames::write_frames;
