@@ -48,7 +48,7 @@ const NOTHING: f64 = 1e-20;
 
 /// The `count` lowest eigenpairs of K v = λ M v in ascending order, each to a residual of
 /// `tolerance` unless the search ends before: Rayleigh and Ritz's method in a space that grows by
-/// about the inverse of each residual (Davidson 1975, with blocks and restarts). A block of random
+/// about K⁻¹ of each residual (Davidson 1975, with blocks and restarts; method book, eq. 30.3). A block of random
 /// vectors has a part in every eigenvector, also of equal eigenvalues. `None` where a solution was
 /// ended.
 pub(crate) fn lowest_pairs(
@@ -99,7 +99,7 @@ pub(crate) fn lowest_pairs(
     space.pairs(operators, &ritz)
 }
 
-/// √(rᵀ K⁻¹ r/λ) of a residual r and about K⁻¹ r.
+/// √(rᵀ K⁻¹ r/λ) of a residual r and about K⁻¹ r (method book, eq. 30.4).
 fn size(residual: &[f64], change: &[f64], value: f64) -> f64 {
     (overlap(residual, change) / value).abs().sqrt()
 }

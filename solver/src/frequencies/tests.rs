@@ -201,3 +201,49 @@ fn a_search_that_is_ended_has_no_modes() {
         NaturalModes::find(&rest, &discretisation, &relaxed, asked, &mut |_| true).unwrap_err();
     assert!(matches!(refused, Error::FictitiousMass));
 }
+
+/// A box without symmetry, in units of so many to the metre, moved, its axes exchanged, and in two
+/// halves of the same material.
+fn brick(unit: f64, by: &Vector3, exchanged: bool, halves: bool) -> Problem {
+    let turned = |v: Vector3| if exchanged { Vector3::new(v.z, v.x, v.y) } else { v };
+    let (min, max) = (Vector3::zeros(), Vector3::new(0.1, 0.08, 0.06));
+    let mut problem = cube(0.3, 0.02 * unit);
+    problem.body = Shape::Box { min: unit * (turned(min) + by), max: unit * (turned(max) + by) };
+    // The same body: Pa = kg/(m s²), and the kilogram and the second stay.
+    let constants = ElasticConstants::from_young_poisson(3000.0 / unit, 0.3).unwrap();
+    let law = Law::LinearElastic(LinearElastic::new(constants));
+    problem.regions[0].material = Material { density: 1000.0 / unit.powi(3), law };
+    let foot = plane(unit * by, turned(Vector3::z()));
+    problem.conditions = vec![held(foot, [Some(0.0); 3])];
+    if halves {
+        let mut half = problem.regions[0].clone();
+        half.name = "half".into();
+        let max = unit * (turned(Vector3::new(0.05, 0.08, 0.06)) + by);
+        let shape = Shape::Box { min: unit * (turned(min) + by), max };
+        half.part = Selector::Inside { shape, tolerance: 0.0 };
+        problem.regions.insert(0, half);
+    }
+    problem
+}
+
+#[test]
+fn other_units_places_and_axes_leave_the_frequencies_and_equal_halves_change_quadrature_alone() {
+    let here = Vector3::zeros();
+    let own = frequencies(&found(&brick(1.0, &here, false, false), 6));
+    let away = Vector3::new(0.3, -7.0, 2.0);
+    for (what, other) in [
+        ("units", brick(1000.0, &here, false, false)),
+        ("place", brick(1.0, &away, false, false)),
+        ("axes", brick(1.0, &here, true, false)),
+    ] {
+        let other = frequencies(&found(&other, 6));
+        for (own, other) in own.iter().zip(other) {
+            assert!((own / other - 1.0).abs() < 1e-9, "{what}: {own} {other}");
+        }
+    }
+    // Cells are cut at the border of the halves: they have other quadrature points.
+    let halves = frequencies(&found(&brick(1.0, &here, false, true), 6));
+    for (own, other) in own.iter().zip(halves) {
+        assert!((own / other - 1.0).abs() < 1e-3, "halves: {own} {other}");
+    }
+}

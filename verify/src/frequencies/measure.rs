@@ -1,15 +1,11 @@
-//! The lowest natural frequencies of the body of a case, and their files.
+//! The lowest natural frequencies of the body of a case.
 
-use super::text::to_json;
 use crate::machine::cpu_seconds;
-use crate::run::{Prepared, interrupted, prepare_to_run, write_modes};
+use crate::run::{Prepared, interrupted, prepare_to_run};
 use crate::scene::Case;
-use anyhow::Result;
 use mtled::error::Error;
 use mtled::frequencies::{MassKind, NaturalModes, body_at_rest};
 use mtled::problem::{Motion, Problem};
-use mtled_checks::report::write_atomically;
-use std::path::Path;
 
 /// The natural frequencies of the body of a case.
 #[derive(Debug)]
@@ -97,11 +93,4 @@ fn left_out(problem: &Problem, masses: MassKind) -> Vec<&'static str> {
     .into_iter()
     .filter_map(|(has, text)| has.then_some(text))
     .collect()
-}
-
-/// Writes `frequencies.json` and the modes as VTU files to a folder.
-pub fn write_modes_of(found: &Found, folder: &Path) -> Result<()> {
-    let motions: Vec<&[f64]> = found.modes.modes.iter().map(|mode| &mode.motion[..]).collect();
-    write_modes(&found.rest, &found.prepared, &motions, folder)?;
-    write_atomically(&folder.join("frequencies.json"), format!("{}\n", to_json(found)).as_bytes())
 }
