@@ -241,9 +241,9 @@ fn other_units_places_and_axes_leave_the_frequencies_and_equal_halves_change_qua
             assert!((own / other - 1.0).abs() < 1e-9, "{what}: {own} {other}");
         }
     }
-    // Cells are cut at the border of the halves: they have other quadrature points.
+    // The border of the halves cuts cells: 192 quadrature points instead of 168.
     let halves = frequencies(&found(&brick(1.0, &here, false, true), 6));
     for (own, other) in own.iter().zip(halves) {
-        assert!((own / other - 1.0).abs() < 1e-3, "halves: {own} {other}");
+        assert!((own / other - 1.0).abs() < 3e-3, "halves: {own} {other}");
     }
 }
