@@ -79,7 +79,8 @@ fn a_block_that_slides_on_a_floor_stops_where_its_energy_is_used_up() {
     let mut problem = on_a_slope(0.0, friction, speed);
     problem.motion = Motion::dynamic(0.3, 0.0);
     let mut simulation = Simulation::new(&problem).unwrap();
-    simulation.run(&mut Unobserved).unwrap();
+    let summary = simulation.run(&mut Unobserved).unwrap();
+    assert_eq!(summary.contact_loss, None, "friction is asked for, and no reason to warn");
     let (model, state) = (&simulation.model, &simulation.state);
     let slid = -mean_by_mass(model, &state.displacement).x;
     // Half of the ramp passes without weight: s = v (T/2) + v²/(2 μ g), less what the ramp itself has.

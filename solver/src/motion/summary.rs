@@ -114,10 +114,11 @@ pub struct ContactLoss {
 const NOTABLE_LOSS: f64 = 0.01;
 
 impl ContactLoss {
-    /// What impacts have taken, where it is notable.
+    /// What impacts have taken besides friction, where it is notable.
     pub(crate) fn of(impacts: &Impacts) -> Option<ContactLoss> {
-        let fraction = impacts.lost / impacts.largest_kinetic.max(f64::MIN_POSITIVE);
-        (fraction.abs() > NOTABLE_LOSS).then_some(ContactLoss { lost: impacts.lost, fraction })
+        let lost = impacts.lost - impacts.rubbed;
+        let fraction = lost / impacts.largest_kinetic.max(f64::MIN_POSITIVE);
+        (fraction.abs() > NOTABLE_LOSS).then_some(ContactLoss { lost, fraction })
     }
 }
 

@@ -32,6 +32,8 @@ pub struct Impacts {
     /// Taken for good \[J\]: of motion along obstacles without slip, and what the path along
     /// a curved surface costs in steps of finite length.
     pub lost: f64,
+    /// Of it, by Coulomb friction \[J\].
+    pub rubbed: f64,
     /// Largest kinetic energy of the body while it touched \[J\].
     pub largest_kinetic: f64,
 }
@@ -150,6 +152,9 @@ impl Impacts {
             }
         };
         self.lost += along - work;
+        if let Friction::Coulomb(_) = touch.friction {
+            self.rubbed += along - work;
+        }
         -along
     }
 
