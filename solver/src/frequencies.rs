@@ -86,7 +86,7 @@ impl NaturalModes {
     }
 
     /// So many of the lowest natural frequencies beside those of rigid motions. The parts are those
-    /// of [`body_at_rest`]; `go_on` is told how many have been found, and ends the search by `false`.
+    /// of [`body_at_rest`]. `go_on` takes the number of those found so far; its `false` ends the search.
     ///
     /// # Errors
     /// [`Error::NoFrequencies`], [`Error::TooManyFrequencies`], and [`Error::FictitiousMass`] for a

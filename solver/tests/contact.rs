@@ -70,16 +70,7 @@ const SLOPE: f64 = std::f64::consts::FRAC_PI_6;
 /// A square in plane strain on a plane that falls by 30° towards −x.
 fn on_a_slope(friction: Friction) -> Problem {
     let tilt = rotation(&Vector3::z(), SLOPE);
-    let corner = |x: f64, y: f64| {
-        let at = tilt * Vector3::new(x, y, 0.0);
-        [at.x, at.y]
-    };
-    let mut problem = with_law(square(5), neo_hookean(30000.0, 0.3));
-    problem.body = Shape::Polygon {
-        points: vec![corner(0.0, 0.0), corner(EDGE, 0.0), corner(EDGE, EDGE), corner(0.0, EDGE)]
-            .into(),
-        z: (0.0, EDGE),
-    };
+    let mut problem = with_law(tilted_square(5, SLOPE), neo_hookean(30000.0, 0.3));
     gravity(&mut problem, Vector3::new(0.0, -9.81, 0.0));
     problem.obstacles.push(floor(0.0, tilt * Vector3::y(), friction));
     problem

@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use mtled::algebra::tensor::{Vector3, rotation, vector_at};
-use mtled::geometry::{Selector, Shape};
+use mtled::geometry::Selector;
 use mtled::model::Model;
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
@@ -18,16 +18,7 @@ const GRAVITY: f64 = 9.81;
 /// weight grows within 0.05 s, so that it does not bounce, and is never lifted.
 fn on_a_slope(angle: f64, friction: f64, speed: f64) -> Problem {
     let tilt = rotation(&Vector3::z(), angle);
-    let corner = |x: f64, y: f64| {
-        let at = tilt * Vector3::new(x, y, 0.0);
-        [at.x, at.y]
-    };
-    let mut problem = with_law(square(4), neo_hookean(100_000.0, 0.3));
-    problem.body = Shape::Polygon {
-        points: vec![corner(0.0, 0.0), corner(EDGE, 0.0), corner(EDGE, EDGE), corner(0.0, EDGE)]
-            .into(),
-        z: (0.0, EDGE),
-    };
+    let mut problem = with_law(tilted_square(4, angle), neo_hookean(100_000.0, 0.3));
     gravity(&mut problem, Vector3::new(0.0, -GRAVITY, 0.0));
     problem.loads.body_forces[0].amplitude = Amplitude::Smooth { duration: RAMP };
     let velocity = tilt * Vector3::x() * -speed;

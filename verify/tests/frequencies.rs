@@ -3,7 +3,7 @@
 #[path = "common/program.rs"]
 mod program;
 
-use program::mtled;
+use program::{json, mtled};
 use serde_json::Value;
 
 fn frequencies(arguments: &[&str]) -> (i32, String, String) {
@@ -11,9 +11,7 @@ fn frequencies(arguments: &[&str]) -> (i32, String, String) {
 }
 
 fn found(arguments: &[&str]) -> Value {
-    let (code, out, err) = frequencies(&[arguments, &["--format", "json"]].concat());
-    assert_eq!(code, 0, "{arguments:?}: {err}");
-    serde_json::from_str(&out).unwrap()
+    json(&[&["frequencies"], arguments].concat())
 }
 
 fn values(found: &Value) -> Vec<f64> {

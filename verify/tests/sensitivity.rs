@@ -3,7 +3,7 @@
 #[path = "common/program.rs"]
 mod program;
 
-use program::mtled;
+use program::{json, mtled};
 use serde_json::Value;
 
 /// The bound of the study of sensitivities; the error of the two solutions is a part of it \[–\].
@@ -14,9 +14,7 @@ fn sensitivity(arguments: &[&str]) -> (i32, String, String) {
 }
 
 fn found(arguments: &[&str]) -> Value {
-    let (code, out, err) = sensitivity(&[arguments, &["--format", "json"]].concat());
-    assert_eq!(code, 0, "{arguments:?}: {err}");
-    serde_json::from_str(&out).unwrap()
+    json(&[&["sensitivity"], arguments].concat())
 }
 
 /// Per cent per per cent of an answer by the number with a key that ends like this.

@@ -193,7 +193,7 @@ fn check_rank(
         Dimension::Three => (3, 6, 6),
         Dimension::PlaneStrain { .. } => (2, 3, 3),
     };
-    let constrained: usize = constraints.active(0.0).iter().map(|set| set.rows.len()).sum();
+    let constrained: usize = constraints.count(0.0);
     let bodies = bodies.iter().max().map_or(0, |&last| last as usize + 1);
     let modes = (d * nodes).saturating_sub(constrained + strains * points + rigid * bodies);
     match modes {

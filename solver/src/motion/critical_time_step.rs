@@ -109,8 +109,7 @@ pub fn local_growth(
 /// nothing free at `t`, the first release after it that frees something.
 fn decisive_time(model: &Model, t: f64) -> f64 {
     let constraints = &model.constraints;
-    let held = |t: f64| constraints.active(t).iter().map(|set| set.rows.len()).sum::<usize>();
-    let frees_some = |t: &f64| held(*t) < model.size();
+    let frees_some = |t: &f64| constraints.count(*t) < model.size();
     if frees_some(&t) {
         return t;
     }

@@ -40,9 +40,7 @@ impl<'a> Tangent<'a> {
     }
 
     pub fn free_size(&self) -> usize {
-        let fixed: usize =
-            self.model.constraints.active(self.t).iter().map(|set| set.rows.len()).sum();
-        self.model.size().saturating_sub(fixed).max(1)
+        self.model.size().saturating_sub(self.model.constraints.count(self.t)).max(1)
     }
 
     /// Removes what the conditions forbid from M^(1/2) u.

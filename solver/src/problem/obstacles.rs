@@ -69,6 +69,18 @@ pub enum RigidWay {
     },
 }
 
+impl Friction {
+    /// Every number that cannot be used.
+    pub fn check(&self) -> Vec<Mistake> {
+        let mut found = Mistakes::default();
+        if let Friction::Coulomb(coefficient) = self {
+            found.not_negative("coulomb", *coefficient);
+            found.finite("coulomb", *coefficient);
+        }
+        found.0
+    }
+}
+
 impl RigidMotion {
     /// Where it has led at time `t` \[s\].
     fn at(&self, t: f64) -> Isometry3<f64> {
@@ -103,10 +115,7 @@ impl Obstacle {
     pub(super) fn check(&self) -> Vec<Mistake> {
         let mut found = Mistakes::default();
         found.finite("offset", self.offset);
-        if let Friction::Coulomb(coefficient) = self.friction {
-            found.not_negative("friction.coulomb", coefficient);
-            found.finite("friction.coulomb", coefficient);
-        }
+        found.part("friction", self.friction.check());
         for (n, motion) in self.motions.iter().enumerate() {
             found.part(&format!("motions[{n}].amplitude"), motion.amplitude.check());
         }

@@ -2,8 +2,8 @@
 #![allow(dead_code)] // Every test binary uses only a part of this.
 #![allow(non_snake_case)]
 
-use mtled::algebra::tensor::Vector3;
 pub use mtled::algebra::tensor::vector_at;
+use mtled::algebra::tensor::{Vector3, rotation};
 use mtled::discretisation::Discretisation;
 use mtled::geometry::{Extent, Selector, Shape};
 use mtled::material::*;
@@ -179,6 +179,18 @@ pub fn gravity(problem: &mut Problem, acceleration: Vector3) {
         acceleration: acceleration.into(),
         amplitude,
     });
+}
+
+/// The square in plane strain, turned by `angle` \[rad\] about its corner at the origin.
+pub fn tilted_square(cells: usize, angle: f64) -> Problem {
+    let tilt = rotation(&Vector3::z(), angle);
+    let corner = |x: f64, y: f64| {
+        let at = tilt * Vector3::new(x, y, 0.0);
+        [at.x, at.y]
+    };
+    let points = [corner(0.0, 0.0), corner(EDGE, 0.0), corner(EDGE, EDGE), corner(0.0, EDGE)];
+    let body = Shape::Polygon { points: points.to_vec().into(), z: (0.0, EDGE) };
+    Problem { body, ..square(cells) }
 }
 
 pub fn obstacle(shape: Shape, side: ObstacleSide, friction: Friction) -> Obstacle {

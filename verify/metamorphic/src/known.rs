@@ -28,10 +28,6 @@ const PIECES: &[&str] = &[
     "order_of_members",
 ];
 
-const PARAMETERS: &str = "In relaxation obstacles push the parameters of nodes, in Newton's method the \
-                          displacement at nodes: two discretisations, whose displacements differ by 1.0, 0.3 \
-                          and 0.2 % at 2, 4 and 8 spacings (and parameters by 5, 1.4 and 0.5 %)";
-
 /// Every known fault.
 pub const KNOWN: &[Known] = &[
     Known {
@@ -73,8 +69,9 @@ pub const KNOWN: &[Known] = &[
         relations: &["newton_against_relaxation", "relaxation_with_other_masses"],
         scenes: "bodies beside an obstacle",
         has: |scene| scene.obstacle.is_some(),
-        largest: 0.15,
-        reason: PARAMETERS,
+        largest: 0.01,
+        reason: "not yet understood: relaxation and Newton's method differ by 0.94 % in one scene of the corpus, \
+                 a corner whose end is moved by more than its spacing beside a wall",
     },
     Known {
         relations: &["turned_or_mirrored"],

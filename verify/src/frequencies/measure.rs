@@ -39,7 +39,7 @@ pub enum Unfound {
     Stopped,
 }
 
-/// Finds the `count` lowest ones. `notify` is told how many have been found.
+/// Finds the `count` lowest ones. `notify` takes the number of those found so far.
 pub fn find_modes(
     case: &Case,
     count: usize,

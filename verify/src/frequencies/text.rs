@@ -12,11 +12,11 @@ pub fn to_text(found: &Found) -> String {
     let components = prepared.model.size();
     let mut text = printable(&format!("{}: {}", case.name, case.title));
     text += &format!(
-        "\n  natural frequencies of small vibrations about the undeformed body, undamped, with {}\n  {} nodes; \
+        "\n  natural frequencies of small vibrations about the undeformed body, undamped, with {} masses\n  {} nodes; \
          {} of {components} components are held; {}\n\n{}\n\n",
-        masses_in_words(found.masses),
+        name(found.masses),
         prepared.model.positions.len(),
-        held(found),
+        found.prepared.model.constraints.count(0.0),
         rigid_motions(modes.rigid_motions),
         table(&modes.modes)
     );
@@ -34,10 +34,10 @@ pub fn to_text(found: &Found) -> String {
     text
 }
 
-fn masses_in_words(masses: MassKind) -> &'static str {
+fn name(masses: MassKind) -> &'static str {
     match masses {
-        MassKind::Consistent => "consistent masses",
-        MassKind::Lumped => "lumped masses",
+        MassKind::Consistent => "consistent",
+        MassKind::Lumped => "lumped",
     }
 }
 
@@ -47,11 +47,6 @@ fn rigid_motions(count: usize) -> String {
         1 => "1 rigid motion is free, of frequency 0".into(),
         several => format!("{several} rigid motions are free, of frequency 0"),
     }
-}
-
-/// Components of displacements that conditions hold.
-fn held(found: &Found) -> usize {
-    found.prepared.model.constraints.active(0.0).iter().map(|set| set.rows.len()).sum()
 }
 
 fn table(modes: &[NaturalMode]) -> comfy_table::Table {
@@ -94,18 +89,14 @@ pub fn to_json(found: &Found) -> Value {
             "converged": mode.converged,
         })
     };
-    let masses = match found.masses {
-        MassKind::Consistent => "consistent",
-        MassKind::Lumped => "lumped",
-    };
     json!({
         "case": found.case.name,
         "problem_hash": found.case.problem_hash,
         "about": "undeformed body",
-        "masses": masses,
+        "masses": name(found.masses),
         "nodes": found.prepared.model.positions.len(),
         "components": found.prepared.model.size(),
-        "held_components": held(found),
+        "held_components": found.prepared.model.constraints.count(0.0),
         "rigid_motions": found.modes.rigid_motions,
         "modes": (1..).zip(&found.modes.modes).map(mode).collect::<Vec<_>>(),
         "converged": found.modes.converged(),

@@ -29,6 +29,13 @@ pub fn mtled(folder: impl AsRef<Path>, arguments: &[&str]) -> (i32, String, Stri
     ended(program(folder, arguments))
 }
 
+/// What a command that succeeds prints as JSON.
+pub fn json(arguments: &[&str]) -> serde_json::Value {
+    let (code, out, err) = mtled(".", &[arguments, &["--format", "json"]].concat());
+    assert_eq!(code, 0, "{arguments:?}: {err}");
+    serde_json::from_str(&out).unwrap()
+}
+
 /// Exit code of the program in a folder and all that it printed.
 pub fn printed(folder: impl AsRef<Path>, arguments: &[&str]) -> (i32, String) {
     let (code, out, err) = mtled(folder, arguments);

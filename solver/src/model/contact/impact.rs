@@ -16,7 +16,8 @@ use crate::problem::Friction;
 pub struct Impacts {
     /// Velocities before the step \[component of node\] \[m/s\].
     before: Vec<f64>,
-    /// Those after it, had there been no contact.
+    /// Those after it, had there been no contact; noted where something is kept.
+    #[serde(skip)]
     free: Vec<f64>,
     /// What nodes that left have been given beyond what was kept of them \[J\]; the next ones pay.
     debt: f64,
@@ -69,7 +70,6 @@ impl Impacts {
     pub(crate) fn new(velocity: &[f64], components: usize) -> Impacts {
         Impacts {
             before: velocity.to_vec(),
-            free: velocity.to_vec(),
             pushed: vec![false; velocity.len() / components],
             ..Impacts::default()
         }
@@ -94,8 +94,9 @@ impl Impacts {
 
     /// Notes the velocities of a step before contact changes them \[m/s\].
     pub(crate) fn note_free(&mut self, velocity: &[f64]) {
-        if self.is_active() {
-            self.free.copy_from_slice(velocity);
+        if !self.kept.is_empty() {
+            self.free.clear();
+            self.free.extend_from_slice(velocity);
         }
     }
 
@@ -210,7 +211,7 @@ impl Moved<'_> {
 
     /// Of the node of a row \[m\].
     fn place(&self, plan: &ContactPlan, row: u32) -> Vector3 {
-        self.positions[plan.nodes[row as usize] as usize] + plan.value(row, self.displacement)
+        plan.place_of(row, self.positions, self.displacement)
     }
 
     /// \[J\]

@@ -17,7 +17,7 @@ pub struct ContactState {
     /// Bound of the movement of any value since the last search, past any obstacle \[m\].
     travelled: f64,
     searched: bool,
-    /// A box around the nodes at the last search \[m\].
+    /// A box around the nodes at the last search, where obstacles move \[m\].
     around: (Vector3, Vector3),
     /// Where a sticking node first touched, or last slid to: (obstacle, node, place as the obstacle
     /// sees it \[m\]).
@@ -231,7 +231,7 @@ impl ContactState {
             if touch.friction == Friction::Frictionless {
                 continue;
             }
-            let x = positions[node as usize] + plan.value(row, u);
+            let x = plan.place_of(row, positions, u);
             let anchor =
                 if touch.holds() { touch.anchor } else { plan.placed(obstacle, t).own(&x) };
             match self.anchors.iter_mut().find(|known| (known.0, known.1) == (obstacle, node)) {
@@ -249,23 +249,20 @@ impl ContactState {
         step: &ContactStep,
         travelled: f64,
     ) {
-        let place = |row: u32| {
-            positions[plan.nodes[row as usize] as usize] + plan.value(row, step.displacement)
-        };
-        let rows = 0..plan.nodes.len() as u32;
         self.candidates.clear();
         for (obstacle, placed) in plan.all_placed(step.times.1) {
-            for row in rows.clone() {
-                if placed.gap(&place(row)) < 2.0 * plan.mean_spacing + travelled {
+            for row in 0..plan.nodes.len() as u32 {
+                let place = plan.place_of(row, positions, step.displacement);
+                if placed.gap(&place) < 2.0 * plan.mean_spacing + travelled {
                     self.candidates.push(Candidate { obstacle, row, clear: 0.0 });
                 }
             }
         }
-        let first = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-        let within = |(l, u): (Vector3, Vector3), x: Vector3| (l.inf(&x), u.sup(&x));
-        let (lower, upper) = rows.map(place).fold(first, within);
-        let margin = Vector3::repeat(2.0 * plan.mean_spacing);
-        self.around = (lower - margin, upper + margin);
+        if plan.has_moving() {
+            let (lower, upper) = plan.around(positions, step.displacement);
+            let margin = Vector3::repeat(2.0 * plan.mean_spacing);
+            self.around = (lower - margin, upper + margin);
+        }
         self.travelled = 0.0;
         self.searched = true;
     }

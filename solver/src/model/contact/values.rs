@@ -28,6 +28,18 @@ impl ContactPlan {
         positions[node as usize] + moved.unwrap_or_default()
     }
 
+    /// Where the node of a row is \[m\].
+    pub(super) fn place_of(&self, row: u32, positions: &[Vector3], u: &[f64]) -> Vector3 {
+        positions[self.nodes[row as usize] as usize] + self.value(row, u)
+    }
+
+    /// A box around all nodes that may touch \[m\].
+    pub(crate) fn around(&self, positions: &[Vector3], u: &[f64]) -> (Vector3, Vector3) {
+        let first = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+        let places = (0..self.nodes.len() as u32).map(|row| self.place_of(row, positions, u));
+        places.fold(first, |(lower, upper), x| (lower.inf(&x), upper.sup(&x)))
+    }
+
     /// The row of a node that may touch.
     pub(super) fn row_of(&self, node: u32) -> Option<u32> {
         self.nodes.binary_search(&node).ok().map(|row| row as u32)

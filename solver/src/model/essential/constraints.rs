@@ -153,6 +153,11 @@ impl Constraints {
         self.last().iter().any(|set| set.component == component && set.constrains(node))
     }
 
+    /// Number of values that are prescribed at time `t` \[s\].
+    pub fn count(&self, t: f64) -> usize {
+        self.active(t).iter().map(|set| set.rows.len()).sum()
+    }
+
     /// The sets that are never released.
     fn last(&self) -> &[ConstraintSet] {
         &self.stages[self.stages.len() - 1].sets

@@ -1,7 +1,7 @@
 //! Which contacts are closed.
 #![allow(non_snake_case)]
 
-use super::free_space::{ContactRow, place};
+use super::free_space::ContactRow;
 use crate::algebra::tensor::{Matrix3, Vector3, vector_at};
 use crate::model::Model;
 use crate::model::contact::{Components, ContactForce, Placed};
@@ -84,7 +84,8 @@ impl ActiveContacts {
         let count = self.contacts.len();
         for (obstacle, placed) in model.contact.all_placed(self.t) {
             for &node in &model.contact.nodes {
-                let (x, free) = (place(model, node, u), model.contact.free(node));
+                let (x, free) =
+                    (model.contact.place(node, &model.positions, u), model.contact.free(node));
                 let depth = -placed.gap(&x);
                 let entered = depth > ENTERED * model.contact.mean_spacing
                     && !known.contains(&(obstacle, node))
@@ -92,7 +93,11 @@ impl ActiveContacts {
                 if entered {
                     let anchor = (placed.obstacle.friction != Friction::Frictionless).then(|| {
                         let start = model.contact.placed(obstacle, self.since);
-                        sticks((&start, &place(model, node, before)), (&placed, &x), free)
+                        sticks(
+                            (&start, &model.contact.place(node, &model.positions, before)),
+                            (&placed, &x),
+                            free,
+                        )
                     });
                     self.contacts.push(Contact { obstacle, node, anchor });
                 }
@@ -107,7 +112,10 @@ impl ActiveContacts {
         let mut rows = Vec::new();
         for (index, contact) in self.contacts.iter().enumerate() {
             let obstacle = model.contact.placed(contact.obstacle, self.t);
-            let (x, free) = (place(model, contact.node, u), model.contact.free(contact.node));
+            let (x, free) = (
+                model.contact.place(contact.node, &model.positions, u),
+                model.contact.free(contact.node),
+            );
             let row =
                 |along: Vector3, way| ContactRow { contact: index, node: contact.node, along, way };
             match contact.anchor {
@@ -158,7 +166,10 @@ impl ActiveContacts {
                 continue;
             }
             let obstacle = model.contact.placed(contact.obstacle, self.t);
-            let (x, free) = (place(model, contact.node, u), model.contact.free(contact.node));
+            let (x, free) = (
+                model.contact.place(contact.node, &model.positions, u),
+                model.contact.free(contact.node),
+            );
             let n = obstacle.normal(&x, free);
             let lambda = force.force.dot(&n).max(0.0);
             let turn = Matrix3::from_columns(&[0, 1, 2].map(|k| {
@@ -195,7 +206,7 @@ impl ActiveContacts {
             let inside = PASSING * width.min(contact.mean_spacing);
             let placed = contact.placed(obstacle, self.t);
             for &node in contact.nodes.iter().filter(|node| !known.contains(node)) {
-                let from = place(model, node, u);
+                let from = model.contact.place(node, &model.positions, u);
                 let way = vector_at(change, node as usize, model.components);
                 if let Some(x) =
                     contact.crossing(obstacle, (&placed, &from), (&placed, &(from + way)))
@@ -209,7 +220,8 @@ impl ActiveContacts {
 
     /// The parts of forces along the normals, positive where the obstacle pushes \[N\].
     pub fn normal_forces(&self, model: &Model, u: &[f64], forces: &[ContactForce]) -> Vec<f64> {
-        let places = forces.iter().map(|force| place(model, force.node, u));
+        let places =
+            forces.iter().map(|force| model.contact.place(force.node, &model.positions, u));
         let normals = model.contact.normals(self.t, forces, places);
         normals.zip(forces).map(|(normal, force)| normal.dot(&force.force)).collect()
     }

@@ -1,7 +1,7 @@
 //! Rigid motions along closed contacts that nothing drives.
 #![allow(non_snake_case)]
 
-use super::free_space::{ContactRow, place};
+use super::free_space::ContactRow;
 use crate::algebra::packed::dot;
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
@@ -36,7 +36,8 @@ pub(super) fn drifts(
         let held = prescribed.iter().filter(|(node, _)| own(*node));
         let held = held.map(|(node, along)| (model.positions[*node as usize], *along));
         let touching = contacts.iter().filter(|row| own(row.node));
-        let touching = touching.map(|row| (place(model, row.node, u), row.along));
+        let touching =
+            touching.map(|row| (model.contact.place(row.node, &model.positions, u), row.along));
         let rows: Vec<(Vector3, Vector3)> = held.chain(touching).collect();
         if !rows.is_empty() {
             let motions = rigid_motions_beside(model, &rows, ALONG);

@@ -2,12 +2,10 @@
 
 use super::active_contacts::ActiveContacts;
 use super::branch::{AHEAD, Branch};
-use super::free_space::place;
 use super::increment::{Load, Unsolved};
 use super::pressures::{Pressures, can_be_unknowns};
 use super::solver::{Equilibrium, Solver};
 use crate::algebra::packed::dot;
-use crate::algebra::tensor::{Vector3, bounding_box};
 use crate::error::{Error, Instability};
 use crate::model::Model;
 use crate::motion::internal_force::strain_energy;
@@ -97,10 +95,7 @@ impl Loading<'_, '_> {
         let Loading { solver, state, reached, .. } = self;
         let (model, reached) = (solver.model, *reached);
         if model.contact.has_moving() {
-            let nodes: Vec<Vector3> = (0..model.positions.len() as u32)
-                .map(|n| place(model, n, &state.displacement))
-                .collect();
-            let around = bounding_box(&nodes);
+            let around = model.contact.around(&model.positions, &state.displacement);
             let way = |part: f64| {
                 let times =
                     (solver.path.time(reached), solver.path.time((reached + part).min(1.0)));

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
-use crate::algebra::tensor::{Vector3, vector_at};
+use crate::algebra::tensor::Vector3;
 use crate::model::Model;
 use crate::model::essential::ConstraintForces;
 use faer::sparse::{SparseColMat, Triplet};
@@ -160,16 +160,6 @@ impl<'a> FreeSpace<'a> {
         }
         held
     }
-}
-
-/// Current position of a node \[m\]: its value of the displacement, not its parameter.
-pub(super) fn place(model: &Model, node: u32, u: &[f64]) -> Vector3 {
-    let (node, d) = (node as usize, model.components);
-    let displacement = match &model.nodal_rows {
-        Some(rows) => rows.interpolate(node, u, d),
-        None => vector_at(u, node, d),
-    };
-    model.positions[node] + displacement
 }
 
 /// The lower triangle of C M⁻¹ Cᵀ.

@@ -105,8 +105,7 @@ impl Operators for Vibration<'_> {
     }
 
     fn dimension(&self) -> usize {
-        let active = self.model.constraints.active(0.0);
-        let held: usize = active.iter().map(|set| set.rows.len()).sum();
+        let held = self.model.constraints.count(0.0);
         self.size().saturating_sub(held + self.rigid_motions())
     }
 

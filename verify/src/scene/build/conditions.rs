@@ -3,14 +3,14 @@
 use crate::scene::build::builder::Builder;
 use crate::scene::build::field::near;
 use crate::scene::format::{
-    AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, FormulaFormat, FrictionFormat,
-    ObstacleFormat, PrescribeFormat, RigidMotionFormat, RotationFormat, Triple,
+    AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, FormulaFormat, ObstacleFormat,
+    PrescribeFormat, RigidMotionFormat, RotationFormat, Triple,
 };
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Field, Selector};
 use mtled::problem::{
-    Amplitude, BodyForce, EssentialCondition, Loads, Obstacle, Prescribed, Pressure, RigidMotion,
-    RigidWay, Traction,
+    Amplitude, BodyForce, EssentialCondition, Friction, Loads, Obstacle, Prescribed, Pressure,
+    RigidMotion, RigidWay, Traction,
 };
 
 impl Builder<'_> {
@@ -200,9 +200,8 @@ impl Builder<'_> {
     pub fn obstacles(&mut self, rows: &[ObstacleFormat]) -> Vec<Obstacle> {
         let obstacle = |(n, row): (usize, &ObstacleFormat)| {
             let key = format!("obstacle[{n}]");
-            if let FrictionFormat::Coulomb(coefficient) = row.friction {
-                self.not_negative(&format!("{key}.friction.coulomb"), coefficient);
-            }
+            let friction = Friction::from(row.friction);
+            self.refused(friction.check(), |field| format!("{key}.friction.{field}"));
             let motions = row.motion.iter().enumerate();
             let motions: Vec<RigidMotion> = motions
                 .filter_map(|(m, row)| self.rigid_motion(&format!("{key}.motion[{m}]"), row))
@@ -212,7 +211,7 @@ impl Builder<'_> {
                 shape: self.solid(&format!("{key}.shape"), &row.shape)?,
                 offset: row.offset,
                 side: row.side.into(),
-                friction: row.friction.into(),
+                friction,
                 motions,
             })
         };
