@@ -169,6 +169,27 @@ pub enum Error {
     SmallBodyForce { index: usize, volume: f64, smallest: f64 },
     #[error("pressure \"{name}\" selects no part of the boundary")]
     EmptyPressure { name: String },
+    #[error("an unloaded configuration is not looked for with {what}: remove them")]
+    NotUnloaded { what: &'static str },
+    #[error(
+        "on the way to the configuration without loads the body folds near ({}) m, with J = {determinant:.2e}: \
+             the loads are too large for the material, or it is too soft", show(.position)
+    )]
+    FoldedBody { position: Vector3, determinant: f64 },
+    #[error("spring \"{name}\" selects no part of the boundary")]
+    EmptySpring { name: String },
+    #[error("cavity \"{name}\" selects no part of the boundary")]
+    EmptyCavity { name: String },
+    #[error(
+        "the surface of cavity \"{name}\" is open ({part:.2} of its area is not closed), so that it encloses no \
+             volume: give a point of the plane of its opening, or select all of the surface"
+    )]
+    OpenCavity { name: String, part: f64 },
+    #[error(
+        "cavity \"{name}\" has a volume of {volume:e} at rest: the body lies inside of its surface and not \
+             around it, or its opening is elsewhere"
+    )]
+    NoCavity { name: String, volume: f64 },
     #[error(
         "the conditions on component {component} constrain {rows} nodes whose constraints depend on each other: \
              use enforcement = \"direct\""

@@ -63,6 +63,7 @@ pub mod motion;
 pub mod audit;
 pub mod frequencies;
 pub mod sensitivity;
+pub mod unloaded;
 
 pub mod simulation;
 

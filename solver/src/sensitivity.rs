@@ -16,7 +16,7 @@ use crate::motion::extra_stress::ExtraState;
 use crate::motion::internal_force::{internal_force, strain_energy};
 use crate::motion::newton::Balanced;
 use crate::motion::state::State;
-use crate::motion::step::{Buffers, add_pressures, external_force};
+use crate::motion::step::{Buffers, add_following, external_force};
 use crate::problem::{Motion, Newton, Problem};
 
 /// A number that a solution answers.
@@ -161,7 +161,7 @@ impl<'a> Adjoint<'a> {
         let (t, u) = (problem.motion.end(), self.balanced.displacement().to_vec());
         ExtraState::new(&model).act(&model, t, &mut buffers.workspace);
         external_force(&model, t, &mut buffers.f_ext);
-        add_pressures(&model, t, &u, &mut buffers.f_ext);
+        add_following(&model, t, &u, &mut buffers.f_ext);
         internal_force(&model, &u, &mut buffers.workspace, &mut buffers.f_int);
         let unbalanced = buffers.f_ext.iter().zip(&buffers.f_int).map(|(ext, int)| ext - int);
         let mut jump = vec![0.0; u.len()];

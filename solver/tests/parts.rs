@@ -162,7 +162,7 @@ fn a_traction_or_a_pressure_on_a_part_of_any_size_has_the_force_of_its_area() {
             assert!(error < 1e-3 * expected.norm(), "{edge} of {h}: {error}");
             let mut force = vec![0.0; model.size()];
             let at_rest = force.clone();
-            model.pressures[0].add_force(0.0, &at_rest, 3, &mut force);
+            model.following.pressures[0].add_force(0.0, &at_rest, 3, &mut force);
             let expected = Vector3::z() * (-7.0 * edge * edge);
             let error = (total(&force) - expected).norm();
             assert!(error < 2e-3 * expected.norm(), "{edge} of {h}: {error}");
@@ -355,7 +355,7 @@ fn a_pressure_that_dents_a_dome_stays_in_balance_with_its_base() {
     simulate(&model, &problem.motion, &mut state, &mut Unobserved).unwrap();
     assert!(largest(&state.displacement) > 0.001, "{}", largest(&state.displacement));
     let mut force = vec![0.0; model.size()];
-    model.pressures[0].add_force(1.0, &state.displacement, 3, &mut force);
+    model.following.pressures[0].add_force(1.0, &state.displacement, 3, &mut force);
     // The rim does not move: the force is the pressure times the area of the base.
     let expected = Vector3::z() * (-700.0 * PI * 0.06 * 0.045);
     let error = (total(&force) - expected).norm() / expected.norm();

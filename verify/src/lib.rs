@@ -1,6 +1,6 @@
 //! Verification harness of the meshless solver `mtled`: case files
 //! ([`scene`]) become problems, runs ([`run`]) become results, studies
-//! ([`studies`], [`lab`], [`contests`], [`suite`], [`frequencies`], [`sensitivity`]) become the plain data of [`mtled_checks::study`],
+//! ([`studies`], [`lab`], [`contests`], [`suite`], [`frequencies`], [`sensitivity`], [`unloaded`]) become the plain data of [`mtled_checks::study`],
 //! and [`mtled_checks::report`] turns those into pages and files.
 
 // A module uses only modules above it.
@@ -31,5 +31,6 @@ pub mod suite;
 
 pub mod frequencies;
 pub mod sensitivity;
+pub mod unloaded;
 
 pub mod cli;

@@ -6,7 +6,7 @@ use crate::algebra::packed::largest;
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::motion::energy::{energies, excess_of_mean};
 use crate::motion::internal_force::{internal_force, potential_energy};
-use crate::motion::step::{add_pressures, external_force};
+use crate::motion::step::{add_following, external_force};
 
 /// Sum of all forces on a body at rest over the sum of their sizes \[–\]: Newton's method leaves up
 /// to 1e-3 of it at its usual tolerance, and error bars are rarely smaller.
@@ -40,7 +40,7 @@ impl Run<'_> {
         let (u, d) = (&state.displacement, model.components);
         let mut loads = vec![0.0; model.size()];
         external_force(model, self.time, &mut loads);
-        add_pressures(model, self.time, u, &mut loads);
+        add_following(model, self.time, u, &mut loads);
         let (mut force, mut moment, mut sizes) = (Vector3::zeros(), Vector3::zeros(), 0.0);
         let mut add = |place: Vector3, own: Vector3| {
             force += own;

@@ -3,10 +3,12 @@
 
 use super::sampling::{Divided, part_of_surface, sample};
 use super::{Kind, Row, Run};
+use crate::algebra::packed::largest;
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::error::Error;
 use crate::geometry::{Field, Selector};
-use crate::problem::{Amplitude, BodyForce};
+use crate::model::following::CavityLoad;
+use crate::problem::{Amplitude, BodyForce, Cavity};
 
 /// Difference of a force over the sum of the sizes of its parts \[–\]: displacements inherit it,
 /// and error bars of usual clouds are 2 % and more.
@@ -70,7 +72,8 @@ impl Run<'_> {
                 rows.extend(self.compare(name, &asked, &traction.amplitude, &pattern.force));
             }
         }
-        for (pressure, load) in loads.pressures.iter().zip(&self.model.pressures) {
+        let following = &self.model.following;
+        for (pressure, load) in loads.pressures.iter().zip(&following.pressures) {
             let asked = self.on_surface(&pressure.part, |_, area| -pressure.pressure * area);
             let (size, d) = (self.model.size(), self.model.components);
             let Some((time, factor)) = self.acting(&pressure.amplitude) else { continue };
@@ -80,6 +83,49 @@ impl Run<'_> {
             rows.extend(self.compare(&pressure.name, &asked, &pressure.amplitude, &force));
         }
         Ok(rows)
+    }
+
+    /// Two rows for each spring: its forces if all of the body were shifted as far as it has moved
+    /// most.
+    pub(super) fn springs(&self) -> Vec<Row> {
+        let (d, size) = (self.model.components, largest(&self.state.displacement));
+        let mut rows = Vec::new();
+        if size == 0.0 {
+            return rows;
+        }
+        let shift = Vector3::from_fn(|k, _| if k < d { size } else { 0.0 });
+        let springs = self.problem.loads.springs.iter().zip(&self.model.following.springs);
+        for (spring, load) in springs {
+            let asked = self.on_surface(&spring.part, |_, area| {
+                let N = area.try_normalize(0.0).unwrap_or_default();
+                let along = N * N.dot(&shift);
+                (spring.normal * along + spring.tangential * (shift - along)) * -area.norm()
+            });
+            let mut force = vec![0.0; self.model.size()];
+            let shifted: Vec<f64> =
+                (0..self.model.positions.len()).flat_map(|_| (0..d).map(|k| shift[k])).collect();
+            load.add_force(&shifted, d, &mut force);
+            rows.extend(self.compare(&spring.name, &asked, &Amplitude::Constant, &force));
+        }
+        rows
+    }
+
+    /// A row for each cavity: its volume at rest.
+    pub(super) fn cavities(&self) -> Vec<Row> {
+        let dimension = &self.problem.dimension;
+        let row = |(cavity, load): (&Cavity, &CavityLoad)| {
+            let facets = &self.sampled.facets;
+            let found = part_of_surface(facets, &cavity.part, dimension, self.spacing);
+            let about = load.about();
+            let of_piece = |(X, area): &(Vector3, Vector3)| dimension.in_plane(X - about).dot(area);
+            let sum: f64 = found.pieces.iter().map(of_piece).sum();
+            let asked = -sum / self.model.components as f64;
+            let doubt = found.doubt / found.area.max(f64::MIN_POSITIVE);
+            let limit = (FORCE + doubt) * asked.abs();
+            Row::numbers(Kind::CavityVolume, &cavity.name, asked, load.volume_at_rest(), limit)
+        };
+        let cavities = self.problem.loads.cavities.iter();
+        cavities.zip(&self.model.following.cavities).map(row).collect()
     }
 
     /// The last of some times at which an amplitude is not 0, and the amplitude there.

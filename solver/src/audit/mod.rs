@@ -99,6 +99,8 @@ pub fn audit(
     };
     let mut rows = run.prescribed()?;
     rows.extend(run.loads()?);
+    rows.extend(run.springs());
+    rows.extend(run.cavities());
     rows.extend(run.forces());
     rows.push(run.internal_work());
     rows.extend(run.masses());

@@ -95,6 +95,9 @@ kinds! {
     /// Moment of a load about the centre of what it acts on.
     LoadMoment: "load_moment", "moment of", "N m",
         "the load does not act where it was stated: use a finer cloud at the part that it acts on";
+    /// Volume of a cavity at rest.
+    CavityVolume: "cavity_volume", "volume of cavity", "m³",
+        "the surface of the cavity encloses another volume than the shapes: use a finer cloud there, or give a point of the plane of its opening";
     /// Loads, reactions and contact in sum.
     Forces: "forces", "loads, reactions and contact", "N",
         "the forces on the body do not add up to zero, so that some of them are wrong: lower the tolerance";

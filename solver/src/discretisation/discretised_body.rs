@@ -110,6 +110,29 @@ impl Discretisation {
         Ok(discretisation)
     }
 
+    /// With weights and gradients of the shape that lies `offsets` \[component of node\] \[m\] from this
+    /// one: w det G and G⁻ᵀ Grad φ, G = 1 + Grad of the offsets. Places stay those of this shape, by
+    /// which selections find them, and so do φ, the boundary and the patches.
+    ///
+    /// # Errors
+    /// [`Error::FoldedBody`] where the offsets turn a point inside out.
+    pub fn moved(&self, offsets: &[f64]) -> Result<Discretisation, Error> {
+        let mut moved = self.clone();
+        let d = self.dimension.components();
+        for (point, weight) in moved.quadrature.weights.iter_mut().enumerate() {
+            let G = self.supports.deformation_gradient(point, offsets, d);
+            let determinant = G.determinant();
+            let folded =
+                || Error::FoldedBody { position: self.quadrature.positions[point], determinant };
+            if determinant.is_nan() || determinant <= 0.0 {
+                return Err(folded());
+            }
+            *weight *= determinant;
+            moved.supports.push_forward(point, &G);
+        }
+        Ok(moved)
+    }
+
     /// Scales the quadrature weights of each connected body to the volume that its
     /// boundary encloses (method book, eq. 9.7) and makes Grad φ consistent. Of all nodes, the
     /// first `nodes` are in supports.

@@ -9,7 +9,7 @@ use crate::discretisation::placed_nodes::PANEL;
 use crate::discretisation::quadrature::followed_edge;
 use crate::discretisation::shape_memory::ShapeMemory;
 use crate::geometry::{GeometryError, POINTS, Selector, Shape, merges_voxels};
-use crate::problem::{Cloud, Dimension, InsideRule, Problem, Refinement};
+use crate::problem::{Cloud, Dimension, InsideRule, Loads, Problem, Refinement};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -138,7 +138,7 @@ impl Footprint {
             + PER_BATCH_ENTRY * self.points.min(BATCH) * self.neighbours
             + PER_PANEL * self.panels
             + PER_HELD_NODE * self.held.min(self.nodes)
-            + problem.loads.pressures.len() as f64 * self.panels * PER_ROW_ENTRY * self.neighbours
+            + following(problem) as f64 * self.panels * PER_ROW_ENTRY * self.neighbours
             + if problem.by_newton() {
                 PER_NEWTON_ENTRY * self.nodes * self.neighbours
             } else {
@@ -157,6 +157,12 @@ impl Footprint {
     }
 }
 
+/// Parts of the surface at which shape functions are kept.
+fn following(problem: &Problem) -> usize {
+    let Loads { pressures, springs, cavities, .. } = &problem.loads;
+    pressures.len() + springs.len() + cavities.len()
+}
+
 /// Every shape of a problem that is not in a selector.
 fn problem_shapes(problem: &Problem) -> impl Iterator<Item = &Shape> {
     std::iter::once(&problem.body).chain(problem.obstacles.iter().map(|o| &o.shape))
@@ -170,11 +176,10 @@ fn problem_selectors(problem: &Problem) -> impl Iterator<Item = &Selector> {
     };
     let regions = problem.regions.iter().map(|region| &region.part);
     let conditions = problem.conditions.iter().map(|condition| &condition.part);
-    let tractions = problem.loads.tractions.iter().map(|traction| &traction.part);
-    let pressures = problem.loads.pressures.iter().map(|pressure| &pressure.part);
     let body_forces = problem.loads.body_forces.iter().map(|body_force| &body_force.part);
     let refined = refined.iter().chain(&problem.recipe.grid.refinements).map(|r| &r.part);
-    regions.chain(conditions).chain(tractions).chain(pressures).chain(body_forces).chain(refined)
+    let surface = problem.loads.parts_of_surface();
+    regions.chain(conditions).chain(surface).chain(body_forces).chain(refined)
 }
 
 /// Memory while the nodes of a graded cloud are chosen \[bytes\].

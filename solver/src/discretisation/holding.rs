@@ -9,7 +9,7 @@ use crate::discretisation::quadrature::Quadrature;
 use crate::discretisation::rows::Rows;
 use crate::discretisation::surface_rule::SurfaceRule;
 use crate::error::Error;
-use crate::problem::{Loads, Problem};
+use crate::problem::Problem;
 
 impl Discretisation {
     /// Adds what is held as a volume, whose nodes are those from `first_node` on.
@@ -26,8 +26,7 @@ impl Discretisation {
             quadrature_of(problem, regions, (&part, grid), &self.approximation, None)?;
         flatten(&mut quadrature.positions, &self.dimension);
         let rows = self.rows_at(&quadrature.positions)?;
-        let Loads { tractions, pressures, .. } = &problem.loads;
-        let surface = if tractions.is_empty() && pressures.is_empty() {
+        let surface = if problem.loads.parts_of_surface().next().is_none() {
             SurfaceRule::default()
         } else {
             let size = self.surface.panel_size;

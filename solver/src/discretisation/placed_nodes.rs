@@ -6,7 +6,7 @@ use crate::discretisation::mls::Stiffness;
 use crate::discretisation::nodes::{HeldParts, NodeCloud, node_cloud, place_nodes_on_borders};
 use crate::error::Error;
 use crate::geometry::{Extent, GeometryError, Panel, Shape};
-use crate::problem::{Cloud, Dimension, Gradients, Loads, Problem};
+use crate::problem::{Cloud, Dimension, Gradients, Problem};
 
 /// Edge of the boundary panels over the smallest nodal spacing \[–\].
 pub(super) const PANEL: f64 = 0.5;
@@ -72,6 +72,6 @@ fn panels_of(
 
 /// Whether consistent gradients or loads need the boundary.
 pub(super) fn needs_surface(problem: &Problem) -> bool {
-    let Loads { tractions, pressures, .. } = &problem.loads;
-    problem.recipe.gradients != Gradients::Plain || !tractions.is_empty() || !pressures.is_empty()
+    problem.recipe.gradients != Gradients::Plain
+        || problem.loads.parts_of_surface().next().is_some()
 }

@@ -85,6 +85,14 @@ impl Evaluated {
 }
 
 impl Rows {
+    /// Grad φ at a point for places that move by G there: G⁻ᵀ Grad φ. A singular G changes nothing.
+    pub(crate) fn push_forward(&mut self, point: usize, G: &Matrix3) {
+        let Some(back) = G.try_inverse() else { return };
+        let back = back.transpose();
+        let entries = self.row(point);
+        self.grad_phi[entries].iter_mut().for_each(|gradient| *gradient = back * *gradient);
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.starts.len() - 1

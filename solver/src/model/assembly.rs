@@ -1,14 +1,14 @@
 //! The model of a body: its parts and how they are made.
 
-use crate::algebra::tensor::{Matrix3, Vector3, bounding_box};
+use crate::algebra::tensor::{Matrix3, Vector3, bounding_box, vector_at};
 use crate::discretisation::{Discretisation, Rows, Warning};
 use crate::error::Error;
 use crate::model::blocks::{Block, Sums, blocks};
 use crate::model::contact::{ContactPlan, check_obstacles};
 use crate::model::essential::{Constraints, check_shared_nodes};
+use crate::model::following::FollowingLoads;
 use crate::model::load::{LoadPattern, check_loads, initial_velocity, load_patterns};
 use crate::model::mass::{fictitious_mass, lumped_mass};
-use crate::model::pressure::{PressureLoad, pressure_loads};
 use crate::model::stiffness::stiffness_diagonal;
 use crate::model::time_step_bound::per_point_bound;
 use crate::problem::{Amplitude, Dimension, MassRule, Motion, Problem, Region, RelaxationMass};
@@ -36,8 +36,8 @@ pub struct Model {
     pub sums: Sums,
     /// The external forces.
     pub loads: Vec<LoadPattern>,
-    /// The pressures, external forces that follow the surface.
-    pub pressures: Vec<PressureLoad>,
+    /// External forces that depend on displacements.
+    pub following: FollowingLoads,
     /// The essential conditions.
     pub constraints: Constraints,
     /// The obstacles, and the nodes that may touch them.
@@ -77,7 +77,10 @@ impl Model {
         };
         let components = problem.dimension.components();
         let blocks = blocks(problem, discretisation)?;
-        let stiffness = stiffness_diagonal(&blocks, components, lumped_mass.len(), f64::INFINITY);
+        let following = FollowingLoads::new(problem, discretisation)?;
+        let mut stiffness =
+            stiffness_diagonal(&blocks, components, lumped_mass.len(), f64::INFINITY);
+        following.add_to_diagonal(components, &mut stiffness);
         let inertia =
             if lumped { lumped_mass.clone() } else { fictitious_mass(&stiffness, &lumped_mass) };
         let mut warnings = empty_regions(problem, discretisation);
@@ -102,7 +105,7 @@ impl Model {
             inertia,
             added_mass: 0.0,
             loads: load_patterns(problem, discretisation, &density)?,
-            pressures: pressure_loads(problem, discretisation)?,
+            following,
             contact,
             initial_velocity: initial_velocity(problem, discretisation)?,
             point_positions: quadrature.positions.clone(),
@@ -118,6 +121,16 @@ impl Model {
             per_point_bound,
             warnings,
         })
+    }
+
+    /// Moves the places of nodes and of pressed surfaces by offsets \[component of node\] \[m\], whose
+    /// gradients and weights the discretisation has.
+    pub(crate) fn move_by(&mut self, offsets: &[f64]) {
+        let d = self.components;
+        for (node, position) in self.positions.iter_mut().enumerate() {
+            *position += vector_at(offsets, node, d);
+        }
+        self.following.move_by(offsets, d);
     }
 
     /// Number of displacement components of all nodes.
@@ -143,10 +156,13 @@ impl Model {
     pub fn corners(&self) -> Vec<f64> {
         let conditions = &self.constraints.conditions;
         let loads = self.loads.iter().map(|load| &load.amplitude);
-        let pressures = self.pressures.iter().map(|load| &load.amplitude);
         let held = conditions.iter().map(|condition| &condition.amplitude);
         let active = self.blocks.iter().filter_map(|block| Some(&block.active.as_ref()?.amplitude));
-        let all = loads.chain(pressures).chain(held).chain(active).flat_map(Amplitude::corners);
+        let all = loads
+            .chain(self.following.amplitudes())
+            .chain(held)
+            .chain(active)
+            .flat_map(Amplitude::corners);
         all.chain(conditions.iter().filter_map(|condition| condition.release)).collect()
     }
 

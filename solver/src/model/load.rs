@@ -9,7 +9,7 @@ use crate::model::essential::Constraints;
 use crate::model::loaded_part::LoadedPart;
 use crate::model::loaded_volume::LoadedVolume;
 use crate::model::mass::masses;
-use crate::problem::{Amplitude, Loads, Motion, Problem, Traction};
+use crate::problem::{Amplitude, Cavity, Loads, Motion, Problem, Traction};
 
 /// A nodal force pattern with the amplitude that scales it.
 #[derive(Debug, Clone)]
@@ -170,14 +170,16 @@ pub fn check_loads(
 }
 
 /// Amplitudes that are on their way when the load of a static problem ends.
-fn unfinished(problem: &Problem) -> impl Iterator<Item = Warning> {
+fn unfinished<'a>(problem: &'a Problem) -> impl Iterator<Item = Warning> + 'a {
     let end = problem.motion.end();
     let conditions = problem.conditions.iter().map(|c| (c.name.clone(), &c.amplitude));
     let tractions = problem.loads.tractions.iter().map(|t| (t.name.clone(), &t.amplitude));
     let pressures = problem.loads.pressures.iter().map(|p| (p.name.clone(), &p.amplitude));
+    let inflow = |c: &'a Cavity| Some((c.name.clone(), &c.fluid.as_ref()?.amplitude));
     let body_forces = problem.loads.body_forces.iter().enumerate();
     let body_forces = body_forces.map(|(n, b)| (format!("body_force[{n}]"), &b.amplitude));
-    conditions.chain(tractions).chain(pressures).chain(body_forces).filter_map(
+    let inflows = problem.loads.cavities.iter().filter_map(inflow);
+    conditions.chain(tractions).chain(pressures).chain(inflows).chain(body_forces).filter_map(
         move |(name, amplitude)| {
             let (Amplitude::Linear { duration } | Amplitude::Smooth { duration }) = *amplitude
             else {

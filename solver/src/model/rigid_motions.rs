@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 /// closed at displacements `u` \[component of node\] \[m\] leave free: the dimension of
 /// their kernel in the rigid motions. A closed contact counts as if it could not open.
 pub fn free_rigid_motions(model: &Model, t: f64, u: &[f64]) -> usize {
-    let mut rows = prescribed_places(model, t);
+    let mut rows = held_places(model, t);
     rows.extend(model.contact.closed(&model.positions, t, u));
     kernel(model, &rows)
 }
@@ -27,11 +27,7 @@ pub struct FreePiece {
 /// all prevent, each for itself. Of a body in one piece see [`free_rigid_motions`].
 pub fn free_pieces(model: &Model, t: f64) -> Vec<FreePiece> {
     let count = model.bodies.iter().max().map_or(0, |&last| last + 1);
-    let mut rows = vec![Vec::new(); count as usize];
-    for (node, along) in prescribed(model, t) {
-        let body = model.bodies[node as usize] as usize;
-        rows[body].push((model.positions[node as usize], along));
-    }
+    let rows = held_of_pieces(model, t, count);
     let piece = |(rows, body): (&Vec<(Vector3, Vector3)>, u32)| {
         let motions = kernel(model, rows);
         (motions > 0).then_some(FreePiece { body, motions })
@@ -43,11 +39,7 @@ pub fn free_pieces(model: &Model, t: f64) -> Vec<FreePiece> {
 /// conditions of time `t` \[s\]. Each has displacements of about 1 over the extent.
 pub(crate) fn free_rigid_fields(model: &Model, t: f64) -> Vec<Vec<f64>> {
     let pieces = model.bodies.iter().max().map_or(0, |&last| last + 1);
-    let mut rows = vec![Vec::new(); pieces as usize];
-    for (node, along) in prescribed(model, t) {
-        let piece = model.bodies[node as usize] as usize;
-        rows[piece].push((model.positions[node as usize], along));
-    }
+    let rows = held_of_pieces(model, t, pieces);
     let mut fields = Vec::new();
     for (rows, piece) in rows.iter().zip(0..) {
         for motion in rigid_motions_beside(model, rows, ROUND_OFF) {
@@ -64,7 +56,7 @@ pub(crate) fn free_rigid_fields(model: &Model, t: f64) -> Vec<Vec<f64>> {
 
 /// Number of rigid motions that the conditions at time `t` \[s\] leave to contact.
 pub fn rigid_motions_left_to_contact(model: &Model, t: f64) -> usize {
-    kernel(model, &prescribed_places(model, t))
+    kernel(model, &held_places(model, t))
 }
 
 /// Nodes and directions of what the conditions prescribe.
@@ -77,9 +69,23 @@ pub(crate) fn prescribed(model: &Model, t: f64) -> Vec<(u32, Vector3)> {
     rows
 }
 
-fn prescribed_places(model: &Model, t: f64) -> Vec<(Vector3, Vector3)> {
-    let place = |(node, along): (u32, Vector3)| (model.positions[node as usize], along);
-    prescribed(model, t).into_iter().map(place).collect()
+/// Places and directions of what conditions and springs hold.
+fn held_places(model: &Model, t: f64) -> Vec<(Vector3, Vector3)> {
+    held_of_pieces(model, t, 1).remove(0)
+}
+
+/// The same of each of some pieces; all of them in one list where there is only one.
+fn held_of_pieces(model: &Model, t: f64, pieces: u32) -> Vec<Vec<(Vector3, Vector3)>> {
+    let mut rows = vec![Vec::new(); pieces.max(1) as usize];
+    let mut add = |node: u32, place: Vector3, along: Vector3| {
+        let piece = if pieces > 1 { model.bodies[node as usize] } else { 0 };
+        rows[piece as usize].push((place, along));
+    };
+    for (node, along) in prescribed(model, t) {
+        add(node, model.positions[node as usize], along);
+    }
+    model.following.held().for_each(|(node, place, along)| add(node, place, along));
+    rows
 }
 
 /// Dimension of the rigid motions without a component along any of the rows (place,

@@ -3,8 +3,9 @@
 use crate::algebra::packed::{dot, largest};
 use crate::model::Model;
 use crate::model::essential::ConstraintForces;
+use crate::model::following::OwnFluid;
 use crate::motion::internal_force::{OwnPressures, SmallestJacobian, internal_force_with};
-use crate::motion::step::{Buffers, add_pressures};
+use crate::motion::step::Buffers;
 
 /// Nodal force over stiffness times displacement below which a body counts as free of
 /// stress \[–\]: a residual relative to smaller forces would say nothing, such as that of a
@@ -36,18 +37,18 @@ impl Imbalance {
         buffers: &mut Buffers,
         forces: &mut ConstraintForces,
     ) -> Imbalance {
-        Imbalance::with_pressures(model, (u, None), t, buffers, forces)
+        Imbalance::with_pressures(model, (u, None, None), t, buffers, forces)
     }
 
-    /// The same of patches that may have pressures of their own.
+    /// The same of patches and fluids that may have pressures of their own.
     pub fn with_pressures(
         model: &Model,
-        (u, own): (&[f64], Option<&OwnPressures>),
+        (u, own, fluids): (&[f64], Option<&OwnPressures>, Option<&[OwnFluid]>),
         t: f64,
         buffers: &mut Buffers,
         forces: &mut ConstraintForces,
     ) -> Imbalance {
-        add_pressures(model, t, u, &mut buffers.f_ext);
+        model.following.add_force((t, fluids), u, model.components, &mut buffers.f_ext);
         let smallest_jacobian =
             internal_force_with(model, u, own, &mut buffers.workspace, &mut buffers.f_int);
         let force: Vec<f64> = buffers

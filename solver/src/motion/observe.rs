@@ -1,8 +1,8 @@
 //! Observers of a run.
 
 use crate::algebra::tensor::Vector3;
-use crate::model::Model;
 use crate::model::essential::Reaction;
+use crate::model::{CavityState, Model};
 use crate::motion::energy::{Energies, Momenta, energies, momenta};
 use crate::motion::state::State;
 
@@ -34,6 +34,20 @@ impl View<'_> {
     /// body, in the order of the problem's conditions.
     pub fn reactions(&self, about: &Vector3) -> Vec<Reaction> {
         self.state.reactions(self.model, about)
+    }
+
+    /// Volume and pressure of each cavity, in the order of the problem's.
+    pub fn cavities(&self) -> Vec<CavityState> {
+        let (t, u) = (self.state.time, &self.state.displacement);
+        let cavities = self.model.following.cavities.iter();
+        cavities.map(|cavity| cavity.state(t, u, self.model.components)).collect()
+    }
+
+    /// What the springs exert on the body \[N\], in the order of the problem's.
+    pub fn spring_forces(&self) -> Vec<Vector3> {
+        let u = &self.state.displacement;
+        let springs = self.model.following.springs.iter();
+        springs.map(|spring| spring.resultant(u, self.model.components)).collect()
     }
 }
 

@@ -8,7 +8,7 @@ use crate::motion::newton::{equilibrate, follow};
 use crate::motion::observe::{Continue, Observer, View, notify};
 use crate::motion::relaxation::relax;
 use crate::motion::state::State;
-use crate::motion::step::{Buffers, Scheme, StepReport, add_pressures, external_force, step};
+use crate::motion::step::{Buffers, Scheme, StepReport, add_following, external_force, step};
 use crate::motion::step_control::{StepController, check_divergence};
 use crate::motion::summary::{ContactLoss, NewtonFailure, Summary};
 use crate::problem::{Motion, Relaxation, StepControl, depends_on_way, refuse};
@@ -96,6 +96,9 @@ fn show_again(model: &Model, state: &State, reached: f64, observer: &mut dyn Obs
 /// Resultant of the loads over the sum of their sizes above which it is not round-off \[–\].
 const UNBALANCED: f64 = 1e-6;
 
+/// Component of the direction of a spring from which on it holds \[–\].
+const HOLDS: f64 = 1e-3;
+
 /// Refuses a static problem without equilibrium: constant loads push the whole body along
 /// an axis on which nothing holds it.
 fn refuse_unheld(model: &Model, load_end: f64) -> Result<(), Error> {
@@ -104,12 +107,14 @@ fn refuse_unheld(model: &Model, load_end: f64) -> Result<(), Error> {
     }
     let mut force = vec![0.0; model.size()];
     external_force(model, load_end, &mut force);
-    add_pressures(model, load_end, &vec![0.0; model.size()], &mut force);
+    add_following(model, load_end, &vec![0.0; model.size()], &mut force);
     let held = model.constraints.active(load_end);
+    let springs = |axis: usize| model.following.held().any(|(.., along)| along[axis].abs() > HOLDS);
     for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate().take(model.components) {
         let along = || force.iter().skip(axis).step_by(model.components);
         let (sum, sizes): (f64, f64) = (along().sum(), along().map(|f| f.abs()).sum());
-        if held.iter().all(|set| set.component != axis) && sum.abs() > UNBALANCED * sizes {
+        let is_held = held.iter().any(|set| set.component == axis) || springs(axis);
+        if !is_held && sum.abs() > UNBALANCED * sizes {
             return Err(Error::NothingHolds { axis: name, force: sum });
         }
     }

@@ -111,7 +111,7 @@ pub fn step(
         internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
     state.work.extra += state.extra.remember(model, load_time, &mut buffers.workspace);
     external_force(model, load_time, &mut buffers.f_ext);
-    add_pressures(model, load_time, &state.displacement, &mut buffers.f_ext);
+    add_following(model, load_time, &state.displacement, &mut buffers.f_ext);
     if buffers.track_work {
         buffers.velocity_before.copy_from_slice(&state.velocity);
     }
@@ -129,12 +129,10 @@ pub fn step(
     StepReport { smallest_jacobian, largest_increment }
 }
 
-/// Adds the forces of all pressures at time `t` \[s\] and displacements `u` \[m\], which
+/// Adds the forces that depend on displacements `u` \[m\], at time `t` \[s\], which
 /// [`external_force`] leaves out.
-pub fn add_pressures(model: &Model, t: f64, u: &[f64], f_ext: &mut [f64]) {
-    for load in &model.pressures {
-        load.add_force(t, u, model.components, f_ext);
-    }
+pub fn add_following(model: &Model, t: f64, u: &[f64], f_ext: &mut [f64]) {
+    model.following.add_force((t, None), u, model.components, f_ext);
 }
 
 /// Sum of all load patterns at time `t` \[s\]: what does not depend on displacements.

@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::model::essential::ConstraintForces;
+use crate::model::following::{FollowingTangent, OwnFluid};
 use crate::model::{Following, Model};
 use crate::motion::internal_force::{
     OwnPressures, Workspace, linearise, linearised_stiffness_times,
@@ -13,6 +14,7 @@ pub(crate) struct Tangent<'a> {
     u: &'a [f64],
     t: f64,
     own: Option<OwnPressures>,
+    following: Option<FollowingTangent<'a>>,
     workspace: &'a mut Workspace,
     /// √m per component of node \[√kg\].
     pub root_mass: Vec<f64>,
@@ -31,12 +33,25 @@ impl<'a> Tangent<'a> {
             model.inertia.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
         linearise(model, u, workspace);
         let forces = ConstraintForces::default();
-        Tangent { model, u, t, own: None, workspace, root_mass, forces }
+        let Model { following: loads, components, .. } = model;
+        let of_loads = || FollowingTangent::new(loads, (t, None), u, *components);
+        let following = (!loads.is_empty()).then(of_loads);
+        Tangent { model, u, t, own: None, following, workspace, root_mass, forces }
     }
 
     /// Of patches with pressures of their own.
     pub fn with_pressures(self, own: Option<OwnPressures>) -> Tangent<'a> {
         Tangent { own, ..self }
+    }
+
+    /// Of fluids with pressures of their own.
+    pub fn with_fluids(self, fluids: Option<&[OwnFluid]>) -> Tangent<'a> {
+        if fluids.is_none() {
+            return self;
+        }
+        let Model { following: loads, components, .. } = self.model;
+        let own = FollowingTangent::new(loads, (self.t, fluids), self.u, *components);
+        Tangent { following: Some(own), ..self }
     }
 
     pub fn free_size(&self) -> usize {
@@ -50,33 +65,35 @@ impl<'a> Tangent<'a> {
         vector.iter_mut().zip(&self.root_mass).for_each(|(x, r)| *x *= r);
     }
 
-    /// The scaled product, projected.
+    /// The scaled product of all that resists, projected.
     pub fn apply(&mut self, vector: &[f64]) -> Vec<f64> {
         let direction: Vec<f64> = vector.iter().zip(&self.root_mass).map(|(x, r)| x / r).collect();
         let mut product = self.internal_stiffness_times(&direction);
+        if let Some(loads) = self.following.as_ref().filter(|_| self.model.following.is_stiff()) {
+            let mut stiff = vec![0.0; self.u.len()];
+            loads.add_stiff_part_times(&direction, &mut stiff);
+            product.iter_mut().zip(&stiff).for_each(|(p, f)| *p -= f);
+        }
         product.iter_mut().zip(&self.root_mass).for_each(|(p, r)| *p /= r);
         self.project(&mut product);
         product
     }
 
-    /// K v \[N\] less the stiffness of pressures, of which the symmetric part counts; not projected.
+    /// K v \[N\] less the stiffness of loads, of which a symmetric part counts; not projected.
     pub fn stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {
         self.times(Following::Symmetric, direction)
     }
 
-    /// (K less all of the stiffness of pressures)ᵀ v \[N\], not projected.
+    /// (K less all of the stiffness of loads)ᵀ v \[N\], not projected.
     pub fn transposed_times(&mut self, direction: &[f64]) -> Vec<f64> {
         self.times(Following::Transposed, direction)
     }
 
     fn times(&mut self, part: Following, direction: &[f64]) -> Vec<f64> {
         let mut product = self.internal_stiffness_times(direction);
-        if !self.model.pressures.is_empty() {
+        if let Some(loads) = &self.following {
             let mut following = vec![0.0; self.u.len()];
-            for load in &self.model.pressures {
-                let d = self.model.components;
-                load.add_stiffness_times(self.t, (self.u, direction), part, d, &mut following);
-            }
+            loads.add_times(direction, part, &mut following);
             product.iter_mut().zip(&following).for_each(|(p, f)| *p -= f);
         }
         product

@@ -59,6 +59,8 @@ pub enum Wrong {
         "is by Newton's method, which has no friction that slides: use relaxation, or a motion"
     )]
     NoFriction,
+    #[error("is 0, and so is tangential; give one of them a stiffness")]
+    NoStiffness,
     #[error("is empty; it needs rows of time and factor")]
     Empty,
     #[error("has time {after} after {before}; times must increase")]

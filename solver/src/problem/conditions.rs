@@ -1,4 +1,4 @@
-//! What acts on the body: prescribed displacements and loads.
+//! Prescribed displacements.
 
 use crate::algebra::tensor::Vector3;
 use crate::geometry::{Extent, Field, Selector};
@@ -65,55 +65,4 @@ pub enum Prescribed {
     },
     /// All components of a displacement field \[m\], at the nodes' own positions.
     Field(Field),
-}
-
-/// Every load, and the velocity at the start.
-#[derive(Debug, Clone, Default)]
-pub struct Loads {
-    /// Forces per mass; they add up.
-    pub body_forces: Vec<BodyForce>,
-    /// Forces per reference area; they add up.
-    pub tractions: Vec<Traction>,
-    /// Pressures on the deformed surface; they add up.
-    pub pressures: Vec<Pressure>,
-    /// Velocity at t = 0 \[m/s\], the first part that contains a node, at whose parameters it is set.
-    pub initial_velocities: Vec<(Selector, Field)>,
-}
-
-/// A force per mass \[N/kg\] on the body or a part of it, such as what lies above a fluid.
-#[derive(Debug, Clone)]
-pub struct BodyForce {
-    /// The quadrature points that it acts on.
-    pub part: Selector,
-    /// At amplitude 1 \[N/kg\].
-    pub acceleration: Field,
-    /// The factor over time.
-    pub amplitude: Amplitude,
-}
-
-/// A dead traction: force per reference area \[Pa\], whose direction stays as it is.
-#[derive(Debug, Clone)]
-pub struct Traction {
-    /// Name in reports and messages.
-    pub name: String,
-    /// Which part of the boundary.
-    pub part: Selector,
-    /// At amplitude 1 \[Pa\].
-    pub traction: Field,
-    /// The factor over time.
-    pub amplitude: Amplitude,
-}
-
-/// A pressure \[Pa\] along the inward normal of the deformed surface: it turns with the
-/// surface, and its force goes with the deformed area.
-#[derive(Debug, Clone)]
-pub struct Pressure {
-    /// Name in reports and messages.
-    pub name: String,
-    /// Which part of the boundary.
-    pub part: Selector,
-    /// At amplitude 1 \[Pa\]; positive where it presses on the body.
-    pub pressure: f64,
-    /// The factor over time.
-    pub amplitude: Amplitude,
 }

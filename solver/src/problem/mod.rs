@@ -6,6 +6,7 @@ mod check;
 mod conditions;
 pub mod defaults;
 mod fibres;
+mod loads;
 mod motion;
 mod obstacles;
 mod recipe;
@@ -14,8 +15,9 @@ pub use crate::geometry::{Dimension, Field};
 pub use amplitude::Amplitude;
 pub(crate) use check::refuse;
 pub use check::{Mistake, Wrong};
-pub use conditions::{BodyForce, EssentialCondition, Loads, Prescribed, Pressure, Traction};
+pub use conditions::{EssentialCondition, Prescribed};
 pub use fibres::{ActiveStress, Fibres, NoDirection};
+pub use loads::{BodyForce, Cavity, Fluid, Loads, Pressure, Spring, Traction};
 pub use motion::{Motion, Newton, Relaxation, RelaxationMass, StepControl};
 pub(crate) use obstacles::depends_on_way;
 pub use obstacles::{Friction, Obstacle, ObstacleSide, RigidMotion, RigidWay};
@@ -77,18 +79,10 @@ impl Problem {
             found.part(&format!("regions[{n}]"), region.check());
         }
         found.part("recipe", self.recipe.check());
-        let loads = &self.loads;
-        let amplitudes: [(&str, Vec<&Amplitude>); 4] = [
-            ("conditions", self.conditions.iter().map(|row| &row.amplitude).collect()),
-            ("loads.body_forces", loads.body_forces.iter().map(|row| &row.amplitude).collect()),
-            ("loads.tractions", loads.tractions.iter().map(|row| &row.amplitude).collect()),
-            ("loads.pressures", loads.pressures.iter().map(|row| &row.amplitude).collect()),
-        ];
-        for (list, amplitudes) in amplitudes {
-            for (n, amplitude) in amplitudes.into_iter().enumerate() {
-                found.part(&format!("{list}[{n}].amplitude"), amplitude.check());
-            }
+        for (n, condition) in self.conditions.iter().enumerate() {
+            found.part(&format!("conditions[{n}].amplitude"), condition.amplitude.check());
         }
+        found.part("loads", self.loads.check());
         for (n, obstacle) in self.obstacles.iter().enumerate() {
             found.part(&format!("obstacles[{n}]"), obstacle.check());
         }

@@ -69,7 +69,8 @@ def test_dataclasses_have_all_keys_of_the_case_file_and_no_others():
         "TractionFormat": p.Traction, "PressureFormat": p.Pressure, "InitialVelocityFormat": p.InitialVelocity,
         "ObstacleFormat": p.Obstacle, "PointsFormat": p.Points, "LatticeFormat": p.Lattice, "ProbeFormat": p.Probe,
         "PlaneFormat": p.PlaneStrain, "OutputFormat": p.Output, "PronyTermFormat": p.PronyTerm,
-        "ActiveStressFormat": p.ActiveStress,
+        "ActiveStressFormat": p.ActiveStress, "SpringFormat": p.Spring, "CavityFormat": p.Cavity,
+        "FluidFormat": p.Fluid,
     }  # fmt: skip
     for name, kind in plain.items():
         assert own(kind) == keys(definitions[name]), name

@@ -1,8 +1,8 @@
 //! The command line: parse, dispatch, exit code.
 
+mod answers;
 mod case;
 mod common;
-mod frequencies;
 mod init;
 mod inspect;
 mod lab;
@@ -15,7 +15,6 @@ mod publish;
 mod python;
 mod reference;
 mod report;
-mod sensitivity;
 mod solve;
 mod streams;
 mod study;
@@ -23,6 +22,7 @@ mod verify;
 mod view;
 mod warp;
 
+use answers::{frequencies, sensitivity, unload};
 use clap::{CommandFactory, Parser, Subcommand};
 use common::{ARGUMENTS, COULD_NOT_RUN, Common, Format, STOPPED, arguments};
 use lab::{budget, runs, tune};
@@ -58,6 +58,7 @@ const EXAMPLES: &str = "Examples:
   mtled budget my_case.toml                     how large is the error, why, and at what cost?
   mtled sensitivity my_case.toml                which of its numbers matter most?
   mtled frequencies my_case.toml                how fast does its body vibrate, and how?
+  mtled unload my_case.toml                     what shape has it without its loads?
   mtled tune my_case.toml --target-error 1%     the cheapest recipe with this accuracy
   mtled study convergence my_case.toml          errors over spacings, with orders
   mtled case new block -o my_case.toml          a commented case to start from
@@ -89,6 +90,8 @@ enum Command {
     Sensitivity(sensitivity::SensitivityArgs),
     /// Find the lowest natural frequencies of the body of a case at rest, and how it vibrates.
     Frequencies(frequencies::FrequenciesArgs),
+    /// Find the body without loads of a case whose shape is that under its loads, such as that of an image.
+    Unload(unload::UnloadArgs),
     /// Find the cheapest recipe with at most a given error, or the most accurate one for a given
     /// cost.
     Tune(tune::TuneArgs),
@@ -197,6 +200,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Budget(arguments) => budget::budget(arguments, &cli.common),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(arguments, &cli.common),
         Command::Frequencies(arguments) => frequencies::frequencies(arguments, &cli.common),
+        Command::Unload(arguments) => unload::unload(arguments, &cli.common),
         Command::Tune(arguments) => tune::tune_cases(arguments, &cli.common),
         Command::Report(arguments) => report::report(arguments, &cli.common),
         Command::Study(command) => study::study(command, &cli.common),

@@ -5,7 +5,7 @@ use crate::run::{Prepared, interrupted, prepare_to_run};
 use crate::scene::Case;
 use mtled::error::Error;
 use mtled::frequencies::{MassKind, NaturalModes, body_at_rest};
-use mtled::problem::{Motion, Problem};
+use mtled::problem::{Cavity, Motion, Problem};
 
 /// The natural frequencies of the body of a case.
 #[derive(Debug)]
@@ -70,12 +70,15 @@ fn left_out(problem: &Problem, masses: MassKind) -> Vec<&'static str> {
     let loads = &problem.loads;
     let some_load =
         !loads.body_forces.is_empty() || !loads.tractions.is_empty() || !loads.pressures.is_empty();
+    let is_filled =
+        |cavity: &Cavity| cavity.fluid.as_ref().is_some_and(|fluid| fluid.inflow != 0.0);
     let scaled = matches!(&problem.motion, Motion::Dynamic { step, .. } if step.mass_scaling > 1.0);
     let damped = matches!(problem.motion, Motion::Dynamic { damping, .. } if damping > 0.0);
     let released = problem.conditions.iter().any(|condition| condition.release.is_some());
     let active = problem.regions.iter().any(|region| region.active.is_some());
     [
         (some_load, "loads are left out: the body is neither deformed nor stressed by them"),
+        (loads.cavities.iter().any(is_filled), "inflows into cavities are left out"),
         (!problem.obstacles.is_empty(), "obstacles and contact with them are left out"),
         (
             problem.has_memory(),

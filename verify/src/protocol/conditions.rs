@@ -3,8 +3,9 @@
 use super::geometry::{Selection, Shape};
 use crate::scene::Case;
 use crate::scene::format::{
-    BeyondFormat, CaseFormat, DataFormat, ExtentFormat, FormulaFormat, FrictionFormat,
-    ObstacleFormat, PrescribeFormat, SelectorFormat, SideFormat, Triple, UnitFormat,
+    BeyondFormat, CaseFormat, CavityFormat, DataFormat, ExtentFormat, FormulaFormat,
+    FrictionFormat, ObstacleFormat, PrescribeFormat, SelectorFormat, SideFormat, SpringFormat,
+    Triple, UnitFormat,
 };
 use mtled::problem::{Amplitude, Obstacle, RigidMotion, RigidWay};
 use schemars::JsonSchema;
@@ -77,6 +78,8 @@ pub struct Loads {
     pub body_forces: Vec<BodyForce>,
     pub tractions: Vec<Traction>,
     pub pressures: Vec<Pressure>,
+    pub springs: Vec<Spring>,
+    pub cavities: Vec<Cavity>,
     pub initial_velocities: Vec<InitialVelocity>,
 }
 
@@ -115,6 +118,70 @@ pub struct Pressure {
     pub part: Selection,
     /// At factor 1, positive where it presses on the body.
     pub pressure_pa: f64,
+    pub history: History,
+}
+
+/// Springs between each point of a part of the boundary and where it was, per reference area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Spring {
+    pub name: String,
+    #[serde(rename = "where")]
+    pub part: Selection,
+    /// Along the normal at rest.
+    pub normal_pa_per_m: f64,
+    /// Along the surface.
+    pub tangential_pa_per_m: f64,
+}
+
+/// A part of the boundary that encloses a volume.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Cavity {
+    pub name: String,
+    #[serde(rename = "where")]
+    pub part: Selection,
+    /// A point of the plane of its opening, where it has one.
+    pub opening_m: Option<Triple>,
+    /// What fills it, where its volume is not only recorded.
+    pub fluid: Option<Fluid>,
+}
+
+impl Spring {
+    fn new(row: &SpringFormat, tolerance_m: f64) -> Spring {
+        Spring {
+            name: row.name.clone(),
+            part: Selection::new(&row.part, tolerance_m),
+            normal_pa_per_m: row.normal,
+            tangential_pa_per_m: row.tangential,
+        }
+    }
+}
+
+impl Cavity {
+    fn new(
+        row: &CavityFormat,
+        known: &mtled::problem::Cavity,
+        tolerance_m: f64,
+        instants: &[f64],
+    ) -> Cavity {
+        Cavity {
+            name: row.name.clone(),
+            part: Selection::new(&row.part, tolerance_m),
+            opening_m: row.opening,
+            fluid: known.fluid.as_ref().map(|fluid| Fluid {
+                bulk_modulus_pa: fluid.bulk_modulus,
+                inflow_m3: fluid.inflow,
+                history: History::new(&fluid.amplitude, instants),
+            }),
+        }
+    }
+}
+
+/// A fluid whose pressure is its bulk modulus times (V₀ + inflow − V)/V₀.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Fluid {
+    pub bulk_modulus_pa: f64,
+    /// At factor 1; in a plane per thickness [m²].
+    pub inflow_m3: f64,
     pub history: History,
 }
 
@@ -277,6 +344,10 @@ pub fn loads(format: &CaseFormat, case: &Case, tolerance_m: f64, instants: &[f64
                 pressure_pa: row.pressure,
                 history: history(&known.amplitude),
             })
+            .collect(),
+        springs: format.spring.iter().map(|row| Spring::new(row, tolerance_m)).collect(),
+        cavities: (format.cavity.iter().zip(&known.cavities))
+            .map(|(row, known)| Cavity::new(row, known, tolerance_m, instants))
             .collect(),
         initial_velocities: (format.initial_velocity.iter())
             .map(|row| InitialVelocity {

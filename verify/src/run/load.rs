@@ -65,6 +65,10 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
             &format!("body_force[{index}].where")
         }
         Error::EmptyPressure { name } => &format!("pressure.{name}.where"),
+        Error::EmptySpring { name } => &format!("spring.{name}.where"),
+        Error::EmptyCavity { name }
+        | Error::OpenCavity { name, .. }
+        | Error::NoCavity { name, .. } => &format!("cavity.{name}.where"),
         Error::DependentConstraints { .. } => "discretisation.enforcement",
         Error::NoQuadraturePoints
         | Error::UncoveredNode { .. }
@@ -86,6 +90,7 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         Error::NoEquilibrium { .. } | Error::NoEquilibriumToVary | Error::NoSensitivity { .. } => {
             "time.solver"
         }
+        Error::NotUnloaded { .. } | Error::FoldedBody { .. } => "geometry",
         Error::HasRun { .. }
         | Error::Diverged { .. }
         | Error::Inverted { .. }
@@ -105,6 +110,8 @@ fn searched_elsewhere(case: &Case, error: &Error) -> String {
         Error::EmptySelection { .. }
         | Error::EmptyTraction { .. }
         | Error::EmptyPressure { .. }
+        | Error::EmptySpring { .. }
+        | Error::EmptyCavity { .. }
         | Error::EmptyBodyForce { .. }
         | Error::EmptyInitialVelocity { .. } => case.place(),
         _ => String::new(),

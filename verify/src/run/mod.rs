@@ -29,7 +29,9 @@ pub use interrupt::{interrupt, interrupted};
 pub use load::{ensure_fits, load, located};
 pub use memory::{MemoryShortage, estimated_memory, refuse_beyond_memory};
 pub use numbers::numbers;
-pub use output::{PAGE_FILE, field_at_nodes, history, last_body_frame, vtu, write_modes};
+pub use output::{
+    PAGE_FILE, field_at_nodes, history, last_body_frame, vtu, write_modes, write_unloaded,
+};
 pub use prepare::{Prepared, prepare, prepare_to_run};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Recorder, Recording, Sample};

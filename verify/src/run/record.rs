@@ -8,9 +8,11 @@ use crate::scene::{Case, ProbeKind};
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
 use mtled::error::Error;
+use mtled::model::CavityState;
 use mtled::model::contact::ContactForce;
 use mtled::model::essential::Reaction;
 use mtled::motion::energy::{Energies, Momenta};
+use mtled::motion::internal_force::point_volumes;
 use mtled::motion::observe::{Continue, Observer, View};
 
 /// Samples and frames of a run up to its last sample.
@@ -49,6 +51,12 @@ pub struct Sample {
     pub touching: usize,
     /// What each obstacle exerts on the body \[N\].
     pub contact_forces: Vec<Vector3>,
+    /// What each spring exerts on the body \[N\].
+    pub spring_forces: Vec<Vector3>,
+    /// Of each cavity of the problem.
+    pub cavities: Vec<CavityState>,
+    /// Of each region \[m³\]; nothing where they are not asked for.
+    pub region_volumes: Vec<f64>,
 }
 
 /// Nodal parameters at one instant \[m\].
@@ -120,6 +128,8 @@ pub struct Recorder<'a> {
     components: usize,
     obstacles: usize,
     moment_about: Vector3,
+    /// Of each quadrature point, where their volumes are recorded, and their number.
+    regions: Option<(Vec<u16>, usize)>,
     references: Vec<Vec<Vector3>>,
     samples: Series<Sample>,
     frames: Series<Frame>,
@@ -166,6 +176,8 @@ impl<'a> Recorder<'a> {
             components: prepared.model.components,
             obstacles: prepared.model.contact.obstacles.len(),
             moment_about: case.outputs.moment_about,
+            regions: (case.outputs.volumes)
+                .then(|| (discretisation.quadrature.regions.clone(), case.problem.regions.len())),
             references,
             samples: Series::new(case.outputs.history.max(1)),
             // Besides those at given times only the first state and the last.
@@ -197,6 +209,14 @@ impl<'a> Recorder<'a> {
         interrupted() || reported == Some(Continue::Stop)
     }
 
+    fn region_volumes(&self, view: &View) -> Vec<f64> {
+        let Some((regions, count)) = &self.regions else { return Vec::new() };
+        let mut volumes = vec![0.0; *count];
+        let points = point_volumes(view.model, &view.state.displacement);
+        regions.iter().zip(points).for_each(|(region, own)| volumes[*region as usize] += own);
+        volumes
+    }
+
     fn sample(&self, view: &View, energies: Energies) -> Sample {
         let u = &view.state.displacement;
         let displacements = self.probes.iter().map(|probe| match probe {
@@ -219,6 +239,9 @@ impl<'a> Recorder<'a> {
             smallest_jacobian: view.smallest_jacobian,
             touching: view.state.contact.touching.len(),
             contact_forces,
+            spring_forces: view.spring_forces(),
+            cavities: view.cavities(),
+            region_volumes: self.region_volumes(view),
         }
     }
 }

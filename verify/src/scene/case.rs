@@ -116,6 +116,8 @@ pub struct Outputs {
     pub history: usize,
     /// Moments of reactions are taken about this point \[m\].
     pub moment_about: Vector3,
+    /// Whether the volumes of regions are recorded.
+    pub volumes: bool,
 }
 
 impl Case {

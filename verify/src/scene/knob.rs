@@ -102,7 +102,7 @@ knobs! {
         "Tolerance of a static solution";
     Load, "load", Some("load"), [], Number,
         "Factor on everything that moves the body: prescribed displacements and angles, \
-         tractions, pressures, body forces, initial velocities; it changes the problem, not the recipe";
+         tractions, pressures, inflows, body forces, initial velocities; it changes the problem, not the recipe";
 }
 
 impl Knob {

@@ -4,10 +4,12 @@ use crate::scene::{Case, Override};
 use toml_edit::{Item, TableLike, Value};
 
 /// Lists of a case with the keys of their entries that hold such numbers.
-const LISTS: [(&str, &[&str]); 4] = [
+const LISTS: [(&str, &[&str]); 6] = [
     ("prescribe", &["displacement", "rotation.angle", "formula.factor", "data.factor"]),
     ("traction", &["traction", "formula.factor"]),
     ("pressure", &["pressure"]),
+    ("spring", &["normal", "tangential"]),
+    ("cavity", &["fluid.bulk_modulus", "fluid.inflow"]),
     ("body_force", &["acceleration", "formula.factor"]),
 ];
 /// Step of a number over itself \[–\]: what is left of curvature is a millionth.

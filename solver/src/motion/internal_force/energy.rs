@@ -79,6 +79,33 @@ pub fn projected_mean_stress(model: &Model, u: &[f64]) -> Vec<f64> {
     stresses
 }
 
+/// w J at each quadrature point at displacements `u` \[m\] \[m³\].
+pub fn point_volumes(model: &Model, u: &[f64]) -> Vec<f64> {
+    let mut volumes = vec![0.0; model.point_positions.len()];
+    with_local(|Local { u: local, .. }| {
+        for block in &model.blocks {
+            match model.components {
+                2 => block_volumes::<2>(block, u, local, &mut volumes),
+                _ => block_volumes::<3>(block, u, local, &mut volumes),
+            }
+        }
+    });
+    volumes
+}
+
+fn block_volumes<const D: usize>(
+    block: &Block,
+    u: &[f64],
+    local: &mut LocalVectors,
+    volumes: &mut [f64],
+) {
+    local.gather::<D>(&block.nodes, u);
+    for lane in block.occupied() {
+        let jacobian = deformation_gradient::<D>(block, lane, local).determinant();
+        volumes[block.point(lane)] = block.quadrature_weights[lane] * jacobian;
+    }
+}
+
 fn block_mean_stress<const D: usize>(
     block: &Block,
     u: &[f64],

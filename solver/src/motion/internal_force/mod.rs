@@ -3,7 +3,7 @@
 mod energy;
 mod forces;
 
-pub use energy::{potential_energy, projected_mean_stress, strain_energy};
+pub use energy::{point_volumes, potential_energy, projected_mean_stress, strain_energy};
 pub(crate) use forces::deformation_gradients;
 pub use forces::{
     OwnPressures, SmallestJacobian, Workspace, internal_force, internal_force_with, linearise,

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::increment::{Load, Unsolved};
-use super::linear::{Saddle, System};
+use super::linear::System;
 use super::solver::{Equilibrium, SHIFTS, Solver};
 use crate::algebra::packed::{axpy, dot};
 use crate::algebra::tensor::Matrix3;
@@ -95,14 +95,14 @@ impl<'a> Balanced<'a> {
     ) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let mut z = held;
         let begin = self.left_by(&z, forces);
-        let mut free = self.free_part(&begin);
+        let mut free = self.solver.free_part(&begin);
         let least = ROUND_OFF * self.product(&begin, &begin).sqrt();
         let first = self.product(&free, &free).sqrt().max(least);
         let mut directions: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
         while self.product(&free, &free).sqrt() > SOLVED * first && directions.len() < MOST_ROUNDS {
             let mut motion = self.solved(&free);
             let effect = self.left_by(&motion, &vec![0.0; z.len()]);
-            let mut effect = self.free_part(&effect);
+            let mut effect = self.solver.free_part(&effect);
             for (earlier, of_earlier) in &directions {
                 let part = -self.product(&effect, of_earlier);
                 axpy(&mut motion, part, earlier);
@@ -119,7 +119,7 @@ impl<'a> Balanced<'a> {
             directions.push((motion, effect));
         }
         let left = self.left_by(&z, forces);
-        let free = self.free_part(&left);
+        let free = self.solver.free_part(&left);
         let residual = self.product(&free, &free).sqrt() / first;
         if residual > UNSOLVED || residual.is_nan() && first > 0.0 {
             Err(Error::NoSensitivity { residual, limit: UNSOLVED })
@@ -152,12 +152,8 @@ impl<'a> Balanced<'a> {
     fn solved(&mut self, residual: &[f64]) -> Vec<f64> {
         let Balanced { solver, now, sliding, buffers } = self;
         let model = solver.model;
-        let own = solver.pressures.as_ref().map(|pressures| pressures.own.clone());
-        let saddle = solver.pressures.as_ref().map(|pressures| {
-            let Saddle { mut residual, patches } = pressures.saddle(model);
-            residual.fill(0.0);
-            Saddle { residual, patches }
-        });
+        let own = solver.own.patches.as_ref().map(|pressures| pressures.own.clone());
+        let saddle = solver.own.patches.as_ref().map(|pressures| pressures.saddle(model).still());
         let system = System {
             tangent: Tangent::new(model, &now.u, solver.free.t, &mut buffers.workspace)
                 .with_pressures(own),
@@ -170,16 +166,6 @@ impl<'a> Balanced<'a> {
             saddle,
         };
         solver.linear.solve(model, &mut solver.free, system, &mut || true).change
-    }
-
-    /// What is left of forces \[N\] without those that hold.
-    fn free_part(&mut self, forces: &[f64]) -> Vec<f64> {
-        let model = self.solver.model;
-        let mut free = model.accelerations(forces);
-        self.solver.free.project(&mut free);
-        let d = model.components;
-        free.iter_mut().enumerate().for_each(|(i, a)| *a *= model.inertia[i / d]);
-        free
     }
 
     /// fᵀ M⁻¹ g.

@@ -146,11 +146,11 @@ impl Solver<'_> {
         buffers: &mut Buffers,
         observer: &mut dyn Observer,
     ) -> Option<Led> {
-        let kept = (self.contacts.clone(), self.pressures.clone());
+        let kept = (self.contacts.clone(), self.own.clone());
         let led = self.led(from, motion, load, buffers, observer);
         self.guide = None;
         if led.is_none() {
-            (self.contacts, self.pressures) = kept;
+            (self.contacts, self.own) = kept;
         }
         led
     }

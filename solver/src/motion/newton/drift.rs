@@ -29,12 +29,14 @@ pub(super) fn drifts(
         return Vec::new();
     }
     let bodies = model.bodies.iter().max().map_or(0, |&last| last + 1);
-    let prescribed = prescribed(model, t);
+    let place = |(node, along): (u32, Vector3)| (node, model.positions[node as usize], along);
+    let held: Vec<_> = prescribed(model, t).into_iter().map(place).collect();
+    let held: Vec<_> = held.into_iter().chain(model.following.held()).collect();
     let mut drifts = Vec::new();
     for body in 0..bodies {
         let own = |node: u32| model.bodies[node as usize] == body;
-        let held = prescribed.iter().filter(|(node, _)| own(*node));
-        let held = held.map(|(node, along)| (model.positions[*node as usize], *along));
+        let held = held.iter().filter(|(node, ..)| own(*node));
+        let held = held.map(|(_, place, along)| (*place, *along));
         let touching = contacts.iter().filter(|row| own(row.node));
         let touching =
             touching.map(|row| (model.contact.place(row.node, &model.positions, u), row.along));

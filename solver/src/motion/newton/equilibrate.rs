@@ -3,8 +3,9 @@
 use super::active_contacts::ActiveContacts;
 use super::branch::{AHEAD, Branch};
 use super::increment::{Load, Unsolved};
-use super::pressures::{Pressures, can_be_unknowns};
 use super::solver::{Equilibrium, Solver};
+use super::unknowns::Unknowns;
+use super::unknowns::can_be_unknowns;
 use crate::algebra::packed::dot;
 use crate::error::{Error, Instability};
 use crate::model::Model;
@@ -12,7 +13,7 @@ use crate::motion::internal_force::strain_energy;
 use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::stability::Stability;
 use crate::motion::state::State;
-use crate::motion::step::{Buffers, add_pressures, external_force};
+use crate::motion::step::{Buffers, add_following, external_force};
 use crate::motion::summary::{PatchPressures, Summary};
 use crate::problem::Newton;
 
@@ -117,7 +118,7 @@ impl Loading<'_, '_> {
         let fraction = self.next_fraction();
         let load = self.load_at(fraction);
         let Loading { solver, state, buffers, observer, .. } = self;
-        let kept = (solver.contacts.clone(), solver.pressures.clone());
+        let kept = (solver.contacts.clone(), solver.own.clone());
         state.extra.act(solver.model, solver.path.time(fraction), &mut buffers.workspace);
         match solver.solve(&state.displacement, load, buffers, *observer) {
             Ok(equilibrium) => self.settle(equilibrium, load, kept),
@@ -136,18 +137,13 @@ impl Loading<'_, '_> {
 
     /// Goes on from an equilibrium, or from a stable one that it leads to; without either, from
     /// the contacts and pressures that were `kept`, with a smaller part of the load.
-    fn settle(
-        &mut self,
-        equilibrium: Equilibrium,
-        load: Load,
-        kept: (ActiveContacts, Option<Pressures>),
-    ) {
+    fn settle(&mut self, equilibrium: Equilibrium, load: Load, kept: (ActiveContacts, Unknowns)) {
         let Loading { solver, branch, buffers, observer, .. } = self;
         let equilibrium = match branch.stable(solver, equilibrium, load, buffers, *observer) {
             Ok(stable) => stable,
             Err(_) if load.fraction - self.reached > LARGEST_UNSTABLE => {
                 // Nearer to where it lost its stability it has fewer ways to go.
-                (solver.contacts, solver.pressures) = kept;
+                (solver.contacts, solver.own) = kept;
                 self.increment = 0.5 * (load.fraction - self.reached);
                 return;
             }
@@ -174,7 +170,7 @@ impl Loading<'_, '_> {
             return Ok(());
         }
         self.increment = 0.5 * (fraction - reached);
-        if self.increment < SMALLEST_WITH_PRESSURES && solver.pressures.is_some() {
+        if self.increment < SMALLEST_WITH_PRESSURES && solver.own.patches.is_some() {
             solver.give_up_pressures();
             self.increment = 1.0 - reached;
         }
@@ -227,13 +223,13 @@ impl Solver<'_> {
         self.smallest_jacobian = self.smallest_jacobian.or(imbalance.smallest_jacobian);
         let stored = strain_energy(model, &u) - strain_energy(model, &state.displacement);
         external_force(model, state.time, &mut buffers.f_ext);
-        add_pressures(model, state.time, &state.displacement, &mut buffers.f_ext);
+        add_following(model, state.time, &state.displacement, &mut buffers.f_ext);
         let before = std::mem::take(&mut state.displacement);
         let steps: Vec<f64> = u.iter().zip(&before).map(|(u, before)| u - before).collect();
         let mut external = 0.5 * dot(&buffers.f_ext, &steps);
         state.time = self.path.time(fraction);
         external_force(model, state.time, &mut buffers.f_ext);
-        add_pressures(model, state.time, &u, &mut buffers.f_ext);
+        add_following(model, state.time, &u, &mut buffers.f_ext);
         external += 0.5 * dot(&buffers.f_ext, &steps);
         state.work.external += external;
         state.work.constraint += stored - external;

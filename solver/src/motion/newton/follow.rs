@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::motion::internal_force::Workspace;
 use crate::motion::observe::{Continue, Observer, View, notify};
 use crate::motion::state::State;
-use crate::motion::step::{add_pressures, external_force};
+use crate::motion::step::{add_following, external_force};
 use crate::motion::summary::{NewtonCounts, Summary};
 use crate::problem::Newton;
 
@@ -47,7 +47,7 @@ fn acts(model: &Model, state: &State) -> bool {
     let (t, u) = (state.time, &state.displacement);
     let mut force = vec![0.0; model.size()];
     external_force(model, t, &mut force);
-    add_pressures(model, t, u, &mut force);
+    add_following(model, t, u, &mut force);
     let pulls = model.blocks.iter().filter_map(|block| block.active.as_ref());
     let pulls = pulls.map(|active| active.tension * active.amplitude.at(t));
     let mut moves = false;

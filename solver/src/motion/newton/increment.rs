@@ -1,7 +1,7 @@
 //! Newton's method at a fraction of the load.
 
+use super::correction::round_off_of_fluids;
 use super::drift::drifts;
-use super::linear::{Correction, System};
 use super::solver::{Equilibrium, SHIFTS, Solver};
 use super::taken::{Outcome, is_left};
 use crate::algebra::packed::largest;
@@ -10,7 +10,6 @@ use crate::model::contact::ContactForce;
 use crate::motion::balance::Imbalance;
 use crate::motion::observe::{Continue, Observer};
 use crate::motion::step::Buffers;
-use crate::motion::tangent::Tangent;
 
 /// Corrections in one increment of the load; more where pressures follow, and in small increments
 /// where contacts have to be found. A large one is halved instead: corrections that wander for long
@@ -135,7 +134,7 @@ impl Solver<'_> {
         buffers: &mut Buffers,
         observer: &mut dyn Observer,
     ) -> Result<Equilibrium, Unsolved> {
-        let (contacts, pressures) = (self.contacts.clone(), self.pressures.clone());
+        let (contacts, unknowns) = (self.contacts.clone(), self.own.clone());
         let fraction = load.fraction;
         let asked = largest(&self.jump(start, fraction));
         let solved = self.iterate(start, load, buffers, observer);
@@ -151,7 +150,7 @@ impl Solver<'_> {
             }
         });
         if matches!(solved, Err(Unsolved::Failed { .. })) {
-            (self.contacts, self.pressures) = (contacts, pressures);
+            (self.contacts, self.own) = (contacts, unknowns);
         }
         solved
     }
@@ -198,7 +197,7 @@ impl Solver<'_> {
         self.see_pressures(buffers);
         self.shift = if self.floating { self.first_shift(&imbalance) } else { 0.0 };
         let finds_contacts = !self.model.contact.obstacles.is_empty() && load.part <= LARGE;
-        let most = match self.pressures {
+        let most = match self.own.patches {
             _ if finds_contacts => MOST_ITERATIONS_IN_CONTACT,
             Some(_) => MOST_ITERATIONS_WITH_PRESSURES,
             None => MOST_ITERATIONS,
@@ -231,7 +230,8 @@ impl Solver<'_> {
         let (progress, count) = (progress(residual, tolerance), self.counts.iterations);
         let mut go_on = || observer.iterate(fraction * progress, count) == Continue::Yes;
         let Course { now, forcing, indefinite, .. } = &*course;
-        let correction = self.correction(now, change, *forcing, *indefinite, buffers, &mut go_on);
+        let correction =
+            self.correction((now, fraction), change, *forcing, *indefinite, buffers, &mut go_on);
         if correction.stopped {
             return Advance::Stopped;
         }
@@ -273,6 +273,7 @@ impl Solver<'_> {
         let model = self.model;
         let of_length = ROUND_OFF * largest(&now.u) + ROUND_OFF_AT_REST * model.mean_spacing;
         let round_off = f64::EPSILON * largest(&model.stiffness) * of_length;
+        let round_off = round_off + ROUND_OFF * round_off_of_fluids(model, &now.u);
         now.exact().relative(model) <= tolerance || now.exact().largest(model) <= round_off
     }
 
@@ -309,7 +310,7 @@ impl Solver<'_> {
     }
 
     /// What the closed contacts exert.
-    fn contact_forces(&mut self, imbalance: &Imbalance) -> Vec<ContactForce> {
+    pub(super) fn contact_forces(&mut self, imbalance: &Imbalance) -> Vec<ContactForce> {
         let multipliers = self.contact_multipliers(imbalance);
         self.contacts.forces(&self.free.contacts, &multipliers)
     }
@@ -346,31 +347,6 @@ impl Solver<'_> {
         let stiffness: f64 = self.linear.diagonal().iter().sum();
         let shift = resultant / (stiffness * FIRST_MOVE * model.contact.mean_spacing);
         shift.clamp(SHIFTS.0, SHIFTS.1)
-    }
-
-    fn correction(
-        &mut self,
-        now: &Equilibrium,
-        change: Vec<f64>,
-        forcing: f64,
-        only_resisting: bool,
-        buffers: &mut Buffers,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Correction {
-        let model = self.model;
-        let forces = self.contact_forces(&now.imbalance);
-        let sliding = self.contacts.sliding_stiffness(model, &now.u, &forces, only_resisting);
-        let tangent = Tangent::new(model, &now.u, self.free.t, &mut buffers.workspace)
-            .with_pressures(self.pressures.as_ref().map(|pressures| pressures.own.clone()));
-        let saddle = self.pressures.as_ref().map(|pressures| pressures.saddle(model));
-        let residual = now.imbalance.free(model);
-        let (shift, guide) = (self.shift, self.guide.as_ref());
-        let system = System { tangent, residual, change, forcing, sliding, shift, guide, saddle };
-        let correction = self.linear.solve(model, &mut self.free, system, go_on);
-        self.counts.iterations += 1;
-        self.counts.products += correction.products;
-        self.counts.evaluations += correction.products;
-        correction
     }
 }
 

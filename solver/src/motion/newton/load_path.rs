@@ -13,12 +13,15 @@ pub(super) struct Path {
     pub gap: Vec<f64>,
     /// f_ext − f_int at the start \[N\].
     pub force: Vec<f64>,
+    /// By how much the pressures of volumes exceed those that balance best at the start
+    /// \[cavity\] \[Pa\].
+    pub excess: Vec<f64>,
 }
 
 impl Path {
     /// From the state at time `start` to the load of time `end` \[s\].
     pub fn new(start: f64, end: f64, size: usize) -> Path {
-        Path { start, end, gap: vec![0.0; size], force: vec![0.0; size] }
+        Path { start, end, gap: vec![0.0; size], force: vec![0.0; size], excess: Vec::new() }
     }
 
     pub fn time(&self, fraction: f64) -> f64 {

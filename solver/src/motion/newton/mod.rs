@@ -3,6 +3,7 @@
 mod active_contacts;
 mod adjoint;
 mod branch;
+mod correction;
 mod drift;
 mod equilibrate;
 mod follow;
@@ -11,9 +12,9 @@ mod increment;
 mod inf_sup;
 mod linear;
 mod load_path;
-mod pressures;
 mod solver;
 mod taken;
+mod unknowns;
 mod vibration;
 
 pub(crate) use adjoint::Balanced;

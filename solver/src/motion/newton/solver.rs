@@ -4,8 +4,10 @@ use super::active_contacts::ActiveContacts;
 use super::free_space::FreeSpace;
 use super::linear::{Guide, Solver as LinearSolver};
 use super::load_path::Path;
-use super::pressures::{Pressures, are_unknowns, most};
+use super::unknowns::Unknowns;
+use super::unknowns::{Pressures, are_unknowns, most};
 use crate::model::Model;
+use crate::model::following::OwnFluid;
 use crate::model::rigid_motions::rigid_motions_left_to_contact;
 use crate::motion::balance::Imbalance;
 use crate::motion::internal_force::{OwnPressures, SmallestJacobian};
@@ -29,8 +31,8 @@ pub(super) struct Solver<'a> {
     pub(super) floating: bool,
     /// Part of the diagonal that is added to K \[–\].
     pub(super) shift: f64,
-    /// Of the patches, where they are unknowns beside the displacements.
-    pub(super) pressures: Option<Pressures>,
+    /// Unknowns beside the displacements.
+    pub(super) own: Unknowns,
     /// Of a body that is led away from an equilibrium.
     pub(super) guide: Option<Guide>,
 }
@@ -71,12 +73,13 @@ impl<'a> Solver<'a> {
             contacts: ActiveContacts::default(),
             floating: !model.contact.obstacles.is_empty() && !held(),
             shift: 0.0,
-            pressures: None,
+            own: Unknowns { patches: None, fluids: None },
             guide: None,
         };
         // Before anything fades: the conditions and forces at the start.
         let forces = &mut solver.free.forces;
         solver.path.gap = solver.path.jump(model, 0.0, &state.displacement, forces);
+        solver.free_fluids(&state.displacement, buffers);
         let imbalance = solver.imbalance(&state.displacement, 0.0, buffers);
         solver.path.force = imbalance.force;
         solver.smallest_jacobian = imbalance.smallest_jacobian;
@@ -93,18 +96,19 @@ impl<'a> Solver<'a> {
         fraction: f64,
         buffers: &mut Buffers,
     ) -> Imbalance {
-        let pressures = self.pressures.take();
-        let own = pressures.as_ref().map(|pressures| &pressures.own);
+        let unknowns = self.own.take();
+        let patches = unknowns.patches.as_ref().map(|pressures| &pressures.own);
+        let own = (patches, unknowns.fluids.as_deref());
         let imbalance = self.imbalance_with(u, own, fraction, buffers);
-        self.pressures = pressures;
+        self.own = unknowns;
         imbalance
     }
 
-    /// With pressures of patches, or with those that J gives.
+    /// With pressures of patches and fluids, or with those that J and volumes give.
     pub(super) fn imbalance_with(
         &mut self,
         u: &[f64],
-        own: Option<&OwnPressures>,
+        (patches, fluids): (Option<&OwnPressures>, Option<&[OwnFluid]>),
         fraction: f64,
         buffers: &mut Buffers,
     ) -> Imbalance {
@@ -114,7 +118,8 @@ impl<'a> Solver<'a> {
             guide.add_force(u, &mut buffers.f_ext);
         }
         let (t, forces) = (self.path.time(fraction), &mut self.free.forces);
-        let mut imbalance = Imbalance::with_pressures(self.model, (u, own), t, buffers, forces);
+        let unknowns = (u, patches, fluids);
+        let mut imbalance = Imbalance::with_pressures(self.model, unknowns, t, buffers, forces);
         self.free.project_contacts(&mut imbalance.acceleration);
         imbalance
     }
@@ -130,13 +135,13 @@ impl Solver<'_> {
 
     /// The pressures become those of displacements `u` \[m\].
     pub(super) fn take_pressures_of(&mut self, u: &[f64], fraction: f64, buffers: &mut Buffers) {
-        self.imbalance_with(u, None, fraction, buffers);
-        self.pressures = Some(Pressures::of_j(self.model, &buffers.workspace));
+        self.imbalance_with(u, (None, None), fraction, buffers);
+        self.own.patches = Some(Pressures::of_j(self.model, &buffers.workspace));
     }
 
     /// Leaves the pressures to the displacements again, for good.
     pub(super) fn give_up_pressures(&mut self) {
-        self.pressures = None;
+        self.own.patches = None;
         self.counts.pressures = PatchPressures::GivenUp;
         self.linear = LinearSolver::new(self.model, most(false));
     }
@@ -148,17 +153,19 @@ impl Solver<'_> {
         fraction: f64,
         buffers: &mut Buffers,
     ) -> Equilibrium {
-        if self.pressures.is_none() {
+        if self.own.patches.is_none() && self.own.fluids.is_none() {
             return next;
         }
-        let exact = Some(self.imbalance_with(&next.u, None, fraction, buffers));
+        let fluids = self.exact_fluids(&next.u, fraction);
+        let own = (None, fluids.as_deref());
+        let exact = Some(self.imbalance_with(&next.u, own, fraction, buffers));
         self.see_pressures(buffers);
         Equilibrium { exact, ..next }
     }
 
     /// Takes notice of what the displacements of the last evaluation make of the patches.
     pub(super) fn see_pressures(&mut self, buffers: &Buffers) {
-        if let Some(pressures) = &mut self.pressures {
+        if let Some(pressures) = &mut self.own.patches {
             pressures.see(self.model, &buffers.workspace);
         }
     }

@@ -1,8 +1,8 @@
 //! How much of a correction is taken, and what it leaves of the jump of prescribed values.
 
 use super::linear::Correction;
-use super::pressures::Pressures;
 use super::solver::{Equilibrium, SHIFTS, Solver};
+use super::unknowns::Unknowns;
 use crate::algebra::packed::{dot, largest};
 use crate::motion::step::Buffers;
 
@@ -74,10 +74,10 @@ impl Solver<'_> {
         buffers: &mut Buffers,
     ) -> Outcome {
         let safe = self.contacts.safe_part(self.model, &now.u, &correction.change);
-        let from = self.pressures.clone();
+        let from = self.own.clone();
         let outcome = self.tried(now, (correction, safe, &from), fraction, searched, buffers);
         if !matches!(outcome, Outcome::Taken(..)) {
-            self.pressures = from;
+            self.own = from;
         }
         outcome
     }
@@ -85,7 +85,7 @@ impl Solver<'_> {
     fn tried(
         &mut self,
         now: &Equilibrium,
-        (correction, safe, from): (&Correction, f64, &Option<Pressures>),
+        (correction, safe, from): (&Correction, f64, &Unknowns),
         fraction: f64,
         searched: bool,
         buffers: &mut Buffers,
@@ -105,7 +105,7 @@ impl Solver<'_> {
         }
         let smallest = now.imbalance.smallest_jacobian.jacobian.min(1.0);
         // Of a jump without contact the rest can follow.
-        let (halvings, volume) = if from.is_some() && model.contact.obstacles.is_empty() {
+        let (halvings, volume) = if from.patches.is_some() && model.contact.obstacles.is_empty() {
             (MOST_HALVINGS, SMALLEST_VOLUME_IN_JUMP)
         } else {
             (0, SMALLEST_VOLUME)
@@ -127,7 +127,7 @@ impl Solver<'_> {
     fn search(
         &mut self,
         now: &Equilibrium,
-        (correction, safe, from): (&Correction, f64, &Option<Pressures>),
+        (correction, safe, from): (&Correction, f64, &Unknowns),
         fraction: f64,
         buffers: &mut Buffers,
     ) -> Option<Equilibrium> {
@@ -154,10 +154,8 @@ impl Solver<'_> {
 
 impl Solver<'_> {
     /// The pressures become those before a correction and a part of it.
-    fn move_pressures(&mut self, from: &Option<Pressures>, part: f64, correction: &Correction) {
-        if let (Some(now), Some(from)) = (&mut self.pressures, from) {
-            now.own = from.moved(self.model, part, &correction.pressures);
-        }
+    fn move_pressures(&mut self, from: &Unknowns, part: f64, correction: &Correction) {
+        self.own = from.moved(self.model, part, correction);
     }
 }
 

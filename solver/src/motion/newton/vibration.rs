@@ -2,9 +2,9 @@
 #![allow(non_snake_case)]
 
 use super::free_space::FreeSpace;
-use super::linear::{Saddle, Solver, System};
-use super::pressures::{Pressures, are_unknowns, most};
+use super::linear::{Solver, System};
 use super::solver::SHIFTS;
+use super::unknowns::{Pressures, are_unknowns, most};
 use crate::algebra::lowest_modes::Operators;
 use crate::algebra::packed::{make_orthogonal, overlap};
 use crate::algebra::tensor::Vector3;
@@ -140,11 +140,7 @@ impl Operators for Vibration<'_> {
         let shift = if self.rigid_motions() == 0 { 0.0 } else { SHIFTS.0 };
         let Vibration { model, rest, workspace, linear, free, pressures, go_on, .. } = self;
         let own = pressures.as_ref().map(|pressures| pressures.own.clone());
-        let saddle = pressures.as_ref().map(|pressures| {
-            let Saddle { mut residual, patches } = pressures.saddle(model);
-            residual.fill(0.0);
-            Saddle { residual, patches }
-        });
+        let saddle = pressures.as_ref().map(|pressures| pressures.saddle(model).still());
         let system = System {
             tangent: Tangent::new(model, rest, 0.0, workspace).with_pressures(own),
             residual: residual.to_vec(),

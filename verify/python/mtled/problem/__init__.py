@@ -7,8 +7,10 @@ every key; the names of laws, clouds and solvers are those of the case file.
 
 from .conditions import (
     BodyForce,
+    Cavity,
     Data,
     Displacement,
+    Fluid,
     Formula,
     InitialVelocity,
     Linear,
@@ -18,6 +20,7 @@ from .conditions import (
     RigidMotion,
     Rotation,
     Smooth,
+    Spring,
     Table,
     Traction,
 )
@@ -60,6 +63,7 @@ __all__ = [
     "ActiveStress",
     "BodyForce",
     "Box",
+    "Cavity",
     "Cylinder",
     "Data",
     "Difference",
@@ -69,6 +73,7 @@ __all__ = [
     "Dynamic",
     "Ellipsoid",
     "Facing",
+    "Fluid",
     "Formula",
     "Grid",
     "HalfSpace",
@@ -101,6 +106,7 @@ __all__ = [
     "Rotation",
     "Smooth",
     "Sphere",
+    "Spring",
     "Static",
     "Stl",
     "Table",

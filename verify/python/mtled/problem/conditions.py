@@ -120,6 +120,35 @@ class Pressure:
 
 
 @dataclass
+class Spring:
+    """Springs between each point of a surface and where it was, per reference area."""
+
+    name: str
+    where: Any
+    normal_pa_per_m: float | None = None
+    tangential_pa_per_m: float | None = None
+
+
+@dataclass
+class Fluid:
+    """A fluid that fills a cavity; that of water if the bulk modulus is ``None``."""
+
+    inflow_m3: float | None = None
+    bulk_modulus_pa: float | None = None
+    amplitude: Any = None
+
+
+@dataclass
+class Cavity:
+    """A surface that encloses a volume, and what fills it."""
+
+    name: str
+    where: Any
+    opening_m: Triple | None = None
+    fluid: Fluid | None = None
+
+
+@dataclass
 class InitialVelocity:
     """A velocity at t = 0."""
 

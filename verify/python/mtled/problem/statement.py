@@ -7,7 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..case import Case
-from .conditions import BodyForce, InitialVelocity, Obstacle, Prescribe, Pressure, Traction
+from .conditions import (
+    BodyForce,
+    Cavity,
+    InitialVelocity,
+    Obstacle,
+    Prescribe,
+    Pressure,
+    Spring,
+    Traction,
+)
 from .kinds import Path
 from .recipe import Material, Recipe, Region
 from .shapes import Distance
@@ -29,6 +38,8 @@ class Problem:
     body_force: Sequence[BodyForce] = ()
     traction: Sequence[Traction] = ()
     pressure: Sequence[Pressure] = ()
+    spring: Sequence[Spring] = ()
+    cavity: Sequence[Cavity] = ()
     initial_velocity: Sequence[InitialVelocity] = ()
     obstacle: Sequence[Obstacle] = ()
     probe: Sequence[Probe] = ()

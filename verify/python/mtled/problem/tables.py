@@ -10,7 +10,7 @@ from .conditions import Data, Displacement, Formula, Prescribe, RigidMotion, Rot
 from .shapes import Difference, InShape, Intersection, Not, Union
 
 #: Units at the ends of names.
-UNITS = ("_kg_m3", "_m_s2", "_per_s", "_m_s", "_pa", "_rad", "_m", "_s")
+UNITS = ("_kg_m3", "_m_s2", "_pa_per_m", "_per_s", "_m_s", "_m3", "_pa", "_rad", "_m", "_s")
 
 _MOTIONS = {Displacement: "displacement", Rotation: "rotation", Formula: "formula", Data: "data"}
 

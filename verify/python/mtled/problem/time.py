@@ -82,3 +82,4 @@ class Output:
     states_s: Sequence[float] | None = None
     history: int | None = None
     moment_about_m: Triple | None = None
+    volumes: bool | None = None

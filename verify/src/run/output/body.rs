@@ -14,6 +14,7 @@ use mtled::discretisation::Rows;
 use mtled::discretisation::mls::{Approximation, Support};
 use mtled::problem::{Dimension, Fibres, Problem};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 const PURPOSE: &str = "A mesh to look at, cut from a lattice by the boundary of the body; the solver \
                        has no mesh and computes on the nodes alone.";
@@ -132,6 +133,31 @@ impl BodyFrames {
         let data = vec![PointArray::new("region", 1, regions).stored(Stored::Integer)];
         let cells = VtuCells { corners: mesh.corners, points: &mesh.cells, data, purpose: PURPOSE };
         VtuFrame { numbers: Vec::new(), points: &self.points, cells: Some(cells), point_data }
+    }
+
+    /// Moves its vertices by offsets \[component of node\] \[m\].
+    pub fn move_by(&mut self, offsets: &[f64], components: usize) {
+        let moves = vectors(&self.rows, offsets, components);
+        for (point, own) in self.points.iter_mut().zip(moves.as_chunks::<3>().0) {
+            point.iter_mut().zip(own).for_each(|(x, w)| *x += w);
+        }
+    }
+
+    /// Its surface in space: vertices \[m\] and triangles, anticlockwise seen from outside.
+    pub fn surface(&self) -> (Vec<Vector3>, Vec<[u32; 3]>) {
+        let sides = self.display.mesh.boundary();
+        let triangles: Vec<[u32; 3]> =
+            sides.iter().filter_map(|(side, _)| side[..].try_into().ok()).collect();
+        let mut numbers: HashMap<u32, u32> = HashMap::new();
+        let mut vertices = Vec::new();
+        let mut number = |vertex: u32| {
+            *numbers.entry(vertex).or_insert_with(|| {
+                vertices.push(Vector3::from(self.points[vertex as usize]));
+                vertices.len() as u32 - 1
+            })
+        };
+        let triangles = triangles.into_iter().map(|corners| corners.map(&mut number)).collect();
+        (vertices, triangles)
     }
 
     /// A frame as what pictures are drawn from.

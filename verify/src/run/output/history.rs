@@ -34,13 +34,7 @@ pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) 
     for &probe in &single {
         header.extend(axes.map(|axis| format!("{}.u{axis}_m", case.probes[probe].name)));
     }
-    for condition in &case.problem.conditions {
-        header.extend(axes.map(|axis| format!("{}.f{axis}_n", condition.name)));
-        header.extend(axes.map(|axis| format!("{}.m{axis}_n_m", condition.name)));
-    }
-    for obstacle in &case.problem.obstacles {
-        header.extend(axes.map(|axis| format!("{}.contact_f{axis}_n", obstacle.name)));
-    }
+    header.extend(of_loads(case));
     let row = |sample: &Sample| {
         let e = &sample.energies;
         let mut row =
@@ -61,10 +55,38 @@ pub fn history(case: &Case, record: &Recording) -> (Vec<String>, Vec<Vec<f64>>) 
         for reaction in &sample.reactions {
             row.extend(reaction.force.iter().chain(reaction.moment.iter()));
         }
-        row.extend(sample.contact_forces.iter().flatten());
+        row.extend(sample.contact_forces.iter().chain(&sample.spring_forces).flatten());
+        row.extend(sample.cavities.iter().flat_map(|cavity| [cavity.volume, cavity.pressure]));
+        row.extend(&sample.region_volumes);
         row
     };
     (header, record.samples.iter().map(row).collect())
+}
+
+/// Names of the columns of conditions, obstacles, springs, cavities and regions.
+fn of_loads(case: &Case) -> Vec<String> {
+    let axes = ["x", "y", "z"];
+    let mut header = Vec::new();
+    for condition in &case.problem.conditions {
+        header.extend(axes.map(|axis| format!("{}.f{axis}_n", condition.name)));
+        header.extend(axes.map(|axis| format!("{}.m{axis}_n_m", condition.name)));
+    }
+    for obstacle in &case.problem.obstacles {
+        header.extend(axes.map(|axis| format!("{}.contact_f{axis}_n", obstacle.name)));
+    }
+    let loads = &case.problem.loads;
+    for spring in &loads.springs {
+        header.extend(axes.map(|axis| format!("{}.f{axis}_n", spring.name)));
+    }
+    let volume = if case.problem.dimension.components() == 2 { "volume_m2" } else { "volume_m3" };
+    for cavity in &loads.cavities {
+        header.extend([volume, "pressure_pa"].map(|what| format!("{}.{what}", cavity.name)));
+    }
+    if case.outputs.volumes {
+        header
+            .extend(case.problem.regions.iter().map(|region| format!("{}.volume_m3", region.name)));
+    }
+    header
 }
 
 /// [`history`] as CSV.

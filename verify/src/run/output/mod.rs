@@ -7,6 +7,7 @@ mod frames;
 mod history;
 mod modes;
 mod node_fields;
+mod unloaded;
 pub mod vtu;
 
 use super::error_bar::Indicator;
@@ -27,6 +28,7 @@ pub use frames::{body_at_end, last_body_frame};
 pub use history::history;
 pub use modes::write_modes;
 pub use node_fields::field_at_nodes;
+pub use unloaded::write_unloaded;
 
 use frames::write_frames;
 use history::history_csv;

@@ -3,14 +3,14 @@
 use crate::scene::build::builder::Builder;
 use crate::scene::build::field::near;
 use crate::scene::format::{
-    AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, FormulaFormat, ObstacleFormat,
-    PrescribeFormat, RigidMotionFormat, RotationFormat, Triple,
+    AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, FluidFormat, FormulaFormat,
+    ObstacleFormat, PrescribeFormat, RigidMotionFormat, RotationFormat, Triple,
 };
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Field, Selector};
 use mtled::problem::{
-    Amplitude, BodyForce, EssentialCondition, Friction, Loads, Obstacle, Prescribed, Pressure,
-    RigidMotion, RigidWay, Traction,
+    Amplitude, BodyForce, Cavity, EssentialCondition, Fluid, Friction, Loads, Obstacle, Prescribed,
+    Pressure, RigidMotion, RigidWay, Spring, Traction,
 };
 
 impl Builder<'_> {
@@ -138,6 +138,8 @@ impl Builder<'_> {
             let (name, pressure) = (row.name.clone(), row.pressure);
             loads.pressures.extend(part.map(|part| Pressure { name, part, pressure, amplitude }));
         }
+        self.springs(format, &mut loads);
+        self.cavities(format, &mut loads);
         for (n, row) in format.initial_velocity.iter().enumerate() {
             let key = format!("initial_velocity[{n}]");
             let part = self.selector(&format!("{key}.where"), &row.part);
@@ -145,6 +147,35 @@ impl Builder<'_> {
             loads.initial_velocities.extend(part.zip(velocity));
         }
         loads
+    }
+
+    fn springs(&mut self, format: &CaseFormat, loads: &mut Loads) {
+        for (n, row) in format.spring.iter().enumerate() {
+            let key = format!("spring[{n}]");
+            let part = self.selector(&format!("{key}.where"), &row.part);
+            let (name, normal, tangential) = (row.name.clone(), row.normal, row.tangential);
+            let spring = part.map(|part| Spring { name, part, normal, tangential });
+            let mistakes = spring.as_ref().map_or(Vec::new(), Spring::check);
+            self.refused(mistakes, |field| format!("{key}.{field}"));
+            loads.springs.extend(spring);
+        }
+    }
+
+    fn cavities(&mut self, format: &CaseFormat, loads: &mut Loads) {
+        for (n, row) in format.cavity.iter().enumerate() {
+            let key = format!("cavity[{n}]");
+            let part = self.selector(&format!("{key}.where"), &row.part);
+            let fluid = row.fluid.as_ref().map(|row| self.fluid(&format!("{key}.fluid"), row));
+            let (name, opening) = (row.name.clone(), row.opening.map(Vector3::from));
+            loads.cavities.extend(part.map(|part| Cavity { name, part, opening, fluid }));
+        }
+    }
+
+    fn fluid(&mut self, key: &str, row: &FluidFormat) -> Fluid {
+        let amplitude = self.amplitude(&format!("{key}.amplitude"), &row.amplitude);
+        let fluid = Fluid { bulk_modulus: row.bulk_modulus, inflow: row.inflow, amplitude };
+        self.refused(fluid.check(), |field| format!("{key}.{field}"));
+        fluid
     }
 
     /// A vector that is uniform, under the key `name`, or a formula.

@@ -133,6 +133,8 @@ impl Builder<'_> {
         let conditions = named("prescribe", &format.prescribe, |row| &row.name)
             .chain(named("traction", &format.traction, |row| &row.name))
             .chain(named("pressure", &format.pressure, |row| &row.name))
+            .chain(named("spring", &format.spring, |row| &row.name))
+            .chain(named("cavity", &format.cavity, |row| &row.name))
             .chain(named("obstacle", &format.obstacle, |row| &row.name));
         self.unique_names(conditions);
     }

@@ -271,6 +271,7 @@ impl Builder<'_> {
             states,
             history: format.history.unwrap_or(200),
             moment_about: Vector3::from(format.moment_about.unwrap_or_default()),
+            volumes: format.volumes,
         };
         self.at_least_one("output.history", outputs.history);
         self.at_most("output.history", "samples", outputs.history as f64, MOST_SAMPLES);

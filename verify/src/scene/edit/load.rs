@@ -3,8 +3,8 @@
 use crate::scene::edit::values::{replace, rounded, scale};
 use toml_edit::{DocumentMut, Item, Value};
 
-/// Multiplies prescribed displacements and angles, tractions, pressures, body forces and
-/// initial velocities.
+/// Multiplies prescribed displacements and angles, tractions, pressures, inflows, body forces
+/// and initial velocities.
 pub fn scale_loads(document: &mut DocumentMut, factor: f64) {
     let numbers = [
         ("prescribe", "displacement", &["x", "y", "z"][..]),
@@ -31,6 +31,11 @@ pub fn scale_loads(document: &mut DocumentMut, factor: f64) {
     }
     for row in rows(document, "pressure") {
         scale(row, "pressure", factor);
+    }
+    for row in rows(document, "cavity") {
+        if let Some(fluid) = row.get_mut("fluid").and_then(Item::as_table_like_mut) {
+            scale(fluid, "inflow", factor);
+        }
     }
     let triples = [
         ("traction", "traction"),

@@ -2,8 +2,8 @@
 
 use crate::scene::format::choice::choice;
 use crate::scene::format::conditions::{
-    BodyForceFormat, InitialVelocityFormat, ObstacleFormat, PrescribeFormat, PressureFormat,
-    TractionFormat,
+    BodyForceFormat, CavityFormat, InitialVelocityFormat, ObstacleFormat, PrescribeFormat,
+    PressureFormat, SpringFormat, TractionFormat,
 };
 use crate::scene::format::geometry::{SelectorFormat, ShapeFormat};
 use crate::scene::format::material::MaterialFormat;
@@ -51,6 +51,12 @@ pub struct CaseFormat {
     /// Pressures that follow the deformed surface; none if left out.
     #[serde(default)]
     pub pressure: Vec<PressureFormat>,
+    /// Elastic beds of parts of the boundary; none if left out.
+    #[serde(default)]
+    pub spring: Vec<SpringFormat>,
+    /// Cavities whose volume is recorded, and the fluids that fill them; none if left out.
+    #[serde(default)]
+    pub cavity: Vec<CavityFormat>,
     /// Velocities at t = 0; the first part that contains a node counts; zero if left out.
     #[serde(default)]
     pub initial_velocity: Vec<InitialVelocityFormat>,

@@ -206,6 +206,60 @@ pub struct PressureFormat {
     pub amplitude: AmplitudeFormat,
 }
 
+/// Springs all over a part of the boundary, between each point and where it was: an elastic bed,
+/// such as the tissue around an organ. One of the two stiffnesses is above 0.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpringFormat {
+    /// Its name in results.
+    pub name: String,
+    #[serde(rename = "where")]
+    pub part: SelectorFormat,
+    /// Force per reference area and displacement along the normal at rest [Pa/m].
+    #[serde(default)]
+    pub normal: f64,
+    /// The same along the surface [Pa/m].
+    #[serde(default)]
+    pub tangential: f64,
+}
+
+/// A part of the boundary that encloses a volume, which is recorded, and what fills it.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CavityFormat {
+    /// Its name in results.
+    pub name: String,
+    /// All of its surface, or all of it but an opening.
+    #[serde(rename = "where")]
+    pub part: SelectorFormat,
+    /// A point of the plane of its opening [m], in which the rim stays, or of all the planes of
+    /// symmetry that cut it; left out where the surface is closed.
+    pub opening: Option<Triple>,
+    /// A fluid that fills it; left out where its volume is only recorded.
+    pub fluid: Option<FluidFormat>,
+}
+
+/// A fluid whose pressure is its bulk modulus times the part by which it is compressed. With an inflow
+/// a volume is prescribed, and the pressure is the answer.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FluidFormat {
+    /// Bulk modulus [Pa]; 2.18e9, that of water, if left out. A motion takes steps that are the
+    /// smaller the larger it is.
+    #[serde(default = "water")]
+    pub bulk_modulus: f64,
+    /// Volume that is added [m³], in a plane per thickness [m²]; negative where it is drawn off, none if
+    /// left out.
+    #[serde(default)]
+    pub inflow: f64,
+    #[serde(default)]
+    pub amplitude: AmplitudeFormat,
+}
+
+fn water() -> f64 {
+    mtled::problem::Fluid::WATER
+}
+
 /// A velocity at t = 0.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -12,8 +12,9 @@ mod time;
 
 pub use case::{CaseFormat, DimensionFormat};
 pub use conditions::{
-    AmplitudeFormat, BeyondFormat, DataFormat, DisplacementFormat, ExtentFormat, FormulaFormat,
-    FrictionFormat, ObstacleFormat, PrescribeFormat, RigidMotionFormat, RotationFormat, SideFormat,
+    AmplitudeFormat, BeyondFormat, CavityFormat, DataFormat, DisplacementFormat, ExtentFormat,
+    FluidFormat, FormulaFormat, FrictionFormat, ObstacleFormat, PrescribeFormat, RigidMotionFormat,
+    RotationFormat, SideFormat, SpringFormat,
 };
 pub use fibres::DirectionFormat;
 pub use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};

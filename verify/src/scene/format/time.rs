@@ -127,4 +127,7 @@ pub struct OutputFormat {
     pub history: Option<usize>,
     /// Moments of reactions are taken about this point [m]; the origin if left out.
     pub moment_about: Option<Triple>,
+    /// Whether histories have the volume of each region too.
+    #[serde(default)]
+    pub volumes: bool,
 }

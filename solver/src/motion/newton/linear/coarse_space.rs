@@ -6,6 +6,7 @@ use crate::algebra::sparse::{Combine, Padded, Sparse, pad, unpad};
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::spline_lattice::Lattice;
 use crate::algebra::tensor::Vector3;
+use crate::model::following::directions;
 use crate::model::{Block, Chunk, Model, ModuliAtRest, stiffness_diagonal};
 use std::collections::BTreeMap;
 
@@ -20,11 +21,11 @@ pub(super) struct Stiffness {
 impl Stiffness {
     pub fn new(model: &Model, most: f64) -> Stiffness {
         let (d, nodes) = (model.components, model.positions.len());
-        let diagonal = if most.is_finite() {
-            stiffness_diagonal(&model.blocks, d, nodes, most)
-        } else {
-            model.stiffness.clone()
-        };
+        if most.is_infinite() {
+            return Stiffness { diagonal: model.stiffness.clone(), most };
+        }
+        let mut diagonal = stiffness_diagonal(&model.blocks, d, nodes, most);
+        model.following.add_to_diagonal(d, &mut diagonal);
         Stiffness { diagonal, most }
     }
 }
@@ -82,6 +83,7 @@ impl CoarseSpace {
         let mut free = CoarseMatrix::new(count, d);
         (0..model.positions.len()).for_each(|node| free.reserve(row_of(&values, node).0));
         functions.add_stiffness(model, at_rest.most, &mut free);
+        add_springs(model, &values, &mut free);
         add_to_nodes(&at_rest.diagonal, &values, FLOOR, &mut free);
         stiffen_tails(&at_rest.diagonal, &values, &mut free);
         CoarseSpace {
@@ -130,6 +132,16 @@ fn add_to_nodes(diagonal: &[f64], values: &Sparse, part: f64, matrix: &mut Coars
         let (columns, values) = row_of(values, node);
         for (&i, &value) in columns.iter().zip(values) {
             matrix.add_to_diagonal(i, part * stiffness * f64::from(value));
+        }
+    }
+}
+
+/// Adds the springs of the surface, lumped to nodes.
+fn add_springs(model: &Model, values: &Sparse, matrix: &mut CoarseMatrix) {
+    for (node, springs) in model.following.lumped_springs() {
+        let (columns, values) = row_of(values, node as usize);
+        for (along, stiffness) in directions(&springs) {
+            matrix.add_spring(columns, values, &along, stiffness);
         }
     }
 }

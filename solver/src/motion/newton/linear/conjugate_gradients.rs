@@ -39,12 +39,14 @@ pub(crate) struct Solver {
 }
 
 impl Solver {
-    /// For tangents whose projected bulk moduli are at most `most` shear moduli; where that is
-    /// a bound, the diagonal alone never serves.
+    /// For tangents whose projected bulk moduli are at most `most` shear moduli. Where that is a
+    /// bound the preconditioner is made at once, but in a plane and for few nodes: measured on a pipe
+    /// of ν = 0.4995 in plane strain, 100 to 190 products a correction by the diagonal alone, and
+    /// more than 1000 with it.
     pub fn new(model: &Model, most: f64) -> Solver {
         let at_rest = Stiffness::new(model, most);
         let nodes = if model.components == 3 { model.positions.len() } else { 0 };
-        let at_once = nodes > FEW_NODES || most.is_finite();
+        let at_once = nodes > FEW_NODES || (most.is_finite() && nodes >= LEAST_NODES);
         let preconditioner = at_once.then(|| Preconditioner::new(model, &at_rest)).flatten();
         let few = !at_once && (LEAST_NODES..=FEW_NODES).contains(&nodes);
         Solver {
@@ -156,7 +158,7 @@ impl Solver {
         // Each takes more than the one before; what was not due with the first is due late.
         self.until = self.until.map(|left| if self.corrected { left } else { OF_ALL });
         self.corrected = true;
-        Correction { change, pressures: Vec::new(), indefinite, products, stopped }
+        Correction { change, indefinite, products, stopped, ..Correction::default() }
     }
 
     /// What a change \[m\] that is made at once leaves of the residual \[N\], and the products that

@@ -56,7 +56,14 @@ impl Solver {
         let step: Vec<f64> = solution.iter().zip(&start).map(|(a, b)| a - b).collect();
         let curvature = curvature(size, &step, &right, &patches);
         let pressures = solution.split_off(size);
-        Correction { change: solution, pressures, indefinite: curvature < 0.0, products, stopped }
+        Correction {
+            change: solution,
+            pressures,
+            fluids: Vec::new(),
+            indefinite: curvature < 0.0,
+            products,
+            stopped,
+        }
     }
 
     /// Of displacements and pressures; what is held leaves `residual`.

@@ -6,11 +6,14 @@ use crate::model::Model;
 use crate::motion::tangent::Tangent;
 
 /// Approximate solution of (K + shift D) Δu = r.
+#[derive(Default)]
 pub(crate) struct Correction {
     pub change: Vec<f64>,
     /// Change of the pressures of patches less what J gives at once \[Pa·m^(3/2)\]; none where they
     /// are not unknowns.
     pub pressures: Vec<f64>,
+    /// Change of the pressures of fluids \[cavity\] \[Pa\]; none where there are none.
+    pub fluids: Vec<f64>,
     /// Whether a direction of negative curvature was met.
     pub indefinite: bool,
     /// Products with K.
@@ -39,11 +42,19 @@ pub(crate) struct System<'a> {
 }
 
 /// The rows s G Δu − S q = b of the pressures of patches (method book, eq. 21.15), four a patch.
+#[derive(Clone)]
 pub(crate) struct Saddle {
     /// b \[m^(3/2)\].
     pub residual: Vec<f64>,
     /// Of each patch.
     pub patches: Vec<SaddlePatch>,
+}
+
+impl Saddle {
+    /// The same where the pressures balance already.
+    pub fn still(&self) -> Saddle {
+        Saddle { residual: vec![0.0; self.residual.len()], patches: self.patches.clone() }
+    }
 }
 
 /// The numbers of a patch.

@@ -2,11 +2,11 @@
 //! incompressible.
 #![allow(non_snake_case)]
 
-use super::linear::{Saddle, SaddlePatch};
 use crate::algebra::packed::axpy;
 use crate::material::Law;
 use crate::model::{Block, Model, ModuliAtRest};
 use crate::motion::internal_force::{OwnPressures, Workspace};
+use crate::motion::newton::linear::{Saddle, SaddlePatch};
 
 /// Largest projected bulk modulus over the shear modulus beside pressures that are unknowns \[–\].
 const MOST: f64 = 3.0;
@@ -21,7 +21,7 @@ const STIFFENED: (f64, f64) = (0.1, 10.0);
 
 /// The pressures, and what the displacements make of them.
 #[derive(Clone)]
-pub(super) struct Pressures {
+pub(crate) struct Pressures {
     pub own: OwnPressures,
     /// Moments that J gives \[Pa·m^(3/2)\].
     of_j: Vec<f64>,
@@ -134,17 +134,17 @@ fn largest_ratio(model: &Model) -> f64 {
 }
 
 /// Whether pressures are unknowns from the start (method book, eq. 21.16).
-pub(super) fn are_unknowns(model: &Model) -> bool {
+pub(crate) fn are_unknowns(model: &Model) -> bool {
     largest_ratio(model) > NEARLY_INCOMPRESSIBLE
 }
 
 /// Whether they may become unknowns.
-pub(super) fn can_be_unknowns(model: &Model) -> bool {
+pub(crate) fn can_be_unknowns(model: &Model) -> bool {
     largest_ratio(model) > HARDLY_COMPRESSIBLE
 }
 
 /// Largest projected bulk modulus over the shear modulus in the tangent \[–\], where pressures are
 /// unknowns or are not.
-pub(super) fn most(unknown: bool) -> f64 {
+pub(crate) fn most(unknown: bool) -> f64 {
     if unknown { MOST } else { f64::INFINITY }
 }

@@ -1,53 +1,36 @@
-//! Pressures on the deformed surface.
+//! The part of the deformed surface that a pressure acts on.
 #![allow(non_snake_case)]
+
+use super::part::Following;
 
 use crate::algebra::real::Dual;
 use crate::algebra::tensor::{Matrix3, Vector3, cofactor, map, tensor_cofactor};
 use crate::discretisation::{Discretisation, Rows};
 use crate::error::Error;
-use crate::geometry::Panel;
+use crate::geometry::{Panel, Selector};
 use crate::model::loaded_part::LoadedPart;
-use crate::problem::{Amplitude, Pressure, Problem};
+use crate::problem::Problem;
 
-/// A pressure that acts along the inward normal of the deformed surface.
+/// A part of the deformed surface.
 #[derive(Debug, Clone)]
-pub struct PressureLoad {
-    /// At amplitude 1 \[Pa\].
-    pub pressure: f64,
-    /// The factor over time.
-    pub amplitude: Amplitude,
+pub(super) struct PressedSurface {
     /// φ and Grad φ at the points of the surface.
     rows: Rows,
+    /// Reference positions of the points \[m\].
+    positions: Vec<Vector3>,
     /// Vector area A_i N_i of each point \[m²\].
     areas: Vec<Vector3>,
 }
 
-/// All pressures of a problem.
-pub fn pressure_loads(
-    problem: &Problem,
-    discretisation: &Discretisation,
-) -> Result<Vec<PressureLoad>, Error> {
-    let load = |pressure: &Pressure| PressureLoad::new(pressure, problem, discretisation);
-    problem.loads.pressures.iter().map(load).collect()
-}
-
-/// Which part of the stiffness of a pressure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Following {
-    /// ½(K + Kᵀ), which conjugate gradients take.
-    Symmetric,
-    /// Kᵀ.
-    Transposed,
-}
-
-impl PressureLoad {
-    fn new(
-        pressure: &Pressure,
+impl PressedSurface {
+    /// Of a selection; nothing where it covers nothing.
+    pub fn new(
+        part: &Selector,
         problem: &Problem,
         discretisation: &Discretisation,
-    ) -> Result<PressureLoad, Error> {
-        let Some(loaded) = LoadedPart::new(problem, discretisation, &pressure.part)? else {
-            return Err(Error::EmptyPressure { name: pressure.name.clone() });
+    ) -> Result<Option<PressedSurface>, Error> {
+        let Some(loaded) = LoadedPart::new(problem, discretisation, part)? else {
+            return Ok(None);
         };
         let nodes = discretisation.cloud.positions.len();
         let all = discretisation.loaded_surface().strengths(nodes, |_, panel| panel.mean_normal());
@@ -68,21 +51,16 @@ impl PressureLoad {
         let points: Vec<usize> = points.collect();
         let positions = loaded.rule().positions();
         let positions: Vec<Vector3> = points.iter().map(|&point| positions[point]).collect();
-        Ok(PressureLoad {
-            pressure: pressure.pressure,
-            amplitude: pressure.amplitude.clone(),
+        Ok(Some(PressedSurface {
             rows: discretisation.rows_at(&positions)?,
+            positions,
             areas: points.into_iter().map(area).collect(),
-        })
+        }))
     }
 
-    /// Adds f_a = −p Σ_i φ_a(X_i) cof F(X_i) A_i N_i \[N\] at time `t` \[s\] and
-    /// displacements `u` \[m\] (method book, eq. 14.4).
-    pub fn add_force(&self, t: f64, u: &[f64], components: usize, f: &mut [f64]) {
-        let pressure = self.pressure * self.amplitude.at(t);
-        if pressure == 0.0 {
-            return;
-        }
+    /// Adds f_a = −p Σ_i φ_a(X_i) cof F(X_i) A_i N_i \[N\] of a pressure \[Pa\] at displacements `u`
+    /// \[m\] (method book, eq. 14.4).
+    pub fn add_force(&self, pressure: f64, u: &[f64], components: usize, f: &mut [f64]) {
         for (point, area) in self.areas.iter().enumerate() {
             let F = self.rows.deformation_gradient(point, u, components);
             let force = cofactor(&F) * area * -pressure;
@@ -100,16 +78,12 @@ impl PressureLoad {
     /// the rest of it lies along the rim.
     pub fn add_stiffness_times(
         &self,
-        t: f64,
+        pressure: f64,
         (u, v): (&[f64], &[f64]),
         part: Following,
         components: usize,
         product: &mut [f64],
     ) {
-        let pressure = self.pressure * self.amplitude.at(t);
-        if pressure == 0.0 {
-            return;
-        }
         let (own, other) = match part {
             Following::Symmetric => (0.5, 0.5),
             Following::Transposed => (0.0, 1.0),
@@ -128,6 +102,66 @@ impl PressureLoad {
                 }
             }
         }
+    }
+
+    /// V = −1/d Σ_i (x_i − c)·cof F(X_i) A_i N_i \[m³\], in a plane \[m²\] (method book, eq. 14.7).
+    pub fn volume(&self, about: &Vector3, u: &[f64], components: usize) -> f64 {
+        let point = |(point, area): (usize, &Vector3)| {
+            let F = self.rows.deformation_gradient(point, u, components);
+            let way = self.place(point, u, components) - about;
+            way.dot(&(cofactor(&F) * area))
+        };
+        -self.areas.iter().enumerate().map(point).sum::<f64>() / components as f64
+    }
+
+    /// Adds `factor` ∂V/∂u of [`Self::volume`].
+    pub fn add_volume_slope(
+        &self,
+        (about, factor): (&Vector3, f64),
+        u: &[f64],
+        components: usize,
+        slope: &mut [f64],
+    ) {
+        let factor = -factor / components as f64;
+        for (point, area) in self.areas.iter().enumerate() {
+            let F = self.rows.deformation_gradient(point, u, components);
+            let way = self.place(point, u, components) - about;
+            let force = cofactor(&F) * area * factor;
+            let stress = cofactor_slope(&F, &(way * area.transpose())) * factor;
+            for entry in self.rows.row(point) {
+                let node = self.rows.nodes[entry] as usize;
+                let along = self.rows.phi[entry] * force + stress * self.rows.grad_phi[entry];
+                for k in 0..components {
+                    slope[components * node + k] += along[k];
+                }
+            }
+        }
+    }
+
+    /// Moves the surface at rest by offsets \[component of node\] \[m\].
+    pub fn move_by(&mut self, offsets: &[f64], components: usize) {
+        for point in 0..self.areas.len() {
+            let G = self.rows.deformation_gradient(point, offsets, components);
+            self.areas[point] = cofactor(&G) * self.areas[point];
+            self.positions[point] += self.rows.interpolate(point, offsets, components);
+            self.rows.push_forward(point, &G);
+        }
+    }
+
+    /// Sum of the vector areas at rest, and of their sizes \[m²\].
+    pub fn resultant(&self) -> (Vector3, f64) {
+        (self.areas.iter().sum(), self.areas.iter().map(|area| area.norm()).sum())
+    }
+
+    /// Centre of the surface at rest \[m\].
+    pub fn centre(&self) -> Vector3 {
+        let (_, size) = self.resultant();
+        let pairs = self.areas.iter().zip(&self.positions);
+        pairs.map(|(area, X)| X * (area.norm() / size)).sum()
+    }
+
+    fn place(&self, point: usize, u: &[f64], components: usize) -> Vector3 {
+        self.positions[point] + self.rows.interpolate(point, u, components)
     }
 }
 

@@ -1,8 +1,8 @@
 //! `mtled sensitivity`.
 
-use super::common::{Common, INCONCLUSIVE, STOPPED};
-use super::load::SetArgs;
-use super::progress::progress_bar;
+use crate::cli::common::{Common, INCONCLUSIVE, STOPPED};
+use crate::cli::load::SetArgs;
+use crate::cli::progress::progress_bar;
 use crate::lab::store::Source;
 use crate::run::{audit_doubts, ensure_fits};
 use crate::sensitivity::{Unmeasured, measure, to_json, to_text};

@@ -1,8 +1,8 @@
 //! `mtled frequencies`.
 
-use super::common::{Common, INCONCLUSIVE, STOPPED};
-use super::load::{SetArgs, located};
-use super::progress::progress_bar;
+use crate::cli::common::{Common, INCONCLUSIVE, STOPPED};
+use crate::cli::load::{SetArgs, located};
+use crate::cli::progress::progress_bar;
 use crate::frequencies::{Unfound, find_modes, to_json, to_text, write_modes_of};
 use crate::run::load;
 use anyhow::Result;

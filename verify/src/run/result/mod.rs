@@ -1,16 +1,21 @@
 //! The result of a run as JSON and as a screen of text.
 
-use super::contact::{contacts_json, contacts_text};
-use super::error_bar::{Estimated, error_bars_json, error_bars_text, no_bars_text, plus_minus};
-use super::memory::{estimated_memory, memory_text};
-use super::prepare::Prepared;
-use super::probes::left_out_text;
-use super::record::Recording;
-use super::solve::Solved;
-use super::work::Work;
+mod loads;
+mod vectors;
+
 use crate::machine::{peak_memory, provenance};
+use crate::run::contact::{contacts_json, contacts_text};
+use crate::run::error_bar::{
+    Estimated, error_bars_json, error_bars_text, no_bars_text, plus_minus,
+};
+use crate::run::memory::{estimated_memory, memory_text};
+use crate::run::prepare::Prepared;
+use crate::run::probes::left_out_text;
+use crate::run::record::Recording;
+use crate::run::solve::Solved;
+use crate::run::work::Work;
 use crate::scene::{Case, ProbeKind};
-use mtled::algebra::tensor::Vector3;
+use loads::{cavities_json, loads_text, region_volumes_json, springs_json};
 use mtled::error::Error;
 use mtled::model::contact::ContactResult;
 use mtled::motion::summary::Summary;
@@ -18,6 +23,7 @@ use mtled::problem::Motion;
 use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
 use serde_json::{Value, json};
+use vectors::{array, triple};
 
 /// More points than this are not listed in the summary.
 const MOST_POINTS: usize = 20;
@@ -95,6 +101,9 @@ fn recorded_json(case: &Case, prepared: &Prepared, record: &Recording) -> Value 
         },
         "probes": probes_json(case, record),
         "reactions": reactions_json(case, record),
+        "springs": springs_json(case, record),
+        "cavities": cavities_json(case, record),
+        "region_volumes_m3": region_volumes_json(case, record),
         "energies": energies_json(record),
         "timings": {
             "setup_wall_s": prepared.setup_seconds,
@@ -210,10 +219,6 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
         "newton": newton,
         "newton_failed": newton_failed,
     })
-}
-
-fn array(v: &Vector3) -> [f64; 3] {
-    [v.x, v.y, v.z]
 }
 
 fn probes_json(case: &Case, record: &Recording) -> Vec<Value> {
@@ -373,6 +378,7 @@ fn answers_text(case: &Case, record: &Recording, bars: Option<&Estimated>) -> Ve
             plus_minus(bars, &format!("force/{}", condition.name))
         ));
     }
+    lines.extend(loads_text(case, last));
     lines
 }
 
@@ -388,8 +394,4 @@ fn work_text(solved: &Solved) -> String {
         four_digits(work.bytes_streamed as f64 / 1e9),
         work.correction_iterations
     )
-}
-
-fn triple(v: &Vector3) -> String {
-    [v.x, v.y, v.z].map(four_digits).join(", ")
 }

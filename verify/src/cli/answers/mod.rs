@@ -1,0 +1,5 @@
+//! Commands that ask something of one case.
+
+pub mod frequencies;
+pub mod sensitivity;
+pub mod unload;
