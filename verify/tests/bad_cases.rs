@@ -35,7 +35,7 @@ const BAD_CASES: &[Expected] = &[
     ("spring_negative", 15, "spring[0].normal", "must not be negative"),
     ("fluid_without_modulus", 15, "cavity[0].fluid.bulk_modulus", "must be positive"),
     ("fluid_inflow_infinite", 15, "cavity[0].fluid.inflow", "must be a"),
-    ("fluid_amplitude", 15, "cavity[0].fluid.amplitude", "must be positive"),
+    ("fluid_amplitude", 15, "cavity[0].fluid.amplitude.linear.duration", "must be positive"),
     ("cavity_named_as_spring", 17, "cavity[0].name", "bed"),
     ("bad_formula", 21, "prescribe[0].formula.z", "`r` is not known here; a formula depends on x, y and z"),
     ("data_without_header", 21, "prescribe[0].data.file", "expected a header that names x, y, z, ux, uy and uz"),
