@@ -102,6 +102,7 @@ published! {
     "curved_cantilever": "case";
     "elastica": "load_1" "load_10" "load_5";
     "euler_column": "above" "below" "far_above";
+    "free_cube": "nu_030" "nu_049" "nu_0499";
     "l_block": "case";
     "land_1":;
     "land_2": "case";

@@ -18,6 +18,8 @@ pub mod bundled;
 pub mod display;
 pub mod picture;
 pub mod run;
+
+pub mod frequencies;
 pub mod warp;
 
 pub mod accuracy;
@@ -29,7 +31,6 @@ pub mod lab;
 pub mod contests;
 pub mod suite;
 
-pub mod frequencies;
 pub mod sensitivity;
 pub mod unloaded;
 

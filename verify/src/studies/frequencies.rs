@@ -3,6 +3,8 @@
 use crate::exact::beam::Beam;
 use crate::run::{Prepared, prepare};
 use crate::specimens::simple::{PLANE, SIZE, block_shape, bonded_face, free_body, tissue};
+use crate::specimens::spacing::respaced;
+use crate::studies::comparison::published::numbers::{case, problems};
 use crate::studies::workbench::{Workbench, exact, relative_error};
 use anyhow::{Context, Result, ensure};
 use mtled::algebra::tensor::Vector3;
@@ -11,32 +13,17 @@ use mtled::geometry::{Extent, Selector, Shape};
 use mtled::problem::{Amplitude, Dimension, EssentialCondition, Prescribed, Problem, Recipe};
 use mtled_checks::measure::larger;
 use mtled_checks::study::{Bound, Cell, Check, Kind, Study, Table, number, text};
+use std::path::Path;
 
 /// Wave speed √(E/density) of a rod of the tissue \[m/s\].
 fn rod_speed() -> f64 {
     3f64.sqrt()
 }
 
-/// A free cube with its lowest frequencies times edge over √(E/density) and how many modes have each
-/// by the symmetry of the cube: Ritz's method up to degree 18 of `mtled_reference.free_cube`, of
-/// which the last digit is certain; the fourth is √(μ/2E) in closed form (Lamé 1852).
-struct Cube {
-    poisson_ratio: f64,
-    groups: [(f64, usize); 5],
-}
-
-const CUBES: [Cube; 2] = [
-    Cube {
-        poisson_ratio: 0.3,
-        groups: [(0.281902, 2), (0.379612, 3), (0.386055, 3), (0.438529, 3), (0.451350, 3)],
-    },
-    Cube {
-        poisson_ratio: 0.49,
-        groups: [(0.263382, 2), (0.358369, 3), (0.361667, 3), (0.409616, 3), (0.462220, 3)],
-    },
-];
-/// Modes of the groups.
-const MODES: usize = 14;
+/// Cases of Demarest's free cube among the published problems with their Poisson's ratios in words. Their
+/// numbers are the frequencies \[Hz\] of groups of modes that are equal by the symmetry of the cube: Ritz's
+/// method up to degree 18 of `mtled_reference.free_cube`, of which the last digit is certain.
+const CUBES: [(&str, &str); 2] = [("nu_030", "0.3"), ("nu_049", "0.49")];
 /// Spacings on an edge.
 const SPACINGS: [usize; 3] = [4, 6, 8];
 /// Bound on the relative error at 8 spacings \[–\], and on the order between 4 and 8.
@@ -86,7 +73,7 @@ fn search(problem: &Problem, count: usize, kind: MassKind) -> Result<NaturalMode
 
 pub fn frequencies(_: &Workbench, study: &mut Study) -> Result<()> {
     let mut results = Results::default();
-    for cube in &CUBES {
+    for cube in CUBES {
         free_cube(cube, study, &mut results)?;
     }
     bar(study, &mut results)?;
@@ -119,25 +106,32 @@ pub fn frequencies(_: &Workbench, study: &mut Study) -> Result<()> {
 }
 
 /// A cube that nothing holds, at three spacings.
-fn free_cube(cube: &Cube, study: &mut Study, results: &mut Results) -> Result<()> {
-    let Cube { poisson_ratio, groups } = cube;
-    let scale = rod_speed() / SIZE;
+fn free_cube(
+    (name, poisson_ratio): (&str, &str),
+    study: &mut Study,
+    results: &mut Results,
+) -> Result<()> {
+    let all = problems()?;
+    let published = all.iter().find(|(published, _)| published.name == "free_cube");
+    let (published, cube) = published.context("the free cube is not among the published ones")?;
+    let case = case(published, name, Path::new("."))?;
+    let numbers = || cube.numbers.iter().filter(|number| number.case == name);
+    let modes = cube.modes(name);
     let mut errors = Vec::new();
     for spacings in SPACINGS {
-        let recipe = Recipe::with_spacing(SIZE / spacings as f64);
-        let material = tissue(*poisson_ratio)?;
-        let problem = free_body(Dimension::Three, block_shape(), material, recipe);
-        let found = results.find(&problem, MODES, 6)?;
-        let (mut largest, mut first) = (0.0, 0);
-        for (number, (known, count)) in (1..).zip(groups) {
-            let own = &found[first..first + count];
-            let mean = own.iter().sum::<f64>() / *count as f64;
-            let worst = own.iter().map(|f| relative_error(*f, scale * known)).fold(0.0, larger);
-            (largest, first) = (larger(largest, worst), first + count);
+        let found = results.find(&respaced(&case, 1.0 / spacings as f64)?.problem, modes, 6)?;
+        let mut largest = 0.0;
+        for (number, known) in (1..).zip(numbers()) {
+            let (first, last) = known.modes().context("the number is no frequency")?;
+            let own = &found[first - 1..last];
+            let mean = own.iter().sum::<f64>() / own.len() as f64;
+            let worst = own.iter().map(|f| relative_error(*f, known.value)).fold(0.0, larger);
+            largest = larger(largest, worst);
             if spacings == SPACINGS[SPACINGS.len() - 1] {
+                let count = own.len();
                 let what =
                     format!("free cube, ν = {poisson_ratio}, {count} modes of group {number}");
-                results.row(&what, (mean, scale * known));
+                results.row(&what, (mean, known.value));
             }
         }
         errors.push(largest);
@@ -146,7 +140,9 @@ fn free_cube(cube: &Cube, study: &mut Study, results: &mut Results) -> Result<()
     let label = |what: &str| format!("free cube, ν = {poisson_ratio}: {what}");
     study.checks.push(exact(
         &id("error"),
-        &label("largest relative error of the 14 lowest frequencies at 8 spacings on an edge"),
+        &label(&format!(
+            "largest relative error of the {modes} lowest frequencies at 8 spacings on an edge"
+        )),
         errors[SPACINGS.len() - 1],
         CUBE_BOUND,
         RITZ,

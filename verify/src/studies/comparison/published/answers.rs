@@ -1,13 +1,28 @@
 //! Answers of a run under the names that published numbers have.
 
 use super::numbers::{Number, When};
+use super::runs::Found;
 use crate::run::{Recording, Sample};
 use crate::scene::Case;
 use anyhow::{Context, Result, bail};
 use mtled::Vector3;
 
 /// The answer of a run to a published number \[its unit\].
-pub fn answer(case: &Case, record: &Recording, number: &Number) -> Result<f64> {
+pub fn answer(case: &Case, found: &Found, number: &Number) -> Result<f64> {
+    match (found, number.modes()) {
+        (Found::History(record), None) => of_history(case, record, number),
+        (Found::Frequencies(all), Some((first, last))) => {
+            let own = first.checked_sub(1).and_then(|before| all.get(before..last));
+            let own = own.filter(|own| !own.is_empty());
+            let own = own.with_context(|| format!("{} is not among the modes", number.answer))?;
+            Ok(own.iter().sum::<f64>() / own.len() as f64)
+        }
+        _ => bail!("{} is no answer of such a run", number.answer),
+    }
+}
+
+/// The answer of the samples that count.
+fn of_history(case: &Case, record: &Recording, number: &Number) -> Result<f64> {
     let [from, to] = number.between;
     let inside = |sample: &&Sample| (from..=to).contains(&sample.time);
     let history = record
@@ -33,6 +48,11 @@ pub fn answer(case: &Case, record: &Recording, number: &Number) -> Result<f64> {
         When::Mean => 0.5 * (high.1 + low.1),
         When::Amplitude => 0.5 * (high.1 - low.1),
         When::Drift => (high.1 - first.1).max(first.1 - low.1),
+        When::Duration => {
+            let mut acting = history.iter().filter(|(_, value)| *value != 0.0);
+            let start = acting.next().context("it is always zero")?;
+            acting.next_back().unwrap_or(start).0 - start.0
+        }
     })
 }
 
@@ -51,6 +71,11 @@ fn at(case: &Case, record: &Recording, sample: &Sample, name: &str) -> Result<f6
             let found = case.problem.conditions.iter().position(|other| other.name == condition);
             let condition = found.with_context(|| format!("no condition {condition}"))?;
             component(&sample.reactions[condition].force, part)
+        }
+        ["contact", obstacle, part] => {
+            let found = case.problem.obstacles.iter().position(|other| other.name == obstacle);
+            let obstacle = found.with_context(|| format!("no obstacle {obstacle}"))?;
+            component(&sample.contact_forces[obstacle], part)
         }
         ["momentum", part] => component(&sample.momenta.linear, part),
         ["angular_momentum", part] => component(&sample.momenta.angular, part),

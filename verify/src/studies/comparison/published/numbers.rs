@@ -23,6 +23,14 @@ pub struct Problem {
     pub numbers: Vec<Number>,
 }
 
+impl Problem {
+    /// How many natural frequencies of a case its numbers need; none where it is solved.
+    pub fn modes(&self, case: &str) -> usize {
+        let own = self.numbers.iter().filter(|number| number.case == case);
+        own.filter_map(Number::modes).map(|(_, last)| last).max().unwrap_or(0)
+    }
+}
+
 /// A case of a problem.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -44,6 +52,8 @@ pub enum By {
     Others,
     /// A formula or an integral.
     ClosedForm,
+    /// A series that is summed for this repository until its last digit stays.
+    SeriesHere,
     /// Finite elements, computed for this repository.
     FiniteElementsHere,
 }
@@ -53,6 +63,7 @@ impl By {
         match self {
             By::Others => "others",
             By::ClosedForm => "closed form",
+            By::SeriesHere => "series, for this page",
             By::FiniteElementsHere => "finite elements, for this page",
         }
     }
@@ -76,6 +87,8 @@ pub enum When {
     Amplitude,
     /// The largest change from the first sample.
     Drift,
+    /// From the first sample that is not zero to the last \[s\].
+    Duration,
 }
 
 fn end() -> When {
@@ -94,7 +107,8 @@ pub struct Number {
     pub case: String,
     /// In words, for readers and for the id of its check.
     pub name: String,
-    /// What is measured, such as `displacement/tip/z`.
+    /// What is measured, such as `displacement/tip/z`, or `frequency/3-5` for the mean natural frequency
+    /// of the third to the fifth mode of the case.
     pub answer: String,
     /// When.
     #[serde(default = "end")]
@@ -128,6 +142,13 @@ impl Number {
     /// What differences are divided by \[`unit`\].
     pub fn scale(&self) -> f64 {
         self.scale.unwrap_or(self.value).abs()
+    }
+
+    /// Its first and its last mode, counted from 1 and without rigid motions, where it is a natural
+    /// frequency.
+    pub fn modes(&self) -> Option<(usize, usize)> {
+        let (first, last) = self.answer.strip_prefix("frequency/")?.split_once('-')?;
+        Some((first.parse().ok()?, last.parse().ok()?))
     }
 
     /// |ours − published| over the scale \[–\].

@@ -1,8 +1,11 @@
 //! Runs of the published problems.
 
-use crate::run::{Recording, error_bars, solve_case};
+use crate::frequencies::find_modes;
+use crate::run::{self, Recording, error_bars, solve_case};
 use crate::scene::Case;
+use anyhow::{Result, ensure};
 use cpu_time::ThreadTime;
+use mtled::frequencies::MassKind;
 use mtled::problem::Motion;
 use mtled_checks::report::four_digits;
 use std::collections::BTreeMap;
@@ -13,6 +16,15 @@ pub struct Plan {
     pub case: Case,
     pub spacing: f64,
     pub is_own: bool,
+    /// Natural frequencies that are asked for; none where the case is solved.
+    pub modes: usize,
+}
+
+/// What a run finds.
+pub enum Found {
+    History(Recording),
+    /// The lowest ones of elastic vibrations, in ascending order \[Hz\].
+    Frequencies(Vec<f64>),
 }
 
 /// A run that was done.
@@ -24,8 +36,8 @@ pub struct Solved {
     pub nodes: usize,
     /// CPU time of set-up and solution \[s\].
     pub cpu: f64,
-    /// Samples, or why there are none.
-    pub record: Result<Recording, String>,
+    /// What it has found, or why it has found nothing.
+    pub found: Result<Found, String>,
     /// Reasons to doubt it.
     pub doubts: Vec<String>,
     /// Our own error bars by quantity, in words where there is none.
@@ -34,38 +46,66 @@ pub struct Solved {
 
 impl Solved {
     pub fn remark(&self) -> String {
-        match &self.record {
+        match &self.found {
             Err(reason) => format!("no answer: {reason}"),
             Ok(_) => self.doubts.join("; "),
         }
     }
 }
 
-/// Solves a case on one thread, whose time is measured.
+/// Finds what the plan asks for on one thread, whose time is measured.
 pub fn solved(plan: Plan, with_bars: bool) -> Solved {
-    let Plan { problem, case, spacing, is_own } = plan;
+    let Plan { problem, case, spacing, is_own, modes } = plan;
     let start = ThreadTime::now();
-    let run = solve_case(&case);
-    let cpu = start.elapsed().as_secs_f64();
-    let mut bars = BTreeMap::new();
-    let (nodes, record, doubts) = match run {
-        Err(error) => (0, Err(error.to_string()), Vec::new()),
+    let mut run = Solved {
+        problem,
+        case,
+        spacing,
+        is_own,
+        nodes: 0,
+        cpu: 0.0,
+        found: Err("it was not tried".into()),
+        doubts: Vec::new(),
+        bars: BTreeMap::new(),
+    };
+    if modes > 0 {
+        let found = frequencies(&mut run, modes);
+        run.cpu = start.elapsed().as_secs_f64();
+        run.found = found.map_err(|error| error.to_string());
+        return run;
+    }
+    let solved = solve_case(&run.case);
+    run.cpu = start.elapsed().as_secs_f64();
+    run.found = match solved {
+        Err(error) => Err(error.to_string()),
         Ok((solved, record)) => {
-            if with_bars && is_own && matches!(case.problem.motion, Motion::Static { .. }) {
-                let estimated = error_bars(&case, &solved, &record, false);
-                if let Ok(estimated) = estimated {
-                    for bar in &estimated.bars {
-                        let text =
-                            bar.size.as_ref().map_or_else(|_| "none".into(), |b| bar_text(*b));
-                        bars.insert(bar.quantity.name.clone(), text);
-                    }
-                }
+            let is_static = matches!(run.case.problem.motion, Motion::Static { .. });
+            if with_bars && is_own && is_static {
+                run.bars = bars(&run.case, &solved, &record);
             }
-            let nodes = solved.prepared.discretisation.cloud.positions.len();
-            (nodes, Ok(record), solved.doubts())
+            run.nodes = solved.prepared.discretisation.cloud.positions.len();
+            run.doubts = solved.doubts();
+            Ok(Found::History(record))
         }
     };
-    Solved { problem, case, spacing, is_own, nodes, cpu, record, doubts, bars }
+    run
+}
+
+/// The lowest natural frequencies of the body of a case.
+fn frequencies(run: &mut Solved, modes: usize) -> Result<Found> {
+    let found = find_modes(&run.case, modes, MassKind::Consistent, &|_| ())?;
+    ensure!(found.modes.converged(), "the search for natural frequencies has not converged");
+    run.nodes = found.prepared.discretisation.cloud.positions.len();
+    run.doubts = found.doubts;
+    Ok(Found::Frequencies(found.modes.modes.iter().map(|mode| mode.frequency).collect()))
+}
+
+/// Our own error bars in words, by quantity.
+fn bars(case: &Case, solved: &run::Solved, record: &Recording) -> BTreeMap<String, String> {
+    let Ok(estimated) = error_bars(case, solved, record, false) else { return BTreeMap::new() };
+    let text =
+        |bar: &run::ErrorBar| bar.size.as_ref().map_or("none".into(), |size| bar_text(*size));
+    estimated.bars.iter().map(|bar| (bar.quantity.name.clone(), text(bar))).collect()
 }
 
 /// A bar as text.

@@ -18,18 +18,29 @@ pub struct Row {
     pub bar: String,
 }
 
-fn verdict(number: &Number, ours: &Result<f64, String>) -> String {
-    match ours {
-        Err(reason) => format!("no answer: {reason}"),
-        Ok(ours) if number.difference(*ours) <= number.bound() => "met".into(),
-        Ok(_) => "missed".into(),
+impl Row {
+    /// |ours − published| over the scale \[–\], where there is an answer.
+    pub fn difference(&self, number: &Number) -> Option<f64> {
+        self.ours.as_ref().ok().map(|ours| number.difference(*ours))
     }
+
+    fn verdict(&self, number: &Number) -> String {
+        match &self.ours {
+            Err(reason) => format!("no answer: {reason}"),
+            Ok(ours) if number.difference(*ours) <= number.bound() => "met".into(),
+            Ok(_) => "missed".into(),
+        }
+    }
+}
+
+/// A number, or a dash where there is none.
+fn known(value: Option<f64>) -> Cell {
+    value.map_or_else(|| Cell::Text("–".into()), Cell::Number)
 }
 
 /// Every number beside every run.
 pub fn numbers_table(rows: &[(Row, &Number)]) -> Table {
     let line = |(row, number): &(Row, &Number)| {
-        let ours = row.ours.clone().unwrap_or(f64::NAN);
         vec![
             Cell::Text(row.problem.clone()),
             Cell::Text(row.case.clone()),
@@ -40,11 +51,11 @@ pub fn numbers_table(rows: &[(Row, &Number)]) -> Table {
             Cell::Text(number.by.words().into()),
             Cell::Number(row.spacing),
             Cell::Number(row.nodes as f64),
-            Cell::Number(ours),
+            known(row.ours.as_ref().ok().copied()),
             Cell::Text(row.bar.clone()),
-            Cell::Number(100.0 * number.difference(ours)),
+            known(row.difference(number).map(|difference| 100.0 * difference)),
             Cell::Number(100.0 * number.bound()),
-            Cell::Text(verdict(number, &row.ours)),
+            Cell::Text(row.verdict(number)),
         ]
     };
     Table {
