@@ -6,7 +6,7 @@ and with the pressures of the cases, and ends with exit code 1 where one differs
 import math
 import sys
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -98,6 +98,103 @@ def none(_: float) -> float:
     return 0.0
 
 
+def twisting_column() -> dict[str, float]:
+    """Kinetic energy [J] and angular momentum [kg·m²/s] of a column of 1 m × 1 m × 6 m and
+    1100 kg/m³ that turns about its axis with 105 sin(πz/12) rad/s."""
+    of_length, rate = 1100.0 / 6.0, 105.0
+    return {
+        "energy/kinetic start": 0.5 * of_length * rate**2 * 3.0,
+        "angular_momentum/z start": of_length * rate * 12.0 / math.pi,
+    }
+
+
+def bouncing_ball(radius: float, modulus: float, density: float, speed: float) -> dict[str, float]:
+    """Impact of a quarter of an elastic ball [m, E/(1 − ν²) in Pa, kg/m³, m/s] on a rigid wall (Hertz
+    1882; Johnson 1985, eq. 11.23 and 11.24): δ is greatest where F's work is the kinetic energy, and
+    half of the time is ∫ dδ/v."""
+    mass = 4.0 / 3.0 * math.pi * radius**3 * density
+    deepest = (15.0 * mass * speed**2 / (16.0 * math.sqrt(radius) * modulus)) ** 0.4
+    force = 4.0 / 3.0 * modulus * math.sqrt(radius) * deepest**1.5
+    # ∫ dx/√(1 − x^2.5) from 0 to 1 is √π Γ(1.4)/Γ(0.9).
+    half = math.sqrt(math.pi) * math.gamma(1.4) / math.gamma(0.9) * deepest / speed
+    return {
+        "contact/floor/z maximum": force / 4.0,
+        "contact/floor/z duration": 2.0 * half,
+        "displacement/centre/z minimum": -deepest,
+        "displacement/centre/z time_of_minimum": half,
+        "momentum/z": mass * speed / 4.0,
+    }
+
+
+def gauss_points(count: int) -> list[tuple[float, float]]:
+    """Places and weights of the Gauss–Legendre quadrature of [0, 1], by Newton's method."""
+    points = []
+    for k in range(count):
+        x = math.cos(math.pi * (k + 0.75) / (count + 0.5))
+        for _ in range(20):
+            before, value = 1.0, x
+            for degree in range(2, count + 1):
+                next_one = ((2 * degree - 1) * x * value - (degree - 1) * before) / degree
+                before, value = value, next_one
+            slope = count * (x * value - before) / (x * x - 1.0)
+            x -= value / slope
+        points.append((0.5 + 0.5 * x, 1.0 / ((1.0 - x * x) * slope**2)))
+    return points
+
+
+def solve(matrix: list[list[float]], right: list[list[float]]) -> list[list[float]]:
+    """Solutions of a diagonally dominant system, by elimination."""
+    for k, (pivot_row, pivot_right) in enumerate(zip(matrix, right)):
+        for row, own in zip(matrix[k + 1 :], right[k + 1 :]):
+            factor = row[k] / pivot_row[k]
+            row[k:] = [a - factor * b for a, b in zip(row[k:], pivot_row[k:])]
+            own[:] = [a - factor * b for a, b in zip(own, pivot_right)]
+    for k in reversed(range(len(matrix))):
+        for column in range(len(right[k])):
+            rest = sum(a * x[column] for a, x in zip(matrix[k][k + 1 :], right[k + 1 :]))
+            right[k][column] = (right[k][column] - rest) / matrix[k][k]
+    return right
+
+
+def layer_force(modulus: float, ratio: float, radius: float, height: float, depth: float) -> float:
+    """Force [N] of a rigid, smooth sphere of so much radius [m] at a depth [m] in an elastic layer of
+    so much height [m] that is bonded to a rigid base, at small strains. The pressure's Hankel
+    transform is ∫ φ(t) cos kt dt over the radius a of the contact, where φ(a) = 0 and
+    π/2 φ(x) − ∫ φ(t) S(x, t) dt = E* (δ − x²/R)/2, S = ∫ (1 − L(kh)) cos kx cos kt dk
+    (Lebedev and Ufliand 1958; Hayes, Keer, Herrmann and Mockros 1972)."""
+    q, steps, end = 3.0 - 4.0 * ratio, 400, 25.0
+
+    def rest(k: float) -> float:
+        """1 − L(k): what the base takes from the flexibility of a half-space."""
+        e = math.exp(-2.0 * k)
+        return 1.0 - (q * (1 - e * e) - 4 * k * e) / (q * (1 + e * e) + e * (4 * k * k + 1 + q * q))
+
+    places = [(j + 0.5) * end / steps for j in range(steps)]
+    waves = [(k / height, rest(k) * end / steps / height) for k in places]
+    points, plane = gauss_points(12), modulus / (1.0 - ratio**2)
+
+    def kernel(x: float) -> float:
+        return 0.5 * sum(weight * math.cos(k * x) for k, weight in waves)
+
+    def contact(a: float) -> tuple[float, float]:
+        """Depth and force where the contact has the radius a."""
+        at = [(a * x, a * w) for x, w in points] + [(a, 0.0)]
+        matrix = [
+            [0.5 * math.pi * (x == t) - w * (kernel(x - t) + kernel(x + t)) for t, w in at]
+            for x, _ in at
+        ]
+        found = solve(matrix, [[0.5 * plane, 0.5 * plane * x * x / radius] for x, _ in at])
+        reached = found[-1][1] / found[-1][0]
+        total = sum(w * (reached * one - two) for (_, w), (one, two) in zip(at, found))
+        return reached, 2.0 * math.pi * total
+
+    low, high = 0.5 * math.sqrt(radius * depth), 2.0 * math.sqrt(radius * depth)
+    for _ in range(25):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if contact(middle)[0] < depth else (low, middle)
+    return contact(high)[1]
+
+
 INNER, OUTER = 0.01, 0.02
 WALLS = {
     # name of the case: (∂W/∂I₁, ∂W/∂I₂, stretch of the inner radius, power)
@@ -133,16 +230,21 @@ def derived() -> dict[str, dict[str, float]]:
             "displacement/inner/x": (stretch - 1) * INNER,
             "displacement/outer/x": outside,
         }
+    values["twisting_column/case"] = twisting_column()
+    values["bouncing_ball/case"] = bouncing_ball(0.01, 1e6 / 0.91, 1000.0, 0.02)
+    force = layer_force(3000.0, 0.45, 0.05, 0.01, 0.0003)
+    values["indented_layer/case"] = {"contact/sphere/z": -force / 4.0}
     return values
 
 
-def stored() -> dict[str, dict[str, float]]:
+def stored(names: Iterable[str]) -> dict[str, dict[str, float]]:
     """Values of the closed forms in the files, and pressures of their cases."""
     values: dict[str, dict[str, float]] = {}
-    for problem in {name.split("/")[0] for name in [*RODS, *WALLS]}:
+    for problem in {name.split("/")[0] for name in names}:
         for row in tomllib.loads((HERE / problem / "numbers.toml").read_text())["number"]:
             name = f"{problem}/{row['case']}"
-            values.setdefault(name, {})[row["answer"]] = row["value"]
+            answer = f"{row['answer']} {row['when']}" if "when" in row else row["answer"]
+            values.setdefault(name, {})[answer] = row["value"]
             case = tomllib.loads((HERE / f"{name}.toml").read_text())
             for load in case.get("pressure", []):
                 values[name]["pressure"] = load["pressure"]
@@ -156,7 +258,7 @@ def main() -> int:
             print(name, *(f"{answer} {value:.8g}" for answer, value in answers.items()), sep="\n  ")
         return 0
     wrong = 0
-    for name, answers in stored().items():
+    for name, answers in stored(values).items():
         for answer, value in answers.items():
             known = values[name].get(answer)
             # Other answers, such as those beside the axes, are not derived.

@@ -97,12 +97,14 @@ macro_rules! published {
 
 published! {
     "bending_column": "case";
+    "bouncing_ball": "case";
     "cantilever_vibration": "load_50" "load_80";
     "cook_membrane":;
     "curved_cantilever": "case";
     "elastica": "load_1" "load_10" "load_5";
     "euler_column": "above" "below" "far_above";
     "free_cube": "nu_030" "nu_049" "nu_0499";
+    "indented_layer": "case";
     "l_block": "case";
     "land_1":;
     "land_2": "case";
@@ -115,6 +117,7 @@ published! {
     "thick_sphere": "demiray" "mooney_rivlin" "neo_hookean";
     "turek_hron":;
     "twisted_beam": "along_y" "along_z";
+    "twisting_column": "case";
     "uniaxial_energy": "case";
 }
 
