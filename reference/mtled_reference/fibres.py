@@ -93,11 +93,23 @@ def _neo_hookean(constants: dict, C):
     return 0.5 * constants["shear_modulus"] * (ufl.tr(C) - 3)
 
 
+def _demiray(constants: dict, C):
+    mu, b = constants["mu"], constants["b"]
+    return mu / (2 * b) * (ufl.exp(b * (ufl.tr(C) - 3)) - 1)
+
+
+def _yeoh(constants: dict, C):
+    first = ufl.tr(C) - 3
+    return sum(constants[f"C{power}"] * first**power for power in (1, 2, 3))
+
+
 LAWS: dict[str, Callable] = {
+    "demiray": _demiray,
     "guccione": _guccione,
     "holzapfel_gasser_ogden": _holzapfel_gasser_ogden,
     "holzapfel_ogden": _holzapfel_ogden,
     "neo_hookean_isochoric": _neo_hookean,
+    "yeoh": _yeoh,
 }
 
 
