@@ -243,12 +243,12 @@ pub enum Error {
     Unstable { instability: Instability, then: Box<Error> },
     #[error(
         "no equilibrium exists: nothing holds the body along {axis}, and the loads push it there with {force:.3e} N; \
-             prescribe that component somewhere, or add an obstacle"
+             prescribe that component somewhere, or add an obstacle or a spring"
     )]
     NothingHolds { axis: char, force: f64 },
     #[error(
         "newton's method converges to no equilibrium beyond {reached:.4} of the load: after {iterations} iterations the residual \
-             is {residual:.2e} of the largest force{}: use dynamic relaxation, or reduce the load",
+             is {residual:.2e} of the largest force{}: use dynamic relaxation, of materials without viscosity, or reduce the load",
         if *.indefinite { " and the tangent is indefinite, as where a body buckles" } else { "" }
     )]
     NoEquilibrium {

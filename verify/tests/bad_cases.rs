@@ -68,6 +68,7 @@ const BAD_CASES: &[Expected] = &[
     ("friction_by_newton", 27, "time.solver", "no friction that slides: use relaxation, or a motion"),
     ("motion_of_nothing", 23, "obstacle[0].motion[1]", "needs a displacement or a rotation"),
     ("motion_twice", 22, "obstacle[0].motion[0].rotation", "make it a motion of its own"),
+    ("parts_without_viscosity", 25, "time.parts", "belongs to materials with viscosity"),
     ("no_parts", 26, "time.parts", "is 0; it must be at least 1"),
     ("active_without_fibres", 7, "material.tissue.fibres", "is missing; active_stress needs it"),
     ("active_infinite", 13, "material.tissue.active_stress.tension", "is inf; it must be a finite number"),

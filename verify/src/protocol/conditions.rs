@@ -78,7 +78,11 @@ pub struct Loads {
     pub body_forces: Vec<BodyForce>,
     pub tractions: Vec<Traction>,
     pub pressures: Vec<Pressure>,
+    /// None if left out.
+    #[serde(default)]
     pub springs: Vec<Spring>,
+    /// None if left out.
+    #[serde(default)]
     pub cavities: Vec<Cavity>,
     pub initial_velocities: Vec<InitialVelocity>,
 }

@@ -30,7 +30,7 @@ pub fn cavities_json(case: &Case, record: &Recording) -> Vec<Value> {
 
 pub fn region_volumes_json(case: &Case, record: &Recording) -> Value {
     let Some(last) = record.samples.last().filter(|_| case.outputs.volumes) else {
-        return Value::Null;
+        return json!({});
     };
     let rows = case.problem.regions.iter().zip(&last.region_volumes);
     rows.map(|(region, volume)| (region.name.clone(), json!(volume))).collect::<Map<_, _>>().into()

@@ -97,6 +97,11 @@ impl Builder<'_> {
         let unsolved = |found: &Mistake| matches!(found.wrong, Wrong::NoTime | Wrong::NoFriction);
         let refused = problem.check().into_iter().filter(unsolved);
         self.refused(refused.collect(), |_| "time.solver".into());
+        if format.time.parts.is_some() && !problem.has_memory() {
+            let message =
+                "belongs to materials with viscosity (prony), and there is none; remove it";
+            self.mistake("time.parts", message);
+        }
         Some(problem)
     }
 

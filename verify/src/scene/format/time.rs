@@ -12,7 +12,7 @@ use std::path::PathBuf;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeFormat {
-    /// Whether the body moves in time or the state at rest is wanted.
+    /// Whether the body moves in time or the state at rest is the target.
     pub method: MethodFormat,
     /// How a static solution is found; "auto" if left out.
     pub solver: Option<SolverFormat>,
