@@ -169,8 +169,13 @@ pub enum Error {
     SmallBodyForce { index: usize, volume: f64, smallest: f64 },
     #[error("pressure \"{name}\" selects no part of the boundary")]
     EmptyPressure { name: String },
-    #[error("an unloaded configuration is not looked for with {what}: remove them")]
+    #[error("an unloaded configuration is not looked for with {what}")]
     NotUnloaded { what: &'static str },
+    #[error(
+        "no configuration without loads is found beyond {reached:.4} of the loads: the loads are too large for the \
+             material, or the body has no single one; the last attempt there: {last}"
+    )]
+    NoneUnloaded { reached: f64, last: String },
     #[error(
         "on the way to the configuration without loads the body folds near ({}) m, with J = {determinant:.2e}: \
              the loads are too large for the material, or it is too soft", show(.position)
@@ -185,6 +190,8 @@ pub enum Error {
              volume: give a point of the plane of its opening, or select all of the surface"
     )]
     OpenCavity { name: String, part: f64 },
+    #[error("the surface of cavity \"{name}\" is closed: remove its opening")]
+    ClosedCavity { name: String },
     #[error(
         "cavity \"{name}\" has a volume of {volume:e} at rest: the body lies inside of its surface and not \
              around it, or its opening is elsewhere"

@@ -131,11 +131,18 @@ impl NaturalModes {
 }
 
 /// The problem without what plays no part in natural frequencies: loads, obstacles, active tension,
-/// viscosity (what is left is the stiffness against sudden strains) and mass scaling. Conditions
-/// stay; what they prescribe counts as held.
+/// inflows, viscosity (what is left is the stiffness against sudden strains) and mass scaling. Conditions
+/// stay, and what they prescribe counts as held; springs stay, and fluids with their stiffness.
 pub fn body_at_rest(problem: &Problem) -> Problem {
     let mut rest = problem.clone();
-    rest.loads = Loads::default();
+    rest.loads = Loads {
+        springs: problem.loads.springs.clone(),
+        cavities: problem.loads.cavities.clone(),
+        ..Loads::default()
+    };
+    for fluid in rest.loads.cavities.iter_mut().filter_map(|cavity| cavity.fluid.as_mut()) {
+        fluid.inflow = 0.0;
+    }
     rest.obstacles.clear();
     for region in &mut rest.regions {
         (region.viscosity, region.active) = (None, None);

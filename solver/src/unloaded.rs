@@ -11,6 +11,7 @@ use crate::algebra::packed::{dot, largest};
 use crate::discretisation::{Discretisation, Rows};
 use crate::error::Error;
 use crate::model::Model;
+use crate::model::rigid_motions::free_rigid_motions;
 use crate::model::zero_energy::refuse_zero_energy_modes;
 use crate::motion::observe::{Continue, Observer, View};
 use crate::motion::simulate::simulate;
@@ -70,9 +71,11 @@ pub struct Distance {
 const FACTORS: (f64, f64) = (0.2, 1.5);
 /// Part of the loads that is tried first, and the smallest step of it \[–\].
 const FIRST: f64 = 0.25;
-const SMALLEST: f64 = 1e-3;
+const SMALLEST: f64 = 5e-3;
 /// Tolerance at a part of the loads \[–\].
 const PASSING: f64 = 0.02;
+/// Distance over the size of the body that is none \[–\].
+const ROUND_OFF: f64 = 1e-12;
 /// Solutions at a part of the loads, at most.
 const MOST_ON_THE_WAY: usize = 6;
 
@@ -89,7 +92,11 @@ pub fn unload(
 ) -> Result<Unloaded, Error> {
     refuse_others(problem)?;
     let image = Discretisation::new(problem)?;
-    refuse_zero_energy_modes(problem, &image, &Model::new(problem, &image)?)?;
+    let model = Model::new(problem, &image)?;
+    refuse_zero_energy_modes(problem, &image, &model)?;
+    if free_rigid_motions(&model, problem.motion.end(), &vec![0.0; model.size()]) > 0 {
+        return Err(Error::NotUnloaded { what: "bodies that can move freely" });
+    }
     let size = problem.dimension.components() * image.cloud.positions.len();
     let rows = image.rows_at(&image.cloud.positions)?;
     let mut search = Search { problem, image, rows, settings, observer, distances: Vec::new() };
@@ -102,14 +109,20 @@ pub fn unload(
         let ahead = (fraction - reached.0) / (reached.0 - before.0).max(f64::MIN_POSITIVE);
         let ahead = if reached.0 > 0.0 { ahead } else { 0.0 };
         let change = reached.1.iter().zip(&before.1).map(|(w, before)| w + ahead * (w - before));
-        match search.at(fraction, change.collect()) {
+        let last = match search.at(fraction, change.collect()) {
             Ok(last) if last.stopped || fraction == 1.0 => return Ok(search.end(last)),
             Ok(found) if found.found => {
                 before = std::mem::replace(&mut reached, (fraction, found.offsets));
                 step *= 2.0;
+                continue;
             }
-            Err(error) if !is_of_the_way(&error) || 0.5 * step < SMALLEST => return Err(error),
-            _ => step *= 0.5,
+            Ok(_) => "the solutions do not come nearer to the known shape".to_string(),
+            Err(error) if is_of_the_way(&error) => error.to_string(),
+            Err(error) => return Err(error),
+        };
+        step *= 0.5;
+        if step < SMALLEST {
+            return Err(Error::NoneUnloaded { reached: reached.0, last });
         }
     }
 }
@@ -163,7 +176,8 @@ impl Search<'_> {
                 offsets.iter().zip(&state.displacement).map(|(w, u)| w + u).collect();
             let distance = self.distance(&left, &state.displacement);
             self.distances.push(distance);
-            let found = distance.largest <= tolerance * distance.displacement;
+            let round_off = ROUND_OFF * model.extent;
+            let found = distance.largest <= (tolerance * distance.displacement).max(round_off);
             let stopped = summary.stopped
                 || (!found
                     && self.observer.iterate(fraction, self.distances.len()) == Continue::Stop);

@@ -142,3 +142,46 @@ fn what_cannot_be_unloaded_is_refused_with_its_name() {
     assert_eq!(code, 2, "{err}");
     assert!(err.contains("springs"), "{err}");
 }
+
+/// A cube of 40 mm on springs all around is as good as rigid: ω² = Σ k A/m.
+#[test]
+fn a_body_on_springs_swings_as_a_mass_on_their_sum() {
+    let case = r#"
+title = "A cube on springs"
+[geometry]
+shape = { box = { min = [0.0, 0.0, 0.0], max = [0.04, 0.04, 0.04] } }
+[material.rubber]
+law = "neo_hookean_log_j"
+density = 1000.0
+young_modulus = 1e7
+poisson_ratio = 0.3
+[discretisation]
+cloud = "regular"
+spacing = 0.01
+[[spring]]
+name = "tissue"
+where = "all"
+normal = 1e4
+tangential = 3e3
+[time]
+method = "static"
+"#;
+    let (_folder, case) = written(case);
+    let found = json(&["frequencies", &case, "--modes", "3"]);
+    let expected = ((2.0 * 1e4 + 4.0 * 3e3) / (1000.0 * 0.04f64)).sqrt() / std::f64::consts::TAU;
+    let first = found["modes"][0]["frequency_hz"].as_f64().unwrap_or_else(|| panic!("{found}"));
+    assert!((first - expected).abs() < 2e-3 * expected, "{first} {expected}");
+}
+
+#[test]
+fn a_body_without_loads_is_its_own_and_one_that_nothing_holds_is_refused() {
+    let still = SAGGED.replace("-9.81", "0.0");
+    let (_folder, case) = written(&still);
+    assert_eq!(json(&["unload", &case])["found"], true);
+    let i = SAGGED.find("[[prescribe]]").unwrap();
+    let j = SAGGED.find("[[body_force]]").unwrap();
+    let free = format!("{}{}", &SAGGED[..i], &SAGGED[j..]);
+    let (_folder, case) = written(&free);
+    let (code, _, err) = run(&["unload", &case]);
+    assert!(code == 2 && err.contains("move freely"), "{code} {err}");
+}

@@ -125,7 +125,7 @@ impl Spring {
 }
 
 /// A part of the boundary that encloses a volume V = −⅓ ∮ (x − c)·n da, in a plane
-/// −½ ∮ (x − c)·n ds per thickness, with n out of the body and c a point of the opening, if there
+/// −½ ∮ (x − c)·n da of the slab, with n out of the body and c a point of the opening, if there
 /// is one.
 #[derive(Debug, Clone)]
 pub struct Cavity {
@@ -145,7 +145,7 @@ pub struct Cavity {
 pub struct Fluid {
     /// κ \[Pa\]
     pub bulk_modulus: f64,
-    /// Volume that is added at amplitude 1 \[m³\], in a plane \[m²\].
+    /// Volume that is added at amplitude 1 \[m³\], in a plane to the cavity of the slab.
     pub inflow: f64,
     /// The factor over time.
     pub amplitude: Amplitude,

@@ -79,6 +79,10 @@ fn left_out(problem: &Problem, masses: MassKind) -> Vec<&'static str> {
     [
         (some_load, "loads are left out: the body is neither deformed nor stressed by them"),
         (loads.cavities.iter().any(is_filled), "inflows into cavities are left out"),
+        (
+            loads.cavities.iter().any(|cavity| cavity.fluid.is_some()),
+            "fluids count with their stiffness, not with their mass",
+        ),
         (!problem.obstacles.is_empty(), "obstacles and contact with them are left out"),
         (
             problem.has_memory(),

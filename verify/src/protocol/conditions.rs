@@ -184,7 +184,7 @@ impl Cavity {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Fluid {
     pub bulk_modulus_pa: f64,
-    /// At factor 1; in a plane per thickness [m²].
+    /// At factor 1; in a plane to the cavity of the slab.
     pub inflow_m3: f64,
     pub history: History,
 }

@@ -66,6 +66,7 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         }
         Error::EmptyPressure { name } => &format!("pressure.{name}.where"),
         Error::EmptySpring { name } => &format!("spring.{name}.where"),
+        Error::ClosedCavity { name } => &format!("cavity.{name}.opening"),
         Error::EmptyCavity { name }
         | Error::OpenCavity { name, .. }
         | Error::NoCavity { name, .. } => &format!("cavity.{name}.where"),
@@ -90,7 +91,9 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         Error::NoEquilibrium { .. } | Error::NoEquilibriumToVary | Error::NoSensitivity { .. } => {
             "time.solver"
         }
-        Error::NotUnloaded { .. } | Error::FoldedBody { .. } => "geometry",
+        Error::NotUnloaded { .. } | Error::FoldedBody { .. } | Error::NoneUnloaded { .. } => {
+            "geometry"
+        }
         Error::HasRun { .. }
         | Error::Diverged { .. }
         | Error::Inverted { .. }

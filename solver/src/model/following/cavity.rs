@@ -25,7 +25,7 @@ pub struct CavityLoad {
 /// A cavity at some displacements.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CavityState {
-    /// \[m³\], in a plane \[m²\].
+    /// \[m³\], in a plane of the slab.
     pub volume: f64,
     /// Of its fluid; 0 where there is none \[Pa\].
     pub pressure: f64,
@@ -44,6 +44,9 @@ impl CavityLoad {
         let part = resultant.norm() / size;
         if cavity.opening.is_none() && part > CLOSED {
             return Err(Error::OpenCavity { name: name(), part });
+        }
+        if cavity.opening.is_some() && part <= CLOSED {
+            return Err(Error::ClosedCavity { name: name() });
         }
         let about = cavity.opening.unwrap_or_else(|| surface.centre());
         let components = problem.dimension.components();
@@ -71,7 +74,7 @@ impl CavityLoad {
         CavityState { volume, pressure }
     }
 
-    /// Volume at rest \[m³\], in a plane \[m²\].
+    /// Volume at rest \[m³\], in a plane of the slab.
     pub fn volume_at_rest(&self) -> f64 {
         self.volume
     }

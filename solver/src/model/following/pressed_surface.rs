@@ -104,7 +104,7 @@ impl PressedSurface {
         }
     }
 
-    /// V = −1/d Σ_i (x_i − c)·cof F(X_i) A_i N_i \[m³\], in a plane \[m²\] (method book, eq. 14.7).
+    /// V = −1/d Σ_i (x_i − c)·cof F(X_i) A_i N_i \[m³\], in a plane of the slab (method book, eq. 14.7).
     pub fn volume(&self, about: &Vector3, u: &[f64], components: usize) -> f64 {
         let point = |(point, area): (usize, &Vector3)| {
             let F = self.rows.deformation_gradient(point, u, components);

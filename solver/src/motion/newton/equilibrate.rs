@@ -9,11 +9,12 @@ use super::unknowns::can_be_unknowns;
 use crate::algebra::packed::dot;
 use crate::error::{Error, Instability};
 use crate::model::Model;
+use crate::model::following::OwnFluid;
 use crate::motion::internal_force::strain_energy;
 use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::stability::Stability;
 use crate::motion::state::State;
-use crate::motion::step::{Buffers, add_following, external_force};
+use crate::motion::step::{Buffers, external_force};
 use crate::motion::summary::{PatchPressures, Summary};
 use crate::problem::Newton;
 
@@ -223,13 +224,15 @@ impl Solver<'_> {
         self.smallest_jacobian = self.smallest_jacobian.or(imbalance.smallest_jacobian);
         let stored = strain_energy(model, &u) - strain_energy(model, &state.displacement);
         external_force(model, state.time, &mut buffers.f_ext);
-        add_following(model, state.time, &state.displacement, &mut buffers.f_ext);
+        let fluids = self.exact_fluids(&state.displacement, self.path.fraction(state.time));
+        self.add_following(state.time, fluids, &state.displacement, buffers);
         let before = std::mem::take(&mut state.displacement);
         let steps: Vec<f64> = u.iter().zip(&before).map(|(u, before)| u - before).collect();
         let mut external = 0.5 * dot(&buffers.f_ext, &steps);
         state.time = self.path.time(fraction);
         external_force(model, state.time, &mut buffers.f_ext);
-        add_following(model, state.time, &u, &mut buffers.f_ext);
+        let fluids = self.exact_fluids(&u, fraction);
+        self.add_following(state.time, fluids, &u, buffers);
         external += 0.5 * dot(&buffers.f_ext, &steps);
         state.work.external += external;
         state.work.constraint += stored - external;
@@ -249,6 +252,18 @@ impl Solver<'_> {
         let forces = &mut state.constraint_forces;
         model.constraints.project(state.time, &model.inertia, &mut acceleration, forces);
         state.force_factor = 1.0;
+    }
+
+    /// Adds the loads that depend on displacements, of fluids with these pressures.
+    fn add_following(
+        &self,
+        t: f64,
+        fluids: Option<Vec<OwnFluid>>,
+        u: &[f64],
+        buffers: &mut Buffers,
+    ) {
+        let Model { following, components, .. } = self.model;
+        following.add_force((t, fluids.as_deref()), u, *components, &mut buffers.f_ext);
     }
 
     fn summary(

@@ -28,6 +28,11 @@ impl Path {
         if fraction == 1.0 { self.end } else { self.start + fraction * (self.end - self.start) }
     }
 
+    /// The fraction of the load at a time \[s\].
+    pub fn fraction(&self, time: f64) -> f64 {
+        if self.end == self.start { 1.0 } else { (time - self.start) / (self.end - self.start) }
+    }
+
     /// The change of `u` \[m\] that meets the conditions.
     pub fn jump(
         &self,

@@ -16,7 +16,7 @@ const MOST: i64 = 1000;
 #[derive(Debug, Args)]
 pub struct FrequenciesArgs {
     /// Case file (TOML), or name of a bundled case. What its conditions prescribe counts as held; its
-    /// loads and obstacles are left out.
+    /// loads and obstacles are left out; springs and fluids count with their stiffness.
     case: PathBuf,
     #[command(flatten)]
     set: SetArgs,

@@ -78,9 +78,8 @@ fn of_loads(case: &Case) -> Vec<String> {
     for spring in &loads.springs {
         header.extend(axes.map(|axis| format!("{}.f{axis}_n", spring.name)));
     }
-    let volume = if case.problem.dimension.components() == 2 { "volume_m2" } else { "volume_m3" };
     for cavity in &loads.cavities {
-        header.extend([volume, "pressure_pa"].map(|what| format!("{}.{what}", cavity.name)));
+        header.extend(["volume_m3", "pressure_pa"].map(|what| format!("{}.{what}", cavity.name)));
     }
     if case.outputs.volumes {
         header

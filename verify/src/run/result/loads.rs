@@ -44,14 +44,13 @@ pub fn loads_text(case: &Case, last: &Sample) -> Vec<String> {
             format!("  force of springs \"{}\": ({}) N", printable(&spring.name), triple(force))
         },
     ));
-    let unit = if case.problem.dimension.components() == 2 { "m²" } else { "m³" };
     lines.extend(case.problem.loads.cavities.iter().zip(&last.cavities).map(|(cavity, now)| {
         let name = printable(&cavity.name);
         let pressure = match &cavity.fluid {
             Some(_) => format!(", pressure {:.4e} Pa", now.pressure),
             None => String::new(),
         };
-        format!("  volume of cavity \"{name}\": {:.5e} {unit}{pressure}", now.volume)
+        format!("  volume of cavity \"{name}\": {:.5e} m³{pressure}", now.volume)
     }));
     lines
 }

@@ -232,15 +232,16 @@ pub struct CavityFormat {
     /// All of its surface, or all of it but an opening.
     #[serde(rename = "where")]
     pub part: SelectorFormat,
-    /// A point of the plane of its opening [m], in which the rim stays, or of all the planes of
-    /// symmetry that cut it; left out where the surface is closed.
+    /// A point of the plane of its opening [m], near the rim, which stays in that plane, or of all the
+    /// planes of symmetry that cut it; left out where the surface is closed. Nothing tells whether it lies
+    /// in that plane: elsewhere it gives another volume.
     pub opening: Option<Triple>,
     /// A fluid that fills it; left out where its volume is only recorded.
     pub fluid: Option<FluidFormat>,
 }
 
-/// A fluid whose pressure is its bulk modulus times the part by which it is compressed. With an inflow
-/// a volume is prescribed, and the pressure is the answer.
+/// A fluid whose pressure is its bulk modulus times what it lacks in room over the volume of the cavity at
+/// rest, (V₀ + inflow − V)/V₀. With an inflow a volume is prescribed, and the pressure is the answer.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FluidFormat {
@@ -248,7 +249,7 @@ pub struct FluidFormat {
     /// smaller the larger it is.
     #[serde(default = "water")]
     pub bulk_modulus: f64,
-    /// Volume that is added [m³], in a plane per thickness [m²]; negative where it is drawn off, none if
+    /// Volume that is added [m³], in a plane to the cavity of the slab; negative where it is drawn off, none if
     /// left out.
     #[serde(default)]
     pub inflow: f64,
