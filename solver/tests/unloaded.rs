@@ -3,11 +3,11 @@
 
 mod common;
 
+use common::pipe::{nearly_incompressible, pressure_to_widen, quarter_pipe};
 use common::*;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::geometry::{Selector, Shape};
-use mtled::material::*;
+use mtled::geometry::Shape;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::*;
 use mtled::unloaded::{Unloading, unload};
@@ -26,39 +26,11 @@ fn newton() -> Motion {
 fn a_pipe_that_was_widened_by_half_gets_its_radii_back() {
     let (a, b, mu): (f64, f64, f64) = (1.0, 2.0, 1000.0);
     let c = (1.5f64 * a).powi(2) - a * a;
-    let count = 2000;
-    let ring = |n: usize| {
-        let step = (b - a) / count as f64;
-        let R = a + (n as f64 + 0.5) * step;
-        let square = 1.0 + c / (R * R);
-        mu * (square - 1.0 / square) * R * step / (R * R + c)
-    };
-    let p = (0..count).map(ring).sum::<f64>();
-    let (inner, outer) = (1.5, (4.0f64 + c).sqrt());
-    let cylinder = |radius| Shape::Cylinder {
-        base: Vector3::new(0.0, 0.0, -1.0),
-        axis: Vector3::z(),
-        radius,
-        height: 2.0,
-    };
-    let without = |body, hole| Shape::Difference(Box::new(body), Box::new(hole));
-    let half = |normal| Shape::HalfSpace { point: Vector3::zeros(), normal };
-    let shell = without(cylinder(outer), cylinder(inner));
-    let body = without(without(shell, half(Vector3::x())), half(Vector3::y()));
-    let constants = ElasticConstants::from_shear_poisson(mu, 0.4995).unwrap();
-    let law = NeoHookeanIsochoric::new(constants, VolumetricTerm::Quadratic);
-    let law = material(Law::NeoHookeanIsochoric(law));
-    let mut problem = Problem::new(body, law, Recipe::with_spacing(0.1));
-    problem.dimension = Dimension::PlaneStrain { thickness: 0.01, z: 0.0 };
-    problem.conditions = vec![
-        condition("x0", face(0, 0.0), [Some(0.0), None, None]),
-        condition("y0", face(1, 0.0), [None, Some(0.0), None]),
-    ];
-    let hole = Selector::Inside { shape: cylinder(inner), tolerance: 0.01 * inner };
-    let faces = Selector::Union(vec![face(0, 0.0), face(1, 0.0)]);
-    let part = Selector::Intersection(vec![hole, Selector::Not(Box::new(faces))]);
+    let pressure = pressure_to_widen((a, b), mu, c);
+    let radii = (1.5 * a, (b * b + c).sqrt());
+    let (mut problem, part) = quarter_pipe(radii, (0.1, 0.01), nearly_incompressible(mu));
     let amplitude = Amplitude::Constant;
-    problem.loads.pressures = vec![Pressure { name: "p".into(), part, pressure: p, amplitude }];
+    problem.loads.pressures = vec![Pressure { name: "p".into(), part, pressure, amplitude }];
     problem.motion = newton();
     let found = unload(&problem, tight(), &mut Unobserved).unwrap();
     assert!(found.found, "{:?}", found.distances);

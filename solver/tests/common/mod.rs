@@ -15,6 +15,7 @@ use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::*;
 use nalgebra::DMatrix;
 
+pub mod pipe;
 pub mod statics;
 
 /// Edge of the cube and of the square \[m\].

@@ -1,6 +1,7 @@
 //! Static problems and their solution by any method.
 
 use super::*;
+use mtled::audit::{Kind, audit};
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
 use mtled::motion::summary::Summary;
@@ -44,6 +45,13 @@ pub fn solve_by(problem: &Problem, motion: Motion) -> Solved {
     let (mut state, mut recorder) = (State::new(&model), Recorder::default());
     let summary = simulate(&model, &problem.motion, &mut state, &mut recorder).unwrap();
     Solved { discretisation, model, state, recorder, summary }
+}
+
+/// What the audit doubts of a solution as one of this problem.
+pub fn doubts(problem: &Problem, solved: &Solved) -> Vec<Kind> {
+    let Solved { discretisation, model, state, .. } = solved;
+    let table = audit(problem, discretisation, model, state).unwrap();
+    table.doubts().map(|row| row.kind).collect()
 }
 
 /// Largest difference over the largest displacement.

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 const MOST: f64 = 0.5;
 
 /// The row bᵀ Δu + C Δp = m of a fluid (method book, eq. 21.19), and its column a.
-pub(super) struct FluidRow {
+struct FluidRow {
     cavity: usize,
     /// The force of a unit pressure \[N/Pa\].
     push: Vec<f64>,
@@ -45,6 +45,7 @@ pub(super) fn round_off_of_fluids(model: &Model, u: &[f64]) -> f64 {
 }
 
 impl Solver<'_> {
+    /// The correction of an imbalance, which begins with a `change` \[m\].
     pub(super) fn correction(
         &mut self,
         (now, fraction): (&Equilibrium, f64),
@@ -79,7 +80,7 @@ impl Solver<'_> {
         if !rows.is_empty() && !correction.stopped {
             let mut units = Vec::with_capacity(rows.len());
             for row in &rows {
-                let push = self.free_part(row.push());
+                let push = self.free_part(&row.push);
                 units.push(solve(self, push, vec![0.0; model.size()], still.clone()));
             }
             correction.stopped = units.iter().any(|unit| unit.stopped);
@@ -145,7 +146,7 @@ impl Solver<'_> {
     }
 
     /// The rows of the fluids at displacements `u` \[m\] and a fraction of the load.
-    pub(super) fn fluid_rows(&self, u: &[f64], fraction: f64) -> Vec<FluidRow> {
+    fn fluid_rows(&self, u: &[f64], fraction: f64) -> Vec<FluidRow> {
         let (Some(own), Some(exact)) = (&self.own.fluids, self.exact_fluids(u, fraction)) else {
             return Vec::new();
         };
@@ -162,12 +163,7 @@ impl Solver<'_> {
 
     /// Joins a correction at pressures that stay with those of unit pressures, so that the rows of
     /// the fluids hold.
-    pub(super) fn join(
-        &self,
-        correction: &mut Correction,
-        rows: &[FluidRow],
-        units: &[Correction],
-    ) {
+    fn join(&self, correction: &mut Correction, rows: &[FluidRow], units: &[Correction]) {
         let count = rows.len();
         let entry = |i: usize, j: usize| {
             let own = if i == j { rows[i].compliance / rows[i].rest() } else { 0.0 };
@@ -187,12 +183,5 @@ impl Solver<'_> {
             axpy(&mut correction.pressures, *factor, &unit.pressures);
             correction.fluids[row.cavity] = (factor - row.stiffness * row.mismatch) / row.rest();
         }
-    }
-}
-
-impl FluidRow {
-    /// The force of a unit pressure \[N/Pa\].
-    pub fn push(&self) -> &[f64] {
-        &self.push
     }
 }
