@@ -55,6 +55,11 @@ pub enum Mistake {
     MissingField { field: &'static str },
     #[error("the header field `{field}` is `{value}`; expected {expected}")]
     BadField { field: &'static str, value: String, expected: &'static str },
+    #[error(
+        "NIfTI does not say along what its vectors are measured; say it by the key `frame`: \"lps\" \
+         (displacements of ITK, ANTs and 3D Slicer), \"ras\", or \"fsl\" (directions of dtifit)"
+    )]
+    NoVectorFrame,
     #[error("line {line} of the header is `{text}`; expected `field: value`")]
     BadHeaderLine { line: usize, text: String },
     #[error(

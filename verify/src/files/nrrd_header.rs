@@ -245,6 +245,23 @@ impl Header {
         Ok((flip * origin, flip * directions))
     }
 
+    /// What turns the components of a vector into RAS: the columns of the measurement frame, or
+    /// the axes of the space without one.
+    pub fn measurement_frame(&self) -> Result<Matrix3, Mistake> {
+        let space = Matrix3::from_diagonal(&self.to_ras()?);
+        let Some(text) = self.get("measurementframe") else {
+            return Ok(space);
+        };
+        let columns = vectors(text)
+            .filter(|found| found.len() == 3)
+            .map(|found| Matrix3::from_columns(&found));
+        let frame = columns.filter(|frame| !voxels::are_singular(frame)).ok_or_else(|| {
+            let expected = "three vectors such as (1,0,0) that span a volume";
+            Mistake::bad_field("measurement frame", text, expected)
+        })?;
+        Ok(space * frame)
+    }
+
     /// Reasons to doubt where the voxels lie.
     pub fn doubts(&self) -> Vec<String> {
         let none = "the header has no `space`, so that the file does not say which way its voxels \

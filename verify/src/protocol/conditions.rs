@@ -1,11 +1,12 @@
 //! Prescribed displacements, loads and obstacles in a job.
 
 use super::geometry::{Selection, Shape};
+use crate::files::image::is_image;
 use crate::scene::Case;
 use crate::scene::format::{
-    BeyondFormat, CaseFormat, CavityFormat, DataFormat, ExtentFormat, FormulaFormat,
-    FrictionFormat, ObstacleFormat, PrescribeFormat, SelectorFormat, SideFormat, SpringFormat,
-    Triple, UnitFormat,
+    BeyondFormat, CaseFormat, CavityFormat, ExtentFormat, FormulaFormat, FrictionFormat,
+    ObstacleFormat, PrescribeFormat, SelectorFormat, SideFormat, SpringFormat, Triple, UnitFormat,
+    VectorFrameFormat,
 };
 use mtled::problem::{Amplitude, Obstacle, RigidMotion, RigidWay};
 use schemars::JsonSchema;
@@ -37,12 +38,14 @@ pub enum SupportMotion {
     /// Formulas of the reference position x, y, z [m] in + - * / ^, parentheses, sqrt, exp, ln,
     /// sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, abs and PI, each times `scale_m`.
     Formula { x: String, y: String, z: String, scale_m: f64 },
-    /// At scattered points in a file (CSV, NPY or VTU); between them the linear function counts
-    /// that fits the nearest 16 best. Points of the body that are farther than `reach_m` are an
+    /// At scattered points in a file (CSV, NPY, VTU, or an image of vectors along `frame`); between
+    /// them the linear function counts that fits the nearest 16 best. Points of the body that are farther than `reach_m` are an
     /// error or free.
     Data {
         file: PathBuf,
-        unit: UnitFormat,
+        unit: Option<UnitFormat>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        frame: Option<VectorFrameFormat>,
         field: String,
         reach_m: f64,
         free_beyond: bool,
@@ -281,15 +284,14 @@ impl SupportMotion {
             let [x, y, z] = formula.components();
             return Some(SupportMotion::Formula { x, y, z, scale_m: formula.factor });
         }
-        row.data.as_ref().map(|DataFormat { file, unit, field, reach, beyond, factor }| {
-            SupportMotion::Data {
-                file: file.clone(),
-                unit: *unit,
-                field: field.clone(),
-                reach_m: *reach,
-                free_beyond: *beyond == BeyondFormat::Free,
-                scale: *factor,
-            }
+        row.data.as_ref().map(|data| SupportMotion::Data {
+            file: data.file.clone(),
+            unit: data.unit.or((!is_image(&data.file)).then_some(UnitFormat::Metre)),
+            frame: data.frame,
+            field: data.field_name().to_string(),
+            reach_m: data.reach,
+            free_beyond: data.beyond == BeyondFormat::Free,
+            scale: data.factor,
         })
     }
 }

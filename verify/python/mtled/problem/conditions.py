@@ -66,11 +66,12 @@ class Formula:
 
 @dataclass
 class Data:
-    """Displacements at scattered points from a file."""
+    """Displacements, or directions, at scattered points or voxels from a file."""
 
     file: Path
     reach_m: float
     unit: Unit | None = None
+    frame: Literal["ras", "lps", "fsl"] | None = None
     field: str | None = None
     beyond: str | None = None
     factor: float | None = None

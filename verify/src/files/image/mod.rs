@@ -1,20 +1,27 @@
 //! Images of one value per voxel (NIfTI, NRRD), read and written with their grid, and fields
-//! of displacement vectors on such a grid.
+//! of vectors on such a grid.
 
 mod format;
 mod grid;
 mod nifti;
 mod nifti_header;
 mod nrrd;
+mod vectors;
 mod voxels;
 
 pub use format::ImageFormat;
 pub use grid::Grid;
+pub use vectors::{VectorFile, VectorFrame, read_vectors};
 pub use voxels::{Image, Interpolation};
 
 use super::error::FileError;
 use super::unit::LengthUnit;
 use std::path::Path;
+
+/// Whether a file is an image by its name.
+pub fn is_image(path: &Path) -> bool {
+    ImageFormat::of_input(path).is_ok()
+}
 
 /// Reads an image, told apart by its name; `unit` overrides what the file states.
 pub fn read_image(path: &Path, unit: Option<LengthUnit>) -> Result<Image, FileError> {

@@ -6,13 +6,13 @@ use super::nifti_header::{VOXELS_AT, header};
 use super::voxels::{Header, Image};
 use crate::files::bytes::{ByteOrder, Scalar};
 use crate::files::error::{FileError, Mistake};
-use crate::files::nifti::read_voxels;
+use crate::files::nifti::{Content, read_voxels};
 use crate::files::unit::LengthUnit;
 use std::path::Path;
 
 /// Reads an image; NIfTI is RAS already.
 pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<Image, FileError> {
-    let voxels = read_voxels(path)?;
+    let voxels = read_voxels(path, Content::Numbers)?;
     let grid = voxels
         .frame(unit)
         .and_then(|(origin, directions)| Grid::new(voxels.size, origin, directions));

@@ -1,4 +1,4 @@
-//! NIfTI label maps, versions 1 and 2: `.nii`, and pairs of `.hdr` and `.img`, compressed or not
+//! NIfTI images, versions 1 and 2: `.nii`, and pairs of `.hdr` and `.img`, compressed or not
 //! (nifti.nimh.nih.gov/nifti-1, nifti-2).
 
 mod frame;
@@ -21,10 +21,19 @@ const HEADER: usize = 348;
 
 /// Reads a label map; NIfTI is RAS already. `unit` overrides the file's.
 pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileError> {
-    let voxels = read_voxels(path)?;
+    let voxels = read_voxels(path, Content::Numbers)?;
     let files = voxels.files.clone();
     let (map, notes) = voxels.labels(unit).map_err(|mistake| mistake.of(path))?;
     Ok(LabelMapFile { map, files, notes })
+}
+
+/// What a voxel holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Content {
+    /// One number.
+    Numbers,
+    /// The components of a vector: all first ones, then all second and all third.
+    Vectors,
 }
 
 /// An image as it stands in its file.
@@ -53,10 +62,11 @@ struct Start {
     in_pair: bool,
 }
 
-/// Reads an image of one value per voxel, compressed or not.
-pub(super) fn read_voxels(path: &Path) -> Result<Voxels, FileError> {
+/// Reads an image, compressed or not.
+pub(super) fn read_voxels(path: &Path, content: Content) -> Result<Voxels, FileError> {
     let Some((header_file, voxel_file)) = pair(path) else {
-        let voxels = parse_voxels(decompressed(path)?).map_err(|mistake| mistake.of(path))?;
+        let voxels =
+            parse_voxels(decompressed(path)?, content).map_err(|mistake| mistake.of(path))?;
         return Ok(Voxels { files: vec![path.to_path_buf()], ..voxels });
     };
     let start = read_header(&mut decompressed(&header_file)?);
@@ -65,7 +75,7 @@ pub(super) fn read_voxels(path: &Path) -> Result<Voxels, FileError> {
         let expected = "`ni1` or `ni2` beside an .img file; name it .nii";
         return Err(Mistake::bad_field("magic", "n+1", expected).of(&header_file));
     }
-    let voxels = parse_behind(start, decompressed(&voxel_file)?, 0);
+    let voxels = parse_behind(start, decompressed(&voxel_file)?, 0, content);
     let other = if path == header_file { voxel_file.clone() } else { header_file };
     let voxels = voxels.map_err(|mistake| mistake.of(&voxel_file))?;
     Ok(Voxels { files: vec![path.to_path_buf(), other], ..voxels })
@@ -97,27 +107,32 @@ fn decompressed(path: &Path) -> Result<Box<dyn Read>, FileError> {
     })
 }
 
-pub(super) fn parse_voxels(mut stream: impl Read) -> Result<Voxels, Mistake> {
+pub(super) fn parse_voxels(mut stream: impl Read, content: Content) -> Result<Voxels, Mistake> {
     let start = read_header(&mut stream)?;
     if start.in_pair {
         let expected = "`n+1`; name the .hdr file of a pair, with its .img file beside it";
         return Err(Mistake::bad_field("magic", "ni1", expected));
     }
     let before = start.bytes.len() as u64;
-    parse_behind(start, stream, before)
+    parse_behind(start, stream, before, content)
 }
 
 /// The voxels in a stream of which the first bytes `before` have been read.
-fn parse_behind(start: Start, mut stream: impl Read, before: u64) -> Result<Voxels, Mistake> {
+fn parse_behind(
+    start: Start,
+    mut stream: impl Read,
+    before: u64,
+    content: Content,
+) -> Result<Voxels, Mistake> {
     let Start { header, bytes, in_pair } = start;
-    let size = size(&header)?;
+    let size = size(&header, content)?;
     frame(&header)?;
     let notes = doubts(&header, size)?;
     let order = match header.endianness {
         Endianness::Little => ByteOrder::Little,
         Endianness::Big => ByteOrder::Big,
     };
-    let (scalar, count) = (scalar(&header)?, voxels::voxel_count(&size)?);
+    let (scalar, count) = (scalar(&header)?, voxels::voxel_count(&size)? * content.count());
     let scaling = scaling(&header)?;
     skip(&mut stream, offset(&header)?.saturating_sub(before))?;
     let (stored, _) = voxel_bytes(stream, count * scalar.size())?;
@@ -126,15 +141,26 @@ fn parse_behind(start: Start, mut stream: impl Read, before: u64) -> Result<Voxe
     Ok(Voxels { header, header_bytes, size, scalar, order, scaling, stored, files, notes })
 }
 
+impl Content {
+    fn count(self) -> usize {
+        match self {
+            Content::Numbers => 1,
+            Content::Vectors => 3,
+        }
+    }
+}
+
 impl Voxels {
     /// Centre of the first voxel and steps along the indices \[m\]; `unit` overrides the file's.
     pub fn frame(&self, unit: Option<LengthUnit>) -> Result<(Vector3, Matrix3), Mistake> {
         let (origin, directions) = frame(&self.header)?;
-        let metres = match unit {
-            Some(unit) => unit.in_metres(),
-            None => stated_unit(&self.header)?.in_metres(),
-        };
+        let metres = self.metres(unit)?;
         Ok((origin * metres, directions * metres))
+    }
+
+    /// The unit of length \[m\]; `unit` overrides the file's.
+    pub fn metres(&self, unit: Option<LengthUnit>) -> Result<f64, Mistake> {
+        Ok(unit.map_or_else(|| stated_unit(&self.header), Ok)?.in_metres())
     }
 
     fn labels(mut self, unit: Option<LengthUnit>) -> Result<(LabelMap, Vec<String>), Mistake> {
@@ -172,13 +198,19 @@ fn read_header(stream: &mut impl Read) -> Result<Start, Mistake> {
     Ok(Start { header, bytes, in_pair })
 }
 
-/// Voxels along the three axes; further axes must have one entry.
-fn size(header: &NiftiHeader) -> Result<[usize; 3], Mistake> {
+/// Voxels along the three axes; further axes must have one entry, or one of them the components.
+fn size(header: &NiftiHeader, content: Content) -> Result<[usize; 3], Mistake> {
     let axes = usize::from(header.dim[0]);
     let sizes: Vec<usize> = header.dim[1..].iter().take(axes).map(|&n| usize::from(n)).collect();
-    if axes < 3 || sizes[3..].iter().any(|&n| n > 1) {
-        let expected = "three axes, one label per voxel: of a series, or of a probability for each \
-                        structure, make one volume of labels first";
+    let further: usize = sizes.iter().skip(3).product();
+    if axes < 3 || further != content.count() {
+        let expected = match content {
+            Content::Numbers => {
+                "three axes, one label per voxel: of a series, or of a probability for each \
+                 structure, make one volume of labels first"
+            }
+            Content::Vectors => "three axes and one more of 3, the components of a vector",
+        };
         return Err(Mistake::bad_field("dim", &format!("{sizes:?}"), expected));
     }
     Ok([sizes[0], sizes[1], sizes[2]])

@@ -25,7 +25,9 @@ pub fn read_displacements(path: &Path, name: &str) -> Result<Vec<(Vector3, Vecto
             Ok(values.chunks_exact(6).map(pair).collect())
         }
         "vtu" => from_vtu(bytes, name),
-        _ => Err(Mistake::UnknownExtension { known: ".csv, .npy, .vtu" }),
+        _ => Err(Mistake::UnknownExtension {
+            known: ".csv, .npy, .vtu, .nrrd, .nhdr, .nii, .nii.gz",
+        }),
     };
     let bytes = bytes_of(path)?;
     parse(&bytes).and_then(finite).map_err(|mistake| mistake.of(path))

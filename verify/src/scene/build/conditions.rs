@@ -1,7 +1,7 @@
 //! Conditions, loads and obstacles of a case file → those of the solver.
 
 use crate::scene::build::builder::Builder;
-use crate::scene::build::field::near;
+use crate::scene::build::data::near;
 use crate::scene::format::{
     AmplitudeFormat, BeyondFormat, CaseFormat, DisplacementFormat, FluidFormat, FormulaFormat,
     ObstacleFormat, PrescribeFormat, RigidMotionFormat, RotationFormat, Triple,
@@ -52,7 +52,7 @@ impl Builder<'_> {
         } else if let Some(formula) = &row.formula {
             prescribed = self.formula(&at, formula).map(Prescribed::Field);
         } else if let Some(data) = &row.data {
-            let scattered = self.scattered(&at, data)?;
+            let scattered = self.displacements(&at, data)?;
             if data.beyond == BeyondFormat::Free {
                 part = part.map(|part| Selector::Intersection(vec![part, near(&scattered)]));
             }

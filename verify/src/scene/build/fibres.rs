@@ -124,7 +124,7 @@ impl Builder<'_> {
             }
             (None, Some(formula), None) => self.formula(&format!("{key}.formula"), formula),
             (None, None, Some(data)) => {
-                let data = self.scattered(&format!("{key}.data"), data)?;
+                let data = self.axes(&format!("{key}.data"), data)?;
                 Some(Field::of(move |position| data.axis_at(position)))
             }
             _ => {

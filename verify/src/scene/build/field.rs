@@ -1,14 +1,11 @@
-//! Displacement fields of a case file: formulas, and data at scattered points.
+//! Fields of a case file as formulas.
 #![allow(non_snake_case)]
 
-use crate::files::points::read_displacements;
 use crate::scene::build::builder::Builder;
-use crate::scene::format::{DataFormat, FormulaFormat, UnitFormat};
+use crate::scene::format::FormulaFormat;
 use exmex::{Express, FlatEx, FloatOpsFactory, MatchLiteral};
 use mtled::algebra::tensor::Vector3;
-use mtled::geometry::{DistanceFunction, Field, Scattered, Selector, Shape};
-use mtled::problem::Dimension;
-use std::sync::Arc;
+use mtled::geometry::Field;
 
 /// Letters at most in a formula, whose parser is recursive.
 const LONGEST: usize = 1000;
@@ -138,47 +135,6 @@ impl Builder<'_> {
             value
         }))
     }
-
-    /// A field through data, or `None` and a mistake.
-    pub fn scattered(&mut self, key: &str, format: &DataFormat) -> Option<Arc<Scattered>> {
-        self.positive(&format!("{key}.reach"), format.reach);
-        let (key, path) = (format!("{key}.file"), self.resolve(&format.file));
-        let mut data = match read_displacements(&path, &format.field) {
-            Ok(data) => data,
-            Err(error) => {
-                self.mistake(&key, error);
-                return None;
-            }
-        };
-        self.hash_file(&key, &path);
-        let unit = match format.unit {
-            UnitFormat::Metre => 1.0,
-            UnitFormat::Millimetre => 1e-3,
-        };
-        for (position, displacement) in &mut data {
-            *position *= unit;
-            *displacement *= unit * format.factor;
-            if let Dimension::PlaneStrain { z, .. } = self.dimension {
-                (position.z, displacement.z) = (z, 0.0);
-            }
-        }
-        match Scattered::new(&data, format.reach) {
-            Ok(scattered) => Some(Arc::new(scattered)),
-            Err(error) => {
-                self.mistake(&key, error);
-                None
-            }
-        }
-    }
-}
-
-/// The positions within reach of the data.
-pub fn near(data: &Arc<Scattered>) -> Selector {
-    let (lower, upper) = data.bounds();
-    let data = data.clone();
-    let distance = move |X: &Vector3| data.distance(X) - data.reach();
-    let shape = Shape::Function(DistanceFunction::new(lower, upper, distance));
-    Selector::Inside { shape, tolerance: 0.0 }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 mod builder;
 mod conditions;
+mod data;
 mod fibres;
 mod field;
 mod geometry;

@@ -1,5 +1,6 @@
 //! Prescribed displacements, loads and obstacles.
 
+use crate::files::image::VectorFrame;
 use crate::scene::format::choice::choice;
 use crate::scene::format::geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
 use mtled::geometry::Extent;
@@ -98,14 +99,17 @@ impl FormulaFormat {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DataFormat {
-    /// CSV with a header x, y, z, ux, uy, uz; NPY of shape (n, 6) in this order; or VTU.
+    /// CSV with a header x, y, z, ux, uy, uz; NPY of shape (n, 6) in this order; VTU; or an image
+    /// of vectors, NRRD with the components first or NIfTI with the components last, whose world is
+    /// R, A, S.
     pub file: PathBuf,
-    /// Unit of positions and displacements in the file.
-    #[serde(default = "metre")]
-    pub unit: UnitFormat,
-    /// Name of the point data of a VTU file.
-    #[serde(default = "displacement")]
-    pub field: String,
+    /// Unit of positions and displacements in the file; m if left out, in images what they state.
+    pub unit: Option<UnitFormat>,
+    /// What the vectors of an image are measured along; needed for NIfTI, which does not say it. If
+    /// left out, what an NRRD file states: its measurement frame, or its space without one.
+    pub frame: Option<VectorFrameFormat>,
+    /// Name of the point data of a VTU file; "displacement" if left out.
+    pub field: Option<String>,
     /// Largest distance of a node from the nearest point [m].
     pub reach: f64,
     /// What happens to selected nodes that are farther.
@@ -120,12 +124,23 @@ fn one() -> f64 {
     1.0
 }
 
-fn metre() -> UnitFormat {
-    UnitFormat::Metre
+impl DataFormat {
+    /// Name of the point data of a VTU file.
+    pub fn field_name(&self) -> &str {
+        self.field.as_deref().unwrap_or("displacement")
+    }
 }
 
-fn displacement() -> String {
-    "displacement".to_string()
+choice! {
+    /// What the components of vectors in an image are measured along.
+    VectorFrameFormat for VectorFrame {
+        /// Right, anterior, superior.
+        "ras" Ras,
+        /// Left, posterior, superior, as ITK, ANTs and 3D Slicer write displacements.
+        "lps" Lps,
+        /// The voxels, as FSL's dtifit writes directions: the first index runs to the left.
+        "fsl" Fsl,
+    }
 }
 
 choice! {

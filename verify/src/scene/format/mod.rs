@@ -14,7 +14,7 @@ pub use case::{CaseFormat, DimensionFormat};
 pub use conditions::{
     AmplitudeFormat, BeyondFormat, CavityFormat, DataFormat, DisplacementFormat, ExtentFormat,
     FluidFormat, FormulaFormat, FrictionFormat, ObstacleFormat, PrescribeFormat, RigidMotionFormat,
-    RotationFormat, SideFormat, SpringFormat,
+    RotationFormat, SideFormat, SpringFormat, VectorFrameFormat,
 };
 pub use fibres::DirectionFormat;
 pub use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
