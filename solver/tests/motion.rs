@@ -4,8 +4,8 @@
 mod common;
 
 use common::*;
-use mtled::algebra::tensor::Vector3;
-use mtled::discretisation::Discretisation;
+use mtled::algebra::tensor::{Matrix3, Vector3};
+use mtled::discretisation::{Discretisation, Warning};
 use mtled::model::Model;
 use mtled::motion::energy::{Energies, momenta};
 use mtled::motion::observe::Unobserved;
@@ -38,6 +38,7 @@ fn fluctuation(energies: &[Energies]) -> f64 {
 fn a_body_under_a_body_force_alone_falls_by_half_g_t_squared() {
     let g = Vector3::new(1.0, 2.0, -9.81);
     for mut problem in [jittered(cube(3), 0.2, 1), jittered(square(5), 0.2, 1)] {
+        problem.recipe.mass = MassRule::MomentsOfFreeBodies;
         gravity(&mut problem, g);
         let (_, model) = build(&problem);
         let state = run(&model, &dynamic(0.2, 2e-3, 0.0));
@@ -47,6 +48,55 @@ fn a_body_under_a_body_force_alone_falls_by_half_g_t_squared() {
             assert!((u - exact).norm() < 1e-10 * exact.norm());
         }
     }
+}
+
+/// ∫ ρ X ⊗ X dV of a body at rest over its points and over its nodes.
+fn second_moments(discretisation: &Discretisation, model: &Model, density: f64) -> [Matrix3; 2] {
+    let square = |X: &Vector3, mass: f64| mass * X * X.transpose();
+    let quadrature = &discretisation.quadrature;
+    let points = quadrature.positions.iter().zip(&quadrature.weights);
+    let nodes = model.positions.iter().zip(&model.lumped_mass);
+    [points.map(|(X, w)| square(X, density * w)).sum(), nodes.map(|(X, m)| square(X, *m)).sum()]
+}
+
+/// Relative difference of the second moments of a motion with masses of this rule.
+fn moments_off(problem: &Problem, rule: MassRule) -> f64 {
+    let mut problem = problem.clone();
+    problem.recipe.mass = rule;
+    let density = problem.regions[0].material.density;
+    let (discretisation, model) = build(&problem);
+    let [points, nodes] = second_moments(&discretisation, &model, density);
+    (points - nodes).norm() / points.norm()
+}
+
+#[test]
+fn bodies_that_nothing_holds_have_their_moments_of_inertia() {
+    for problem in [cube(5), jittered(cube(5), 0.3, 4), jittered(square(6), 0.3, 2)] {
+        assert!(moments_off(&problem, MassRule::MomentsOfFreeBodies) < 1e-12);
+        assert!(moments_off(&problem, MassRule::RowSum) > 0.01);
+    }
+}
+
+#[test]
+fn held_bodies_have_row_sums_unless_their_moments_are_asked_for() {
+    let mut problem = cube(5);
+    problem.conditions.push(condition("foot", face(2, 0.0), [Some(0.0); 3]));
+    assert!(moments_off(&problem, MassRule::MomentsOfFreeBodies) > 0.01);
+    assert!(moments_off(&problem, MassRule::Moments) < 1e-12);
+    problem.conditions[0].release = Some(0.05);
+    assert!(moments_off(&problem, MassRule::MomentsOfFreeBodies) < 1e-12);
+}
+
+#[test]
+fn a_body_with_too_few_nodes_to_turn_as_it_should_says_so() {
+    let few = |cells: usize| {
+        let mut problem = cube(cells);
+        problem.recipe.mass = MassRule::MomentsOfFreeBodies;
+        let warnings = build(&problem).1.warnings;
+        warnings.iter().any(|own| matches!(own, Warning::FewNodesToTurn { .. }))
+    };
+    assert!(few(1) && few(2));
+    assert!(!few(6));
 }
 
 #[test]

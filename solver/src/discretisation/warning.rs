@@ -99,6 +99,16 @@ pub enum Warning {
         /// Its name.
         name: String,
     },
+    /// Masses at few nodes cannot have the moments of inertia of their body.
+    #[error(
+        "a body that nothing holds has too few nodes for its moments of inertia, which are {:.0} % off: it turns as \
+         if it were larger; use a smaller spacing",
+        100.0 * .error
+    )]
+    FewNodesToTurn {
+        /// Relative error of its moments of inertia \[–\].
+        error: f64,
+    },
     /// The load of a static problem ends before an amplitude does.
     #[error(
         "the amplitude of \"{name}\" lasts {duration} s and the load ends at {end} s, where it is \

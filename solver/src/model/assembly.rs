@@ -7,8 +7,10 @@ use crate::model::blocks::{Block, Sums, blocks};
 use crate::model::contact::{ContactPlan, check_obstacles};
 use crate::model::essential::{Constraints, check_shared_nodes};
 use crate::model::following::FollowingLoads;
-use crate::model::load::{LoadPattern, check_loads, initial_velocity, load_patterns};
-use crate::model::mass::{fictitious_mass, lumped_mass};
+use crate::model::load::{
+    LoadPattern, check_loads, follow_masses, initial_velocity, load_patterns,
+};
+use crate::model::mass::{fictitious_mass, fit_moments, lumped_mass};
 use crate::model::stiffness::stiffness_diagonal;
 use crate::model::time_step_bound::per_point_bound;
 use crate::problem::{Amplitude, Dimension, MassRule, Motion, Problem, Region, RelaxationMass};
@@ -70,11 +72,21 @@ impl Model {
         let lumped = matches!(problem.motion, Motion::Dynamic { .. })
             || relaxation.is_some_and(|settings| settings.mass == RelaxationMass::Lumped);
         let of_rule = |rule| lumped_mass(discretisation, &density, rule);
-        let lumped_mass = match of_rule(problem.recipe.mass) {
+        let mut lumped_mass = match of_rule(problem.recipe.mass) {
             // Only the sum counts where nothing moves by this mass.
             Err(Error::MasslessNode { .. }) if !lumped => of_rule(MassRule::EvenSplit)?,
             mass => mass?,
         };
+        let bodies = discretisation.connected_bodies();
+        let mut loads = load_patterns(problem, discretisation, &density)?;
+        let mut few_nodes = None;
+        if lumped && problem.recipe.mass.has_moments() {
+            let fitted = fit_moments(problem, discretisation, &density, &bodies, &mut lumped_mass);
+            if let Motion::Dynamic { .. } = problem.motion {
+                follow_masses(&mut loads, problem, (&fitted.0, &lumped_mass, &bodies));
+                few_nodes = fitted.1;
+            }
+        }
         let components = problem.dimension.components();
         let blocks = blocks(problem, discretisation)?;
         let following = FollowingLoads::new(problem, discretisation)?;
@@ -84,6 +96,7 @@ impl Model {
         let inertia =
             if lumped { lumped_mass.clone() } else { fictitious_mass(&stiffness, &lumped_mass) };
         let mut warnings = empty_regions(problem, discretisation);
+        warnings.extend(few_nodes);
         warnings.extend(check_shared_nodes(problem, discretisation)?);
         let constraints = Constraints::new(problem, discretisation, &inertia)?;
         warnings.extend(check_loads(problem, discretisation, &constraints));
@@ -91,7 +104,6 @@ impl Model {
         let (cloud, end) = (&discretisation.cloud, problem.motion.end());
         warnings.extend(check_obstacles(&contact, cloud, &constraints, components, end)?);
         contact.refuse_swallowed(&cloud.positions, &problem.body)?;
-        let bodies = discretisation.connected_bodies();
         check_rank(discretisation, &constraints, &bodies)?;
         let per_point_bound = per_point_bound(problem, discretisation, &lumped_mass);
         let (lower, upper) = bounding_box(&discretisation.cloud.positions);
@@ -104,7 +116,7 @@ impl Model {
             stiffness,
             inertia,
             added_mass: 0.0,
-            loads: load_patterns(problem, discretisation, &density)?,
+            loads,
             following,
             contact,
             initial_velocity: initial_velocity(problem, discretisation)?,

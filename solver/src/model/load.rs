@@ -67,6 +67,36 @@ pub fn load_patterns(
     Ok(patterns)
 }
 
+/// Gives the mean of each body force over everything to the masses that were `added` \[node\] \[kg\],
+/// so that a body falls as one. Force and moment of a connected body do not change, since what is
+/// added has neither mass nor first moments (method book, eq. 14.10).
+pub fn follow_masses(
+    patterns: &mut [LoadPattern],
+    problem: &Problem,
+    (added, mass, bodies): (&[f64], &[f64], &[u32]),
+) {
+    let d = problem.dimension.components();
+    let count = bodies.iter().max().map_or(0, |last| *last as usize + 1);
+    for (pattern, load) in patterns.iter_mut().zip(&problem.loads.body_forces) {
+        if !load.part.is_everything() {
+            continue;
+        }
+        let (mut totals, mut masses) = (vec![0.0; d * count], vec![0.0; count]);
+        for (node, &body) in bodies.iter().enumerate() {
+            masses[body as usize] += mass[node];
+            for k in 0..d {
+                totals[d * body as usize + k] += pattern.force[d * node + k];
+            }
+        }
+        for (node, &body) in bodies.iter().enumerate() {
+            for k in 0..d {
+                let mean = totals[d * body as usize + k] / masses[body as usize];
+                pattern.force[d * node + k] += added[node] * mean;
+            }
+        }
+    }
+}
+
 fn traction_force(
     problem: &Problem,
     discretisation: &Discretisation,

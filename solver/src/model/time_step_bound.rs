@@ -25,7 +25,7 @@ pub fn per_point_bound(problem: &Problem, discretisation: &Discretisation, mass:
                 let node = supports.nodes[entry] as usize;
                 let mass_ratio = match problem.recipe.mass {
                     MassRule::EvenSplit => n,
-                    MassRule::RowSum => covered[node] / mass[node],
+                    _ => covered[node] / mass[node],
                 };
                 supports.grad_phi[entry].norm_squared() * mass_ratio
             })

@@ -54,7 +54,7 @@ pub fn dilation(basis: Basis) -> f64 {
 /// corners.
 pub fn mass(basis: Basis) -> MassRule {
     match basis {
-        Basis::Linear => MassRule::RowSum,
+        Basis::Linear => MassRule::MomentsOfFreeBodies,
         Basis::Quadratic | Basis::ModifiedQuadratic { .. } => MassRule::EvenSplit,
     }
 }

@@ -171,6 +171,18 @@ pub enum MassRule {
     EvenSplit,
     /// In proportion to the shape functions: m_a = Σ_q ρ w_q φ_a.
     RowSum,
+    /// Row sums that are changed, where masses move, until each connected body has its moments of inertia,
+    /// and so turns as it should.
+    Moments,
+    /// The same for bodies that nothing holds; row sums for others, whose critical step is longer.
+    MomentsOfFreeBodies,
+}
+
+impl MassRule {
+    /// Whether some bodies have their moments of inertia.
+    pub fn has_moments(self) -> bool {
+        matches!(self, MassRule::Moments | MassRule::MomentsOfFreeBodies)
+    }
 }
 
 /// Which Grad φ strains and forces use (method book, section 9).

@@ -41,7 +41,7 @@ pub struct DiscretisationFormat {
     pub regularisation: Option<f64>,
     /// Weight function of the moving least squares; "quartic_spline" if left out.
     pub weight_function: Option<WeightFunctionFormat>,
-    /// How the mass of a quadrature point is given to nodes; "row_sum" if left out, "even_split"
+    /// How the mass of a quadrature point is given to nodes; "moments_of_free_bodies" if left out, "even_split"
     /// with the quadratic bases, whose row sums are negative at some corners.
     pub mass: Option<MassFormat>,
     /// How prescribed displacements are enforced; "collocation" if left out.
@@ -131,6 +131,11 @@ choice! {
         "even_split" EvenSplit,
         /// In proportion to the shape functions.
         "row_sum" RowSum,
+        /// As row_sum, but changed, where masses move, until each connected body has its moments of inertia, and
+        /// so turns as it should.
+        "moments" Moments,
+        /// The same for bodies that nothing holds, row sums for others, whose critical step is longer.
+        "moments_of_free_bodies" MomentsOfFreeBodies,
     }
 }
 

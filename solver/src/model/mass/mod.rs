@@ -1,5 +1,9 @@
 //! Lumped and fictitious masses.
 
+mod moments;
+
+pub use moments::fit_moments;
+
 use crate::discretisation::Discretisation;
 use crate::discretisation::quadrature::Quadrature;
 use crate::error::Error;
@@ -21,7 +25,7 @@ pub fn lumped_mass(
             for entry in row {
                 mass[rows.nodes[entry] as usize] += match rule {
                     MassRule::EvenSplit => even_part,
-                    MassRule::RowSum => point_mass * rows.phi[entry],
+                    _ => point_mass * rows.phi[entry],
                 };
             }
         }
