@@ -74,6 +74,21 @@ fn the_volume_of_a_cavity_is_that_of_its_shape_and_goes_with_the_determinant() {
     assert_eq!(pressure, 0.0);
 }
 
+/// The deformed surface closes with the error of its quadrature only.
+#[test]
+fn a_shift_changes_neither_the_volume_of_a_deformed_cavity_nor_what_its_slope_says() {
+    let (_, model) = build(&hollow_ball(fluid(5e3, 1e-5)));
+    let u = noise(&model, 1e-3, 1);
+    let shift = Vector3::new(0.7, -0.4, 0.9);
+    let moved: Vec<f64> = u.iter().enumerate().map(|(n, u)| u + shift[n % 3]).collect();
+    let volume = |u: &[f64]| only(&model).state(0.0, u, 3).volume;
+    approx::assert_relative_eq!(volume(&moved), volume(&u), max_relative = 1e-12);
+    let (_, slope) = only(&model).row(&u, 3);
+    let along: f64 = slope.iter().enumerate().map(|(n, slope)| slope * shift[n % 3]).sum();
+    let size: f64 = slope.iter().map(|slope| slope.abs()).sum();
+    assert!(along.abs() < 1e-12 * size, "{along:e} {size:e}");
+}
+
 #[test]
 fn a_quarter_of_a_pipe_has_a_quarter_of_its_hole() {
     let law = neo_hookean(3000.0, 0.3);

@@ -116,7 +116,7 @@ impl Run<'_> {
         let row = |(cavity, load): (&Cavity, &CavityLoad)| {
             let facets = &self.sampled.facets;
             let found = part_of_surface(facets, &cavity.part, dimension, self.spacing);
-            let about = load.about();
+            let about = load.about(&vec![0.0; self.model.size()], self.model.components);
             let of_piece = |(X, area): &(Vector3, Vector3)| dimension.in_plane(X - about).dot(area);
             let sum: f64 = found.pieces.iter().map(of_piece).sum();
             let asked = -sum / self.model.components as f64;

@@ -15,8 +15,8 @@ const CLOSED: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub struct CavityLoad {
     surface: PressedSurface,
-    /// A point that the volume is counted from \[m\].
-    about: Vector3,
+    /// A point of the plane of its opening \[m\]; none of a closed surface.
+    opening: Option<Vector3>,
     /// V₀ \[m³\]
     volume: f64,
     fluid: Option<Fluid>,
@@ -48,25 +48,25 @@ impl CavityLoad {
         if cavity.opening.is_some() && part <= CLOSED {
             return Err(Error::ClosedCavity { name: name() });
         }
-        let about = cavity.opening.unwrap_or_else(|| surface.centre());
+        let opening = cavity.opening;
         let components = problem.dimension.components();
         let still = vec![0.0; components * discretisation.cloud.positions.len()];
-        let volume = surface.volume(&about, &still, components);
+        let volume = surface.volume(opening, &still, components);
         if volume.is_nan() || volume <= 0.0 {
             return Err(Error::NoCavity { name: name(), volume });
         }
-        Ok(CavityLoad { surface, about, volume, fluid: cavity.fluid.clone() })
+        Ok(CavityLoad { surface, opening, volume, fluid: cavity.fluid.clone() })
     }
 
     /// Moves its surface at rest by offsets \[component of node\] \[m\].
     pub(super) fn move_by(&mut self, offsets: &[f64], components: usize) {
         self.surface.move_by(offsets, components);
-        self.volume = self.surface.volume(&self.about, &vec![0.0; offsets.len()], components);
+        self.volume = self.surface.volume(self.opening, &vec![0.0; offsets.len()], components);
     }
 
     /// At time `t` \[s\] and displacements `u` \[m\].
     pub fn state(&self, t: f64, u: &[f64], components: usize) -> CavityState {
-        let volume = self.surface.volume(&self.about, u, components);
+        let volume = self.surface.volume(self.opening, u, components);
         let pressure = self.fluid.as_ref().map_or(0.0, |fluid| {
             let target = self.volume + fluid.inflow * fluid.amplitude.at(t);
             fluid.bulk_modulus * (target - volume) / self.volume
@@ -79,9 +79,9 @@ impl CavityLoad {
         self.volume
     }
 
-    /// The point that its volume is counted from \[m\].
-    pub fn about(&self) -> Vector3 {
-        self.about
+    /// The point that its volume is counted from at displacements `u` \[m\].
+    pub fn about(&self, u: &[f64], components: usize) -> Vector3 {
+        self.opening.unwrap_or_else(|| self.surface.centre(u, components))
     }
 
     pub(super) fn is_filled(&self) -> bool {
@@ -141,7 +141,7 @@ impl CavityLoad {
     pub fn row(&self, u: &[f64], components: usize) -> (Vec<f64>, Vec<f64>) {
         let (mut push, mut slope) = (vec![0.0; u.len()], vec![0.0; u.len()]);
         self.surface.add_force(1.0, u, components, &mut push);
-        self.surface.add_volume_slope((&self.about, 1.0), u, components, &mut slope);
+        self.surface.add_volume_slope((self.opening, 1.0), u, components, &mut slope);
         (push, slope)
     }
 

@@ -104,8 +104,11 @@ impl PressedSurface {
         }
     }
 
-    /// V = −1/d Σ_i (x_i − c)·cof F(X_i) A_i N_i \[m³\], in a plane of the slab (method book, eq. 14.7).
-    pub fn volume(&self, about: &Vector3, u: &[f64], components: usize) -> f64 {
+    /// V = −1/d Σ_i (x_i − c)·cof F(X_i) A_i N_i \[m³\], in a plane of the slab (method book, eq. 14.7),
+    /// counted from a point of the `opening` \[m\], where there is none from the centre of the moved
+    /// surface: it closes to its quadrature only, and a shift must not change its volume.
+    pub fn volume(&self, opening: Option<Vector3>, u: &[f64], components: usize) -> f64 {
+        let about = opening.unwrap_or_else(|| self.centre(u, components));
         let point = |(point, area): (usize, &Vector3)| {
             let F = self.rows.deformation_gradient(point, u, components);
             let way = self.place(point, u, components) - about;
@@ -117,16 +120,22 @@ impl PressedSurface {
     /// Adds `factor` ∂V/∂u of [`Self::volume`].
     pub fn add_volume_slope(
         &self,
-        (about, factor): (&Vector3, f64),
+        (opening, factor): (Option<Vector3>, f64),
         u: &[f64],
         components: usize,
         slope: &mut [f64],
     ) {
         let factor = -factor / components as f64;
+        let about = opening.unwrap_or_else(|| self.centre(u, components));
+        // What the centre takes along; an opening stays where it is.
+        let taken = match opening {
+            Some(_) => Vector3::zeros(),
+            None => self.moved_areas(u, components).sum::<Vector3>() / self.resultant().1,
+        };
         for (point, area) in self.areas.iter().enumerate() {
             let F = self.rows.deformation_gradient(point, u, components);
             let way = self.place(point, u, components) - about;
-            let force = cofactor(&F) * area * factor;
+            let force = (cofactor(&F) * area - taken * area.norm()) * factor;
             let stress = cofactor_slope(&F, &(way * area.transpose())) * factor;
             for entry in self.rows.row(point) {
                 let node = self.rows.nodes[entry] as usize;
@@ -153,11 +162,19 @@ impl PressedSurface {
         (self.areas.iter().sum(), self.areas.iter().map(|area| area.norm()).sum())
     }
 
-    /// Centre of the surface at rest \[m\].
-    pub fn centre(&self) -> Vector3 {
+    /// Mean place of the surface, by areas at rest \[m\].
+    pub fn centre(&self, u: &[f64], components: usize) -> Vector3 {
         let (_, size) = self.resultant();
-        let pairs = self.areas.iter().zip(&self.positions);
-        pairs.map(|(area, X)| X * (area.norm() / size)).sum()
+        let place = |point| self.place(point, u, components);
+        self.areas.iter().enumerate().map(|(i, area)| place(i) * (area.norm() / size)).sum()
+    }
+
+    /// Vector areas of the moved surface \[m²\].
+    fn moved_areas(&self, u: &[f64], components: usize) -> impl Iterator<Item = Vector3> {
+        let moved = move |(point, area): (usize, &Vector3)| {
+            cofactor(&self.rows.deformation_gradient(point, u, components)) * area
+        };
+        self.areas.iter().enumerate().map(moved)
     }
 
     fn place(&self, point: usize, u: &[f64], components: usize) -> Vector3 {
