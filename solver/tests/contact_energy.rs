@@ -1,4 +1,5 @@
 //! Energy of bodies that strike obstacles.
+#![allow(non_snake_case)]
 
 mod common;
 
@@ -77,6 +78,25 @@ fn a_cube_that_bounces_on_a_smooth_floor_keeps_its_energy() {
     assert!(mechanical.abs() < 0.02 * fall, "{mechanical:e} J of {fall:e} J");
     assert!(end.contact_energy == 0.0 && end.contact_loss.abs() < 1e-12 * fall, "{end:?}");
     assert_eq!(summary.contact_loss, None);
+}
+
+/// What nodes that leave in one step are given back must not go with their order.
+#[test]
+fn a_lattice_that_bounces_squarely_keeps_its_symmetry() {
+    let mut problem = bouncing(Vector3::z(), Friction::Frictionless, 0.0);
+    problem.recipe.cloud = cube(4).recipe.cloud;
+    let (_, model) = build(&problem);
+    let mut state = State::new(&model);
+    simulate(&model, &problem.motion, &mut state, &mut Log::default()).unwrap();
+    let u = |node: usize| state.displacement_of(node, 3);
+    let largest = largest(&state.displacement);
+    for (node, X) in model.positions.iter().enumerate() {
+        let image = Vector3::new(EDGE - X.x, X.y, X.z);
+        let other = model.positions.iter().position(|Y| (Y - image).norm() < 1e-9).unwrap();
+        let mirrored = Vector3::new(-u(other).x, u(other).y, u(other).z);
+        let apart = (u(node) - mirrored).norm();
+        assert!(apart < 1e-6 * largest, "{X}: {apart:e} of {largest:e} m");
+    }
 }
 
 #[test]

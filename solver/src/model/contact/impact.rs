@@ -24,6 +24,9 @@ pub struct Impacts {
     /// By obstacle and node.
     kept: Vec<Kept>,
     scratch: Vec<Kept>,
+    /// Those of the step at hand.
+    #[serde(skip)]
+    leaving: Vec<Leaving>,
     /// Whether an obstacle pushes, of each node.
     pushed: Vec<bool>,
     /// What contact has given to the nodes \[J\].
@@ -46,6 +49,22 @@ struct Kept {
     node: u32,
     /// \[J\]
     energy: f64,
+}
+
+/// A node that an obstacle no longer pushes.
+#[derive(Debug, Clone, Copy)]
+struct Leaving {
+    /// What is given back to it \[J\].
+    kept: Kept,
+    row: u32,
+    /// Away from the obstacle.
+    normal: Vector3,
+    /// The impulse that would give it back if nothing else left \[N·s\].
+    impulse: f64,
+    /// The speed on which it does work \[m/s\].
+    speed: f64,
+    /// The node's velocity before along the normal \[m/s\].
+    velocity: f64,
 }
 
 /// The nodes of a step, which contact has already pushed.
@@ -124,9 +143,10 @@ impl Impacts {
         let touching = after.len();
         for kept in &before {
             if after[..touching].binary_search_by_key(&key(kept), key).is_err() {
-                after.extend(self.leave(plan, kept, &mut moved));
+                after.extend(self.leave(kept, moved.keep));
             }
         }
+        self.give_back(plan, &mut moved);
         after.sort_unstable_by_key(key);
         touches.iter().for_each(|touch| self.pushed[touch.node as usize] = false);
         (self.kept, self.scratch) = (after, before);
@@ -169,38 +189,87 @@ impl Impacts {
         mean - plan.share(row).component_mul(&way) / moved.time_step
     }
 
-    /// Gives back what is kept of a node, along the normal, or keeps it while another obstacle
-    /// pushes the node.
-    fn leave(&mut self, plan: &ContactPlan, kept: &Kept, moved: &mut Moved) -> Option<Kept> {
-        let energy = self.damp(kept.energy, moved.keep);
+    /// Lists a node as leaving, or keeps its energy while another obstacle pushes it.
+    fn leave(&mut self, kept: &Kept, keep: f64) -> Option<Kept> {
+        let kept = Kept { energy: self.damp(kept.energy, keep), ..*kept };
         if self.pushed[kept.node as usize] {
-            return Some(Kept { energy, ..*kept });
+            return Some(kept);
         }
-        let paid = energy.min(self.debt);
-        let (energy, row) = (energy - paid, plan.row_of(kept.node));
-        self.debt -= paid;
-        let row = row.filter(|_| energy > 0.0);
+        let (row, normal) = (0, Vector3::zeros());
+        self.leaving.push(Leaving { kept, row, normal, impulse: 0.0, speed: 0.0, velocity: 0.0 });
+        None
+    }
+
+    /// Gives back what is kept of the nodes that leave in a step, along the normals: to each by the
+    /// impulse that would do it if no other left, all times one factor with which the sum is right.
+    /// One after the other would give a body that leaves a floor with many nodes a turn that
+    /// goes with their numbers.
+    fn give_back(&mut self, plan: &ContactPlan, moved: &mut Moved) {
+        if self.leaving.is_empty() {
+            return;
+        }
+        let mut leaving = std::mem::take(&mut self.leaving);
+        let energies = || leaving.iter().map(|one| one.kept.energy);
+        let left = energies().sum::<f64>() - self.debt;
+        let gains: f64 = energies().map(|energy| energy.max(0.0)).sum();
+        self.debt = (-left).max(0.0);
+        let share = if left > 0.0 { left / gains } else { 0.0 };
+        leaving.retain_mut(|one| {
+            one.kept.energy = share * one.kept.energy.max(0.0);
+            self.throws(plan, moved, one)
+        });
+        push_all(plan, &leaving, 1.0, moved);
+        let (mut linear, mut square, mut energy) = (0.0, 0.0, 0.0);
+        for one in &leaving {
+            let gained = plan.pushed_value(one.row, moved.velocity).dot(&one.normal) - one.velocity;
+            linear += one.impulse * one.speed;
+            square += 0.5 * one.impulse * gained;
+            energy += one.kept.energy;
+        }
+        if leaving.len() > 1 {
+            let root = (linear * linear + 4.0 * square * energy).sqrt();
+            push_all(plan, &leaving, 0.5 * (root - linear) / square - 1.0, moved);
+        }
+        self.work += energy;
+        leaving.clear();
+        self.leaving = leaving;
+    }
+
+    /// Whether a node that leaves is to be pushed, and how: where it cannot be, its energy is lost.
+    fn throws(&mut self, plan: &ContactPlan, moved: &Moved, one: &mut Leaving) -> bool {
+        let Kept { obstacle, node, energy } = one.kept;
+        if energy <= 0.0 {
+            return false;
+        }
         let normal = |row: u32| {
             let place = moved.place(plan, row);
-            let n = plan.placed(kept.obstacle, moved.times.1).normal(&place, plan.free(kept.node));
+            let n = plan.placed(obstacle, moved.times.1).normal(&place, plan.free(node));
             let mobility = n.component_mul(&n).dot(&plan.mobility(row, moved.mass));
             (mobility > 0.0).then_some((row, n, mobility))
         };
-        let Some((row, n, mobility)) = row.and_then(normal) else {
+        let Some((row, n, mobility)) = plan.row_of(node).and_then(normal) else {
             self.lost += energy;
-            return None;
+            return false;
         };
         // J s + J² w/2 is the energy, with w = Σ φ²/m and the speed s away from the obstacle: with
         // half of what contact has changed on top, by which J changes the work of the pushes before.
-        let changed = plan.pushed_value(row, moved.velocity) - plan.pushed_value(row, &self.free);
-        let speed = (self.mean(plan, (kept.obstacle, row), moved) + 0.5 * changed).dot(&n);
+        let value = plan.pushed_value(row, moved.velocity);
+        let changed = value - plan.pushed_value(row, &self.free);
+        let speed = (self.mean(plan, (obstacle, row), moved) + 0.5 * changed).dot(&n);
         let impulse = ((speed * speed + 2.0 * mobility * energy).sqrt() - speed) / mobility;
-        self.work += energy;
-        let Moved { mass, displacement, velocity, time_step, .. } = moved;
-        let (displacement, velocity) = (&mut displacement[..], &mut velocity[..]);
-        let mut pushed = Pushed { mass, displacement, velocity, time_step: *time_step };
-        plan.push(row, &(impulse * *time_step * n), &mut pushed);
-        None
+        *one = Leaving { row, normal: n, impulse, speed, velocity: value.dot(&n), ..*one };
+        true
+    }
+}
+
+/// Pushes nodes that leave by a factor times their impulses.
+fn push_all(plan: &ContactPlan, leaving: &[Leaving], factor: f64, moved: &mut Moved) {
+    let Moved { mass, displacement, velocity, time_step, .. } = moved;
+    let (displacement, velocity) = (&mut displacement[..], &mut velocity[..]);
+    let mut pushed = Pushed { mass, displacement, velocity, time_step: *time_step };
+    for one in leaving {
+        let push = factor * one.impulse * pushed.time_step * one.normal;
+        plan.push(one.row, &push, &mut pushed);
     }
 }
 
