@@ -3,8 +3,9 @@
 use mtled::algebra::tensor::Matrix3;
 use mtled::error::Error;
 use mtled::model::essential::Reaction;
+use mtled::model::rigid_motions::free_rigid_motions;
 use mtled::motion::summary::Summary;
-use mtled::problem::Problem;
+use mtled::problem::{Motion, Problem};
 use mtled::{Observer, Simulation, Unobserved, Vector3};
 
 /// A solved problem.
@@ -68,6 +69,17 @@ impl Answer {
         self.summary.instability.is_some()
             || self.summary.smallest_jacobian.jacobian < SMALLEST_JACOBIAN
             || self.simulation.state.displacement.iter().any(|u| !u.is_finite())
+    }
+}
+
+impl Answer {
+    /// Whether it is at rest and could be so after a rigid motion too.
+    pub fn is_loose(&self) -> bool {
+        let Simulation { model, state, .. } = &self.simulation;
+        let at_rest = !matches!(self.problem.motion, Motion::Dynamic { .. });
+        let end = self.problem.motion.end();
+        let touches = !self.problem.obstacles.is_empty();
+        at_rest && !touches && free_rigid_motions(model, end, &state.displacement) > 0
     }
 }
 

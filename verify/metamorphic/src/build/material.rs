@@ -1,19 +1,21 @@
 //! Materials.
 #![allow(non_snake_case)]
 
+use super::conditions::{duration, ramp};
 use super::frame::Frame;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Memory, Scene};
 use anyhow::Result;
 use mtled::Vector3;
+use mtled::geometry::Selector;
 use mtled::material::{
     ElasticConstants, Guccione, HolzapfelOgden, Isochoric, Law, LinearElastic, Material,
-    MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ, Ogden, OgdenTerm, OgdenTerms, ShapeEnergy,
-    StVenantKirchhoff, VolumetricTerm,
+    MooneyRivlin, NeoHookeanIsochoric, NeoHookeanLogJ, Ogden, OgdenTerm, OgdenTerms, PronySeries,
+    PronyTerm, ShapeEnergy, StVenantKirchhoff, VolumetricTerm,
 };
-use mtled::problem::{Fibres, Field};
+use mtled::problem::{ActiveStress, Fibres, Field, Region};
 
 /// The fibres of a scene in a frame: they turn along x, and rise a little; sheets lie askew.
-pub fn fibres(scene: &Scene, frame: &Frame) -> Option<Fibres> {
+fn fibres(scene: &Scene, frame: &Frame) -> Option<Fibres> {
     let frame = *frame;
     let fibre = move |X: &Vector3| {
         let (sine, cosine) = (2.0 * frame.home_of(X).x).sin_cos();
@@ -21,14 +23,50 @@ pub fn fibres(scene: &Scene, frame: &Frame) -> Option<Fibres> {
     };
     let sheet = frame.direction(&Vector3::new(-0.4, 0.3, 1.0));
     let fibres = || Fibres { fibre: Field::of(fibre), sheet: Some(sheet.into()) };
-    scene.law.has_fibres().then(fibres)
+    (scene.law.has_fibres() || scene.tension.is_some()).then(fibres)
 }
 
-/// The material of a scene, `stiffness` times as stiff.
-pub fn material(scene: &Scene, stiffness: f64) -> Result<Material> {
+/// A region with the material of a scene, `stiffness` times as stiff, its fibres, memory and
+/// tension.
+pub fn region(
+    scene: &Scene,
+    frame: &Frame,
+    name: &str,
+    part: Selector,
+    stiffness: f64,
+) -> Result<Region> {
+    let term = |memory: Memory| {
+        let tau = memory.time * duration(scene);
+        PronySeries::new(&[PronyTerm { g: memory.part, tau }])
+    };
+    let active = |tension: f64| ActiveStress {
+        tension: scene.young_modulus * tension,
+        amplitude: ramp(scene),
+    };
+    Ok(Region {
+        fibres: fibres(scene, frame),
+        viscosity: scene.memory.map(term).transpose()?,
+        active: scene.tension.map(active),
+        ..Region::new(name, part, material(scene, stiffness, 1.0)?)
+    })
+}
+
+/// The materials of the regions of a scene when all has relaxed that does.
+pub fn relaxed_materials(scene: &Scene) -> Result<Vec<Material>> {
+    let left = scene.memory.map_or(1.0, |memory| 1.0 - memory.part);
+    let half = scene.inclusion.map(|inclusion| inclusion.stiffness);
+    half.into_iter().chain([1.0]).map(|stiffness| material(scene, stiffness, left)).collect()
+}
+
+/// The material of a scene, `stiffness` times as stiff, with what is `left` of its shear modulus.
+fn material(scene: &Scene, stiffness: f64, left: f64) -> Result<Material> {
     let young = stiffness * scene.young_modulus;
     let constants = ElasticConstants::from_young_poisson(young, scene.poisson_ratio)?;
-    let mu = constants.shear_modulus;
+    let mu = left * constants.shear_modulus;
+    let constants = match left {
+        1.0 => constants,
+        _ => ElasticConstants::from_shear_bulk(mu, constants.bulk_modulus)?,
+    };
     let term = VolumetricTerm::Quadratic;
     let law = match scene.law {
         scene::Law::LogJ => Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants)),

@@ -7,7 +7,10 @@ mod shape;
 
 pub use conditions::solid;
 pub use frame::Frame;
-pub use shape::{as_surface, as_voxels, closed_form_volume, part, wedge_in_another_order};
+pub use material::relaxed_materials;
+pub use shape::{
+    as_surface, as_voxels, closed_form_volume, hole, part, volume_of_hole, wedge_in_another_order,
+};
 
 use crate::scene::{Basis, Cloud, Gradients, Scene, Way};
 use anyhow::Result;
@@ -24,6 +27,8 @@ use mtled::problem::{
 pub const RESIDUAL: f64 = 1e-12;
 /// Of consistent gradients \[–\], for the same reason.
 const GRADIENT_TOLERANCE: f64 = 1e-11;
+/// Parts of the time in which materials with memory are followed.
+const PARTS: usize = 4;
 /// Movement of jittered nodes \[spacing\].
 const JITTER: f64 = 0.2;
 
@@ -49,16 +54,20 @@ pub fn problem_in(scene: &Scene, frame: &Frame) -> Result<Problem> {
         motion: motion(scene),
     };
     conditions::load(scene, frame, &mut problem.loads);
+    conditions::load_more(scene, frame, &mut problem.loads);
     Ok(problem)
+}
+
+/// Newton's method to a time \[s\]; few parts of it are enough for what compares with itself.
+pub fn newton(load_end: f64, tolerance: f64) -> Motion {
+    Motion::Newton(Newton { load_end, tolerance, parts: PARTS })
 }
 
 fn motion(scene: &Scene) -> Motion {
     match scene.way {
-        Way::Newton => {
-            Motion::Newton(Newton { load_end: 1.0, tolerance: RESIDUAL, ..Newton::default() })
-        }
-        Way::Motion { end, damping } => {
-            Motion::dynamic(end * scene.wave_time(), damping / scene.wave_time())
+        Way::Newton => newton(1.0, RESIDUAL),
+        Way::Motion { damping, .. } => {
+            Motion::dynamic(conditions::duration(scene), damping / scene.wave_time())
         }
     }
 }
@@ -67,13 +76,9 @@ fn regions(scene: &Scene, frame: &Frame) -> Result<Vec<Region>> {
     let mut regions = Vec::new();
     if let Some(inclusion) = scene.inclusion {
         let part = shape::half(frame, inclusion.axis);
-        let material = material::material(scene, inclusion.stiffness)?;
-        let fibres = material::fibres(scene, frame);
-        regions.push(Region { fibres, ..Region::new("half", part, material) });
+        regions.push(material::region(scene, frame, "half", part, inclusion.stiffness)?);
     }
-    let material = material::material(scene, 1.0)?;
-    let fibres = material::fibres(scene, frame);
-    regions.push(Region { fibres, ..Region::new("rest", Selector::All, material) });
+    regions.push(material::region(scene, frame, "rest", Selector::All, 1.0)?);
     Ok(regions)
 }
 

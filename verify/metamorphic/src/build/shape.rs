@@ -43,6 +43,10 @@ pub fn body(scene: &Scene, frame: &Frame) -> Result<Shape> {
             },
         ]),
         Form::Wedge => surface(wedge(frame))?,
+        Form::Hollow | Form::Chamber => {
+            let whole = box_of(frame, &Vector3::zeros(), &edges);
+            Shape::Difference(Box::new(whole), Box::new(hole(scene, frame, 1.0)))
+        }
         Form::Voxels => as_voxels(scene, frame)?,
     })
 }
@@ -73,6 +77,44 @@ fn upright(frame: &Frame, radius: f64) -> Shape {
         radius: frame.size * radius,
         height: frame.size * frame.edges.z,
     }
+}
+
+/// Half of the hole's size along an edge over that of the box \[–\].
+const HOLE: f64 = 0.5;
+
+/// What is cut out of the middle of a hollow body, so many times as large.
+pub fn hole(scene: &Scene, frame: &Frame, factor: f64) -> Shape {
+    let (middle, flat) = (frame.middle(), scene.components() == 2);
+    let half = factor * HOLE;
+    match scene.form {
+        Form::Chamber => {
+            let mut arm = half * middle;
+            if flat {
+                arm.z = BEYOND;
+            }
+            box_of(frame, &(middle - arm), &(middle + arm))
+        }
+        _ if flat => {
+            let radius = half * middle.xy().min();
+            disc(frame, Vector3::new(radius, radius, f64::INFINITY))
+        }
+        _ => {
+            let radius = frame.size * half * middle.min();
+            Shape::Sphere { centre: frame.point(&middle), radius }
+        }
+    }
+}
+
+/// The volume of the hole, in a plane of that of the slab \[m³\].
+pub fn volume_of_hole(scene: &Scene) -> f64 {
+    let [x, y, z] = scene.edges;
+    let unit = match (scene.form, scene.thickness) {
+        (Form::Chamber, None) => HOLE.powi(3) * x * y * z,
+        (Form::Chamber, Some(thickness)) => HOLE.powi(2) * x * y * thickness,
+        (_, None) => PI / 6.0 * (HOLE * x.min(y).min(z)).powi(3),
+        (_, Some(thickness)) => PI / 4.0 * (HOLE * x.min(y)).powi(2) * thickness,
+    };
+    unit * scene.size.powi(3)
 }
 
 fn lower_half(frame: &Frame) -> Shape {
@@ -179,7 +221,8 @@ pub fn closed_form_volume(scene: &Scene) -> Option<f64> {
         Form::Cylinder => PI * round * round * z,
         Form::Corner | Form::Wedge => 0.75 * x * y * z,
         Form::Bored => x * y * z - PI * (0.4 * round).powi(2) * z,
-        _ => return None,
+        Form::Hollow | Form::Chamber => x * y * z - volume_of_hole(scene) / scene.size.powi(3),
+        Form::Dome | Form::Rounded | Form::Voxels => return None,
     };
     (scene.components() == 3).then(|| unit * scene.size.powi(3))
 }
@@ -203,8 +246,8 @@ pub fn half(frame: &Frame, axis: u8) -> Selector {
     side(frame, &at, &Vector3::ith(usize::from(axis), 1.0))
 }
 
-/// A part of the body.
-pub fn part(frame: &Frame, part: &Part) -> Selector {
+/// A part of the body of a scene.
+pub fn part(scene: &Scene, frame: &Frame, part: &Part) -> Selector {
     let edges = frame.edges;
     let end = |axis: usize, upper: bool| {
         let outwards = Vector3::ith(axis, if upper { 1.0 } else { -1.0 });
@@ -214,6 +257,9 @@ pub fn part(frame: &Frame, part: &Part) -> Selector {
     };
     match *part {
         Part::Whole => Selector::All,
+        Part::Hole => {
+            Selector::Inside { shape: hole(scene, frame, 1.3), tolerance: frame.tolerance }
+        }
         Part::End { axis, upper, depth } => {
             let axis = usize::from(axis);
             let (place, outwards) = end(axis, upper);

@@ -3,7 +3,7 @@
 use super::subject::{Compared, Relation, Subject, against, with_nodes};
 use crate::answer::{View, answer};
 use crate::build::{self, Frame};
-use crate::scene::{Form, Part, Push};
+use crate::scene::{Form, Part};
 use mtled::Vector3;
 use mtled::geometry::{Selector, Shape};
 use mtled::problem::Region;
@@ -85,6 +85,12 @@ pub const RELATIONS: &[Relation] = &[
             for force in &mut other.loads.body_forces {
                 force.part = not(&not(&force.part));
             }
+            for spring in &mut other.loads.springs {
+                spring.part = Selector::Union(vec![spring.part.clone(), spring.part.clone()]);
+            }
+            for cavity in &mut other.loads.cavities {
+                cavity.part = not(&not(&cavity.part));
+            }
             subject.with(other, &View::default())
         },
     },
@@ -98,7 +104,7 @@ pub const RELATIONS: &[Relation] = &[
             let mut other = subject.problem();
             let rest = other.regions.last()?.clone();
             let end = Part::End { axis: 0, upper: false, depth: 0.47 };
-            let part = build::part(&Frame::home(&subject.scene), &end);
+            let part = build::part(&subject.scene, &Frame::home(&subject.scene), &end);
             let at = other.regions.len() - 1;
             other.regions.insert(at, Region { name: "the same".into(), part, ..rest });
             let says = subject.scene.inclusion.is_none() && subject.scene.is_static();
@@ -109,13 +115,12 @@ pub const RELATIONS: &[Relation] = &[
 
 /// Held in the volume, since nodes at the edges are not on the rounded surface.
 fn as_voxels(subject: &Subject) -> Option<Compared> {
-    let loads_surface = |push: &Push| matches!(push, Push::Traction(..) | Push::Pressure(..));
     let mut scene = subject.scene.clone();
     // Of a motion in a few steps over three to six spacings another cloud makes another wave.
     if scene.form != Form::Box
         || !scene.is_static()
         || scene.components() == 2
-        || scene.pushes.iter().any(loads_surface)
+        || scene.loads_surface()
     {
         return None;
     }

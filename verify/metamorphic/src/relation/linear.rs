@@ -5,7 +5,6 @@ use crate::answer::{Answer, View, answer, relative};
 use crate::build;
 use crate::scene::{Law, Place, Push, Scene};
 use mtled::Vector3;
-use mtled::problem::{Motion, Newton};
 
 const LINEAR: &str = "The discrete equations of the linear law are linear; Newton's method ends at \
                       1e-12 of the largest force, times a condition of up to 1e5";
@@ -74,7 +73,8 @@ pub const RELATIONS: &[Relation] = &[
         reason: NEARLY_LINEAR,
         compare: |subject| {
             let scene = &subject.scene;
-            if !becomes_linear(scene) || scene.has_patches() || scene.law.has_fibres() {
+            let other = scene.has_patches() || scene.law.has_fibres() || scene.memory.is_some();
+            if !becomes_linear(scene) || other {
                 return None;
             }
             let small = scaled(scene, SMALL);
@@ -105,7 +105,8 @@ fn linear(scene: &Scene) -> Option<Scene> {
     let follows = |push: &Push| matches!(push, Push::Pressure(..));
     let turns = scene.holds.iter().any(|hold| matches!(hold.to, Place::Turned(..)));
     let nonlinear = scene.obstacle.is_some() || turns || scene.pushes.iter().any(follows);
-    (scene.is_static() && !nonlinear).then(|| Scene { law: Law::Linear, ..scene.clone() })
+    let more = scene.filling.is_some() || scene.tension.is_some() || scene.memory.is_some();
+    (scene.is_static() && !nonlinear && !more).then(|| Scene { law: Law::Linear, ..scene.clone() })
 }
 
 /// Loads and prescribed displacements times a factor.
@@ -118,6 +119,12 @@ fn scaled(scene: &Scene, factor: f64) -> Scene {
             Place::Bent(by) => *by *= factor,
             Place::Still | Place::Roller(_) | Place::Turned(..) => {}
         }
+    }
+    if let Some(filling) = &mut scene.filling {
+        filling.inflow *= factor;
+    }
+    if let Some(tension) = &mut scene.tension {
+        *tension *= factor;
     }
     for push in &mut scene.pushes {
         match push {
@@ -139,8 +146,7 @@ fn solved(scene: &Scene) -> Option<Answer> {
 /// stiffness to as many digits as loads are small.
 fn solved_small(scene: &Scene) -> Option<Answer> {
     let mut problem = build::problem(scene).ok()?;
-    let tolerance = build::RESIDUAL / SMALL;
-    problem.motion = Motion::Newton(Newton { load_end: 1.0, tolerance, ..Newton::default() });
+    problem.motion = build::newton(1.0, build::RESIDUAL / SMALL);
     answer(problem).ok()
 }
 

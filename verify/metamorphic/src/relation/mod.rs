@@ -1,14 +1,18 @@
 //! Relations between the answers to a scene and to another that says the same.
 
 mod balance;
+mod cavities;
 mod geometry;
 mod linear;
+mod obstacles;
 mod order;
 mod paths;
 mod rigid;
 mod sameness;
 mod space;
+mod springs;
 mod subject;
+mod viscosity;
 
 pub use subject::{Compared, Relation, Subject};
 
@@ -23,6 +27,10 @@ pub fn all() -> impl Iterator<Item = &'static Relation> {
         linear::RELATIONS,
         rigid::RELATIONS,
         balance::RELATIONS,
+        springs::RELATIONS,
+        cavities::RELATIONS,
+        viscosity::RELATIONS,
+        obstacles::RELATIONS,
     ]
     .into_iter()
     .flatten()

@@ -6,7 +6,7 @@ use crate::answer::View;
 use crate::scene::Form;
 use mtled::Vector3;
 use mtled::geometry::{Selector, Shape};
-use mtled::problem::{BodyForce, Pressure, Region, Traction};
+use mtled::problem::{BodyForce, Pressure, Region, Spring, Traction};
 
 const SUMS: &str = "Sums in another order differ by round-off, 1e-16 of their largest member, \
                     times a condition of up to 1e5; Newton's method ends at 1e-12 of the largest force";
@@ -24,7 +24,7 @@ pub const RELATIONS: &[Relation] = &[
             order.iter().enumerate().for_each(|(new, &old)| place[old] = new);
             let other = order.iter().map(|&node| nodes[node]).collect();
             let view = View { nodes: Some(place), ..View::default() };
-            subject.given_with(with_nodes(subject.problem(), other), &view)
+            subject.stepped_with(with_nodes(subject.problem(), other), &view)
         },
     },
     Relation {
@@ -98,7 +98,7 @@ pub const RELATIONS: &[Relation] = &[
     },
     Relation {
         name: "load_in_two_parts",
-        claim: "A load stated as a third and two thirds of it is the same load",
+        claim: "A load or a spring stated as a third and two thirds of it is the same load",
         bound: 1e-6,
         reason: SUMS,
         compare: in_two_parts,
@@ -152,6 +152,16 @@ fn in_two_parts(subject: &Subject) -> Option<super::subject::Compared> {
             parts.map(|part| Pressure { pressure: part * load.pressure, ..load.clone() })
         })
         .collect();
-    let any = loads.body_forces.len() + loads.tractions.len() + loads.pressures.len() > 0;
-    any.then(|| subject.with(other, &View::default()))?
+    loads.springs = (loads.springs.iter())
+        .flat_map(|load| {
+            parts.map(|part| Spring {
+                normal: part * load.normal,
+                tangential: part * load.tangential,
+                ..load.clone()
+            })
+        })
+        .collect();
+    let counts = [loads.body_forces.len(), loads.tractions.len(), loads.pressures.len()];
+    (counts.iter().sum::<usize>() + loads.springs.len() > 0)
+        .then(|| subject.with(other, &View::default()))?
 }

@@ -52,6 +52,12 @@ fn on_top(subject: &Subject, turn: Matrix3, beside_obstacle: bool) -> Option<Com
     if !scene.is_static() || scene.obstacle.is_some() || scene.holds.is_empty() || !all_whole {
         return None;
     }
+    // Springs are fixed in space, and memory has another history where a rotation grows.
+    let turns = scene.holds.iter().any(|hold| matches!(hold.to, Place::Turned(..)));
+    let other_way = turns || turn != Matrix3::identity();
+    if scene.bed.is_some() || scene.memory.is_some() && other_way {
+        return None;
+    }
     let size = scene.size;
     let shift = match scene.components() {
         2 => Vector3::new(0.31 * size, 0.17 * size, 0.0),

@@ -4,7 +4,7 @@
 use super::subject::{Compared, Relation, Subject, with_nodes};
 use crate::answer::{View, relative};
 use crate::build::{self, Frame};
-use crate::scene::{Form, Gradients, Push, Scene};
+use crate::scene::{Form, Gradients, Scene};
 use mtled::problem::Problem;
 use mtled::{Discretisation, Vector3};
 
@@ -112,8 +112,7 @@ pub const RELATIONS: &[Relation] = &[
 /// Whether nothing in the discretisation follows the axes: of all forms only boxes have
 /// panels that do not, and clouds without consistent gradients and surface loads have none.
 fn keeps_its_directions(scene: &Scene) -> bool {
-    let loads_surface = |push: &Push| matches!(push, Push::Traction(..) | Push::Pressure(..));
-    let has_panels = scene.gradients != Gradients::Plain || scene.pushes.iter().any(loads_surface);
+    let has_panels = scene.gradients != Gradients::Plain || scene.loads_surface();
     !scene.has_patches() && (scene.form == Form::Box || !has_panels)
 }
 
@@ -125,7 +124,8 @@ fn in_frame(subject: &Subject, frame: &Frame) -> Option<Compared> {
 /// In one of the frames, by the random number of the scene; the first is a mirror image.
 fn turned(subject: &Subject) -> Option<Compared> {
     let which = 1 + subject.scene.seed as usize;
-    in_frame(subject, &Frame::turned(&subject.scene, which))
+    let (problem, view) = subject.in_frame(&Frame::turned(&subject.scene, which))?;
+    subject.stepped_with(problem, &view)
 }
 
 /// Moved by a few times the size.

@@ -4,7 +4,7 @@
 use crate::answer::{Answer, View, answer, difference};
 use crate::build::{self, Frame};
 use crate::scene::Scene;
-use mtled::problem::{Cloud, Gradients, Loads, Problem};
+use mtled::problem::{Cloud, Gradients, Loads, Motion, Problem};
 use mtled::{Discretisation, Vector3};
 use std::cell::OnceCell;
 
@@ -44,6 +44,8 @@ pub struct Subject {
     given: OnceCell<Option<Answer>>,
 }
 
+/// Of steps that are the same in two motions \[–\].
+const PART_OF_CRITICAL: f64 = 0.5;
 /// Displacements below this fraction of the size are no answer to compare with \[–\].
 const NOTHING: f64 = 1e-9;
 
@@ -54,6 +56,9 @@ impl Subject {
         let base = answer(problem).map_err(|error| error.to_string())?;
         if base.is_doubtful() {
             return Err("unstable, or nearly without volume somewhere".into());
+        }
+        if base.is_loose() {
+            return Err("nothing holds it, so that it is at rest in many places".into());
         }
         if base.largest() < NOTHING * scene.size {
             return Err("nothing moves".into());
@@ -97,6 +102,25 @@ impl Subject {
             other.recipe.cloud = given.problem.recipe.cloud.clone();
         }
         Some(against(given, other, view))
+    }
+
+    /// As [`Subject::given_with`], motions in steps of one length: the critical step is iterated from
+    /// random nodal values, which go with the number of a node and do not turn with the body, and
+    /// of contact another step makes another motion.
+    pub fn stepped_with(&self, mut other: Problem, view: &View) -> Option<Compared> {
+        let given = self.given()?;
+        if self.scene.is_static() {
+            return self.given_with(other, view);
+        }
+        let fixed = Some(PART_OF_CRITICAL * given.summary.critical_time_step);
+        let mut own = given.problem.clone();
+        for motion in [&mut own.motion, &mut other.motion] {
+            if let Motion::Dynamic { step, .. } = motion {
+                step.fixed = fixed;
+            }
+        }
+        let own = answer(own).ok().filter(|answer| !answer.is_doubtful())?;
+        Some(against(&own, other, view))
     }
 
     /// The problem in another frame with the same nodes, and how its answer is to be seen.

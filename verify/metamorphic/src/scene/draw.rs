@@ -1,21 +1,21 @@
 //! Scenes at random.
 
 use super::{
-    Basis, Cloud, Form, Gradients, Hold, Inclusion, Law, Part, Place, Push, Scene, Wall, Way,
+    Basis, Cloud, Form, Gradients, Hold, Inclusion, Law, Part, Place, Push, Rubs, Scene, Wall, Way,
 };
 use fastrand::Rng;
 
 /// One of several.
-fn one<T: Copy>(rng: &mut Rng, of: &[T]) -> T {
+pub(super) fn one<T: Copy>(rng: &mut Rng, of: &[T]) -> T {
     of[rng.usize(..of.len())]
 }
 
-fn chance(rng: &mut Rng, one_in: usize) -> bool {
+pub(super) fn chance(rng: &mut Rng, one_in: usize) -> bool {
     rng.usize(..one_in) == 0
 }
 
 /// Uniform between two numbers, with three digits, so that scenes are easy to read.
-fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
+pub(super) fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
     rounded(low + (high - low) * rng.f64())
 }
 
@@ -25,7 +25,7 @@ fn rounded(value: f64) -> f64 {
 }
 
 /// Components between −largest and largest, some of them 0; none out of a plane.
-fn vector(rng: &mut Rng, components: usize, largest: f64) -> [f64; 3] {
+pub(super) fn vector(rng: &mut Rng, components: usize, largest: f64) -> [f64; 3] {
     let mut v = [0.0; 3];
     for c in &mut v[..components] {
         *c = if chance(rng, 3) { 0.0 } else { largest * between(rng, -1.0, 1.0) };
@@ -76,6 +76,10 @@ impl Scene {
             obstacle: None,
             holds: Vec::new(),
             pushes: Vec::new(),
+            bed: None,
+            filling: None,
+            memory: None,
+            tension: None,
         };
         scene.even_mass |= scene.basis == Basis::Quadratic;
         // By a number that is drawn already, so that the other scenes stay what they were.
@@ -85,6 +89,9 @@ impl Scene {
             _ => law,
         };
         scene.draw_conditions(rng);
+        // By other numbers than those to come, for the same reason.
+        let mut others = Rng::with_seed(!rng.clone().u64(..));
+        scene.draw_more(&mut others);
         scene
     }
 
@@ -112,7 +119,8 @@ impl Scene {
             self.pushes.push(push);
         }
         if chance(rng, 5) {
-            self.obstacle = Some(Wall { round: chance(rng, 3), gap: one(rng, &[0.01, 0.05, 0.3]) });
+            let (round, gap) = (chance(rng, 3), one(rng, &[0.01, 0.05, 0.3]));
+            self.obstacle = Some(Wall { round, gap, drift: None, rubs: Rubs::Free });
         }
     }
 

@@ -1,7 +1,11 @@
 //! A scene as plain data: lengths over its size, stresses over its stiffness.
 
 mod draw;
+mod draw_more;
+mod more;
 mod smaller;
+
+pub use more::{Bed, Drift, Filling, Memory, Rubs, Wall};
 
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +60,18 @@ pub struct Scene {
     /// Loads.
     #[serde(default)]
     pub pushes: Vec<Push>,
+    /// Springs on a part of the surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bed: Option<Bed>,
+    /// What fills the hole of a hollow body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub filling: Option<Filling>,
+    /// How the isochoric stress relaxes, of a law that splits it off.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory: Option<Memory>,
+    /// What fibres pull with, over the stiffness \[–\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tension: Option<f64>,
 }
 
 /// A stress–strain law.
@@ -85,6 +101,11 @@ impl Law {
     pub fn has_fibres(self) -> bool {
         matches!(self, Law::Muscle | Law::Sheets)
     }
+
+    /// Whether its isochoric stress stands apart, so that it can relax.
+    pub fn is_split(self) -> bool {
+        matches!(self, Law::Isochoric | Law::Ogden | Law::Muscle | Law::Sheets)
+    }
 }
 
 /// A solid in the box of the scene.
@@ -111,6 +132,17 @@ pub enum Form {
     Wedge,
     /// The box of voxels.
     Voxels,
+    /// The box with a ball cut out of its middle; in a plane a disc.
+    Hollow,
+    /// The box with a box of half its edges cut out of its middle.
+    Chamber,
+}
+
+impl Form {
+    /// Whether its surface encloses a hole.
+    pub fn has_hole(self) -> bool {
+        matches!(self, Form::Hollow | Form::Chamber)
+    }
 }
 
 /// Where nodes come from.
@@ -171,15 +203,6 @@ pub struct Inclusion {
     pub stiffness: f64,
 }
 
-/// A solid below the body.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Wall {
-    /// Whether it is a ball instead of a plane.
-    pub round: bool,
-    /// Gap over the size \[–\].
-    pub gap: f64,
-}
-
 /// A part of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -204,6 +227,8 @@ pub enum Part {
     },
     /// Everything.
     Whole,
+    /// The walls of the hole.
+    Hole,
 }
 
 /// A prescribed displacement.
@@ -271,6 +296,17 @@ impl Scene {
     /// Fraction of the bulk energy that is projected on patches is not zero.
     pub fn has_patches(&self) -> bool {
         self.projected && self.poisson_ratio > 0.3 && self.law != Law::Linear
+    }
+
+    /// Whether what it comes to rest at depends on its way there, and not on the end alone.
+    pub fn depends_on_way(&self) -> bool {
+        self.memory.is_some() || self.obstacle.is_some_and(|wall| wall.rubs != Rubs::Free)
+    }
+
+    /// Whether a load goes with the panels of its surface.
+    pub fn loads_surface(&self) -> bool {
+        let on_panels = |push: &Push| matches!(push, Push::Traction(..) | Push::Pressure(..));
+        self.bed.is_some() || self.filling.is_some() || self.pushes.iter().any(on_panels)
     }
 
     /// Whether what holds it and loads it is there from the start to the end.

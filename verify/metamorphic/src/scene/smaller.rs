@@ -1,6 +1,6 @@
 //! Smaller scenes: with one thing less, or one thing plainer.
 
-use super::{Basis, Cloud, Form, Gradients, Hold, Law, Part, Place, Scene, Way};
+use super::{Basis, Cloud, Form, Gradients, Hold, Law, Part, Place, Rubs, Scene, Wall, Way};
 
 impl Scene {
     /// Scenes that are a little plainer than this one, the largest cuts first.
@@ -25,9 +25,14 @@ impl Scene {
         }
         add(&|scene| scene.obstacle = None);
         add(&|scene| scene.inclusion = None);
-        add(&|scene| scene.form = Form::Box);
+        add(&|scene| scene.bed = None);
+        add(&|scene| scene.filling = None);
+        add(&|scene| scene.memory = None);
+        add(&|scene| scene.tension = None);
+        add(&without_hole);
         add(&|scene| scene.way = Way::Newton);
-        add(&|scene| scene.law = Law::LogJ);
+        add(&|scene| (scene.law, scene.memory) = (Law::LogJ, None));
+        add(&|scene| scene.law = if scene.memory.is_some() { Law::Isochoric } else { scene.law });
         add(&|scene| scene.cloud = Cloud::Lattice);
         add(&|scene| scene.basis = Basis::Linear);
         add(&|scene| scene.gradients = Gradients::Plain);
@@ -50,8 +55,35 @@ impl Scene {
                 add(&|scene| scene.holds[n] = hold);
             }
         }
+        for wall in self.obstacle.iter().flat_map(plainer_wall) {
+            add(&|scene| scene.obstacle = Some(wall));
+        }
+        if let Some(bed) = self.bed {
+            let part = Part::End { axis: 1, upper: false, depth: 0.15 };
+            add(&|scene| scene.bed = Some(super::Bed { part, ..bed }));
+        }
         all
     }
+}
+
+/// The box, with nothing on or in a hole.
+fn without_hole(scene: &mut Scene) {
+    scene.form = Form::Box;
+    scene.filling = None;
+    if let Some(bed) = &mut scene.bed
+        && bed.part == Part::Hole
+    {
+        bed.part = Part::Whole;
+    }
+}
+
+/// Plainer obstacles.
+fn plainer_wall(wall: &Wall) -> [Wall; 3] {
+    [
+        Wall { drift: None, ..*wall },
+        Wall { rubs: Rubs::Free, ..*wall },
+        Wall { drift: wall.drift.map(|drift| super::Drift { turn: 0.0, ..drift }), ..*wall },
+    ]
 }
 
 /// Plainer conditions.
