@@ -78,8 +78,7 @@ impl Answer {
         let Simulation { model, state, .. } = &self.simulation;
         let at_rest = !matches!(self.problem.motion, Motion::Dynamic { .. });
         let end = self.problem.motion.end();
-        let touches = !self.problem.obstacles.is_empty();
-        at_rest && !touches && free_rigid_motions(model, end, &state.displacement) > 0
+        at_rest && free_rigid_motions(model, end, &state.displacement) > 0
     }
 }
 

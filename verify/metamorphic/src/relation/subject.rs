@@ -85,7 +85,7 @@ impl Subject {
     pub fn given(&self) -> Option<&Answer> {
         let made = || {
             let given = with_nodes(self.problem(), self.free_nodes()?);
-            answer(given).ok().filter(|answer| !answer.is_doubtful())
+            answer(given).ok().filter(|answer| !answer.is_doubtful() && !answer.is_loose())
         };
         self.given.get_or_init(made).as_ref()
     }
