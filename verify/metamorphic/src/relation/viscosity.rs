@@ -59,7 +59,7 @@ fn remembering(scene: &Scene, time: f64) -> Option<Scene> {
     let part = scene.memory.map_or(0.5, |memory| memory.part);
     let scene = Scene { memory: None, ..scene.clone() };
     let fit = scene.law.is_split() && !scene.depends_on_way();
-    fit.then(|| Scene { memory: Some(Memory { part, time }), ..scene })
+    fit.then_some(Scene { memory: Some(Memory { part, time }), ..scene })
 }
 
 /// The answer to a scene, if it has a stable one.
