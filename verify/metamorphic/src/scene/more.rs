@@ -1,7 +1,7 @@
 //! What a scene may have besides conditions and loads: springs, a fluid, memory, and an obstacle
 //! that may move and rub.
 
-use super::Part;
+use super::part::Part;
 use serde::{Deserialize, Serialize};
 
 /// Springs on a part of the surface.
