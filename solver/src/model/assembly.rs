@@ -66,27 +66,12 @@ impl Model {
     /// Binds materials, conditions and loads to a discretisation.
     pub fn new(problem: &Problem, discretisation: &Discretisation) -> Result<Model, Error> {
         let quadrature = &discretisation.quadrature;
-        let density: Vec<f64> =
-            problem.regions.iter().map(|region| region.material.density).collect();
         let relaxation = problem.motion.relaxation();
         let lumped = matches!(problem.motion, Motion::Dynamic { .. })
             || relaxation.is_some_and(|settings| settings.mass == RelaxationMass::Lumped);
-        let of_rule = |rule| lumped_mass(discretisation, &density, rule);
-        let mut lumped_mass = match of_rule(problem.recipe.mass) {
-            // Only the sum counts where nothing moves by this mass.
-            Err(Error::MasslessNode { .. }) if !lumped => of_rule(MassRule::EvenSplit)?,
-            mass => mass?,
-        };
         let bodies = discretisation.connected_bodies();
-        let mut loads = load_patterns(problem, discretisation, &density)?;
-        let mut few_nodes = None;
-        if lumped && problem.recipe.mass.has_moments() {
-            let fitted = fit_moments(problem, discretisation, &density, &bodies, &mut lumped_mass);
-            if let Motion::Dynamic { .. } = problem.motion {
-                follow_masses(&mut loads, problem, (&fitted.0, &lumped_mass, &bodies));
-                few_nodes = fitted.1;
-            }
-        }
+        let (lumped_mass, loads, few_nodes) =
+            masses_and_loads(problem, discretisation, &bodies, lumped)?;
         let components = problem.dimension.components();
         let blocks = blocks(problem, discretisation)?;
         let following = FollowingLoads::new(problem, discretisation)?;
@@ -192,6 +177,32 @@ impl Model {
     pub fn bytes_per_step(&self) -> usize {
         self.blocks.iter().map(Block::bytes).sum()
     }
+}
+
+/// Masses at the nodes \[kg\], the loads that act on them, and what to doubt about both. Where
+/// masses do not move, only their sum counts.
+fn masses_and_loads(
+    problem: &Problem,
+    discretisation: &Discretisation,
+    bodies: &[u32],
+    they_move: bool,
+) -> Result<(Vec<f64>, Vec<LoadPattern>, Option<Warning>), Error> {
+    let density: Vec<f64> = problem.regions.iter().map(|region| region.material.density).collect();
+    let of_rule = |rule| lumped_mass(discretisation, &density, rule);
+    let mut mass = match of_rule(problem.recipe.mass) {
+        Err(Error::MasslessNode { .. }) if !they_move => of_rule(MassRule::EvenSplit)?,
+        mass => mass?,
+    };
+    let mut loads = load_patterns(problem, discretisation, &density)?;
+    let mut few_nodes = None;
+    if they_move && problem.recipe.mass.has_moments() {
+        let (added, warning) = fit_moments(problem, discretisation, &density, bodies, &mut mass);
+        if let Motion::Dynamic { .. } = problem.motion {
+            follow_masses(&mut loads, problem, (&added, &mass, bodies));
+            few_nodes = warning;
+        }
+    }
+    Ok((mass, loads, few_nodes))
 }
 
 /// Regions without a point, which have no effect. A last region of everything may be empty:

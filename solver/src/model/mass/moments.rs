@@ -1,7 +1,7 @@
 //! Masses of free bodies that turn as the bodies do.
 #![allow(non_snake_case)]
 
-use super::masses;
+use super::lumped::masses;
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::{Discretisation, Warning};
 use crate::problem::{MassRule, Problem};
