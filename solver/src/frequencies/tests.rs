@@ -3,7 +3,7 @@ use crate::algebra::tensor::Vector3;
 use crate::discretisation::Discretisation;
 use crate::geometry::{Extent, Selector, Shape};
 use crate::material::{ElasticConstants, Law, LinearElastic, Material};
-use crate::problem::{Amplitude, Dimension, EssentialCondition, Prescribed, Recipe};
+use crate::problem::{Amplitude, Dimension, EssentialCondition, MassRule, Prescribed, Recipe};
 use nalgebra::DMatrix;
 
 const EDGE: f64 = 0.1;
@@ -165,15 +165,18 @@ fn any_number_of_threads_gives_the_same_bits() {
 }
 
 #[test]
-fn lumped_masses_make_frequencies_lower_and_both_come_to_the_same() {
-    let part = |spacings: f64| {
-        let problem = cube(0.3, EDGE / spacings);
+fn row_sums_make_frequencies_lower_and_both_masses_come_to_the_same() {
+    let part = |spacings: f64, mass: MassRule| {
+        let mut problem = cube(0.3, EDGE / spacings);
+        problem.recipe.mass = mass;
         let lumped = search(&problem, 1, MassKind::Lumped).unwrap();
         1.0 - lumped.modes[0].frequency / found(&problem, 1).modes[0].frequency
     };
-    let (coarse, fine) = (part(4.0), part(8.0));
+    let (coarse, fine) = (part(4.0, MassRule::RowSum), part(8.0, MassRule::RowSum));
     assert!(coarse > 0.05 && fine > 0.0, "{coarse} {fine}");
     assert!((coarse / fine).log2() > 1.7, "{coarse} {fine}");
+    // With the moments of inertia they are a third as far off.
+    assert!(part(8.0, MassRule::MomentsOfFreeBodies).abs() < 0.5 * fine);
 }
 
 #[test]
