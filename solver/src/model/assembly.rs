@@ -70,8 +70,9 @@ impl Model {
         let lumped = matches!(problem.motion, Motion::Dynamic { .. })
             || relaxation.is_some_and(|settings| settings.mass == RelaxationMass::Lumped);
         let bodies = discretisation.connected_bodies();
-        let (lumped_mass, loads, few_nodes) =
-            masses_and_loads(problem, discretisation, &bodies, lumped)?;
+        let mut warnings = empty_regions(problem, discretisation);
+        let (lumped_mass, loads) =
+            masses_and_loads(problem, discretisation, &bodies, lumped, &mut warnings)?;
         let components = problem.dimension.components();
         let blocks = blocks(problem, discretisation)?;
         let following = FollowingLoads::new(problem, discretisation)?;
@@ -80,8 +81,6 @@ impl Model {
         following.add_to_diagonal(components, &mut stiffness);
         let inertia =
             if lumped { lumped_mass.clone() } else { fictitious_mass(&stiffness, &lumped_mass) };
-        let mut warnings = empty_regions(problem, discretisation);
-        warnings.extend(few_nodes);
         warnings.extend(check_shared_nodes(problem, discretisation)?);
         let constraints = Constraints::new(problem, discretisation, &inertia)?;
         warnings.extend(check_loads(problem, discretisation, &constraints));
@@ -179,14 +178,15 @@ impl Model {
     }
 }
 
-/// Masses at the nodes \[kg\], the loads that act on them, and what to doubt about both. Where
-/// masses do not move, only their sum counts.
+/// Masses at the nodes \[kg\] and the loads that act on them; what to doubt about both is added to
+/// the warnings. Where masses do not move, only their sum counts.
 fn masses_and_loads(
     problem: &Problem,
     discretisation: &Discretisation,
     bodies: &[u32],
     they_move: bool,
-) -> Result<(Vec<f64>, Vec<LoadPattern>, Option<Warning>), Error> {
+    warnings: &mut Vec<Warning>,
+) -> Result<(Vec<f64>, Vec<LoadPattern>), Error> {
     let density: Vec<f64> = problem.regions.iter().map(|region| region.material.density).collect();
     let of_rule = |rule| lumped_mass(discretisation, &density, rule);
     let mut mass = match of_rule(problem.recipe.mass) {
@@ -194,15 +194,14 @@ fn masses_and_loads(
         mass => mass?,
     };
     let mut loads = load_patterns(problem, discretisation, &density)?;
-    let mut few_nodes = None;
     if they_move && problem.recipe.mass.has_moments() {
         let (added, warning) = fit_moments(problem, discretisation, &density, bodies, &mut mass);
         if let Motion::Dynamic { .. } = problem.motion {
             follow_masses(&mut loads, problem, (&added, &mass, bodies));
-            few_nodes = warning;
+            warnings.extend(warning);
         }
     }
-    Ok((mass, loads, few_nodes))
+    Ok((mass, loads))
 }
 
 /// Regions without a point, which have no effect. A last region of everything may be empty:
