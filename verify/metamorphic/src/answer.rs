@@ -24,6 +24,11 @@ pub fn answer(problem: Problem) -> Result<Answer, Error> {
     observed(problem, &mut Unobserved)
 }
 
+/// The answer to a problem, if it has a stable one.
+pub fn steady(problem: Problem) -> Option<Answer> {
+    answer(problem).ok().filter(|answer| !answer.is_doubtful())
+}
+
 /// Solves a problem that somebody looks at.
 pub fn observed(problem: Problem, observer: &mut dyn Observer) -> Result<Answer, Error> {
     let simulation = Simulation::new(&problem)?;

@@ -79,11 +79,7 @@ fn map(
     let ((layers, size), scalar) = (header.layers_and_sizes()?, header.scalar()?);
     let (encoding, layer) = (header.encoding()?, which(header, layer, layers)?);
     let order = header.byte_order(scalar, encoding)?;
-    let (origin, directions) = header.frame()?;
-    let metres = match unit {
-        Some(unit) => unit.in_metres(),
-        None => header.unit()?.in_metres(),
-    };
+    let (origin, directions) = header.frame(unit)?;
     let count = voxels::voxel_count(&size)?;
     let all = voxels::voxel_count(&[count, layers])?;
     let labels = match encoding {
@@ -97,7 +93,7 @@ fn map(
             Labels::of(numbers, scalar, order)?
         }
     };
-    voxels::label_map(size, origin * metres, directions * metres, labels, notes)
+    voxels::label_map(size, origin, directions, labels, notes)
 }
 
 /// The layer to read, of so many.

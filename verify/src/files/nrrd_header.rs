@@ -206,9 +206,8 @@ impl Header {
         }
     }
 
-    /// Centre of the first voxel and steps along the indices in RAS, in the
-    /// file's unit of length.
-    pub fn frame(&self) -> Result<(Vector3, Matrix3), Mistake> {
+    /// Centre of the first voxel and steps along the indices in RAS \[m\]; `unit` overrides the file's.
+    pub fn frame(&self, unit: Option<LengthUnit>) -> Result<(Vector3, Matrix3), Mistake> {
         let signs = self.to_ras()?;
         let origin = match self.get("spaceorigin") {
             Some(text) => {
@@ -242,7 +241,13 @@ impl Header {
             return Err(Mistake::bad_field(field, text, "three steps that span a volume"));
         }
         let flip = Matrix3::from_diagonal(&signs);
-        Ok((flip * origin, flip * directions))
+        let metres = self.metres(unit)?;
+        Ok((flip * origin * metres, flip * directions * metres))
+    }
+
+    /// The unit of length \[m\]; `unit` overrides the file's.
+    pub fn metres(&self, unit: Option<LengthUnit>) -> Result<f64, Mistake> {
+        Ok(unit.map_or_else(|| self.unit(), Ok)?.in_metres())
     }
 
     /// What turns the components of a vector into RAS: the columns of the measurement frame, or
@@ -270,7 +275,7 @@ impl Header {
     }
 
     /// Unit of length, millimetres if absent.
-    pub fn unit(&self) -> Result<LengthUnit, Mistake> {
+    fn unit(&self) -> Result<LengthUnit, Mistake> {
         let Some(text) = self.get("spaceunits").or(self.get("units")) else {
             return Ok(LengthUnit::Millimetre);
         };

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::subject::{Compared, Relation, Subject};
-use crate::answer::{Answer, View, answer, difference};
+use crate::answer::{Answer, View, answer, difference, steady};
 use crate::build::{self, Frame};
 use crate::scene::{Filling, Form, Scene};
 use mtled::geometry::{Selector, Shape};
@@ -50,11 +50,6 @@ fn hollow(scene: &Scene) -> Scene {
     let least = if scene.components() == 2 { 8 } else { 5 };
     let edges = scene.edges.map(|edge| edge.max(0.8));
     Scene { form, edges, spacings: scene.spacings.max(least), ..scene.clone() }
-}
-
-/// The answer to a scene, if it has a stable one.
-fn steady(problem: Problem) -> Option<Answer> {
-    answer(problem).ok().filter(|answer| !answer.is_doubtful())
 }
 
 fn as_pressure(subject: &Subject) -> Option<Compared> {

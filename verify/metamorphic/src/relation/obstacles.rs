@@ -2,11 +2,11 @@
 #![allow(non_snake_case)]
 
 use super::subject::{Compared, Relation, Subject, against};
-use crate::answer::{Answer, View, answer, reaction_difference, relative};
+use crate::answer::{View, answer, reaction_difference, relative, steady};
 use crate::build;
 use crate::scene::{Drift, Place, Rubs, Scene, Wall};
 use mtled::Vector3;
-use mtled::problem::{Field, Motion, Prescribed, Problem, Relaxation};
+use mtled::problem::{Field, Motion, Prescribed, Relaxation};
 
 pub const RELATIONS: &[Relation] = &[
     Relation {
@@ -95,11 +95,6 @@ fn shifted(prescribed: Prescribed, by: Vector3) -> Prescribed {
             Prescribed::Field(Field::of(move |X: &Vector3| field.at(X) + by))
         }
     }
-}
-
-/// The answer to a problem, if it has a stable one.
-fn steady(problem: Problem) -> Option<Answer> {
-    answer(problem).ok().filter(|answer| !answer.is_doubtful())
 }
 
 /// Most steps of relaxation.

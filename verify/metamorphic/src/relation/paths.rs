@@ -1,7 +1,7 @@
 //! Other ways to the same equilibrium.
 
 use super::subject::{Compared, Relation, Subject};
-use crate::answer::{View, answer};
+use crate::answer::{View, steady};
 use crate::build::{self, RESIDUAL, newton};
 use crate::scene::{Law, Place, Scene};
 use mtled::problem::{Amplitude, EssentialCondition, Motion, Problem, Relaxation, RelaxationMass};
@@ -118,7 +118,7 @@ fn near_the_limit(subject: &Subject) -> Option<Compared> {
         let scene = Scene { poisson_ratio, ..plain.clone() };
         let mut problem = build::problem(&scene).ok()?;
         problem.motion = newton(1.0, OF_WORK);
-        let answer = answer(problem).ok().filter(|answer| !answer.is_doubtful())?;
+        let answer = steady(problem)?;
         Some(answer.summary.newton?.products as f64)
     };
     fit.then(|| Some(Compared::Difference(products(0.4999)? / products(0.49)? - 1.0)))?

@@ -1,7 +1,7 @@
 //! Springs on the surface, from ones that hardly hold a body to ones that hold it fast.
 
 use super::subject::{Compared, Relation, Subject, with_nodes};
-use crate::answer::{Answer, answer, relative};
+use crate::answer::{Answer, relative, steady};
 use crate::build;
 use crate::scene::{Bed, Hold, Law, Part, Place, Push, Scene};
 use mtled::motion::step::{add_following, external_force};
@@ -35,7 +35,7 @@ pub const RELATIONS: &[Relation] = &[
             let held = subject.given()?;
             let problem = build::problem(&on_springs(&subject.scene, STIFF)?).ok()?;
             let problem = with_nodes(problem, held.positions().to_vec());
-            let by_springs = answer(problem).ok().filter(|answer| !answer.is_doubtful())?;
+            let by_springs = steady(problem)?;
             let u = [held, &by_springs].map(Answer::displacements);
             Some(Compared::Difference(relative(&u[0], &u[1], 0.0)))
         },
@@ -73,11 +73,6 @@ fn on_springs(scene: &Scene, stiffness: f64) -> Option<Scene> {
     Some(scene)
 }
 
-/// The answer to a scene, if it has a stable one.
-fn steady(scene: &Scene) -> Option<Answer> {
-    answer(build::problem(scene).ok()?).ok().filter(|answer| !answer.is_doubtful())
-}
-
 /// By how much the work of loads on springs of a tenth, a fifth and a third of the stiffness falls, or
 /// grows faster than in a line, over the largest of it.
 fn softer(subject: &Subject) -> Option<Compared> {
@@ -88,7 +83,7 @@ fn softer(subject: &Subject) -> Option<Compared> {
         return None;
     }
     let work = |inverse: f64| {
-        let answer = steady(&on_springs(&scene, 1.0 / inverse)?)?;
+        let answer = steady(build::problem(&on_springs(&scene, 1.0 / inverse)?).ok()?)?;
         let (model, end) = (&answer.simulation.model, answer.problem.motion.end());
         let mut force = vec![0.0; model.size()];
         external_force(model, end, &mut force);

@@ -1,7 +1,7 @@
 //! A relation, and the scene and answer that it is held against.
 #![allow(non_snake_case)]
 
-use crate::answer::{Answer, View, answer, difference};
+use crate::answer::{Answer, View, answer, difference, steady};
 use crate::build::{self, Frame};
 use crate::scene::Scene;
 use mtled::problem::{Cloud, Gradients, Loads, Motion, Problem};
@@ -119,7 +119,7 @@ impl Subject {
                 step.fixed = fixed;
             }
         }
-        let own = answer(own).ok().filter(|answer| !answer.is_doubtful())?;
+        let own = steady(own)?;
         Some(against(&own, other, view))
     }
 

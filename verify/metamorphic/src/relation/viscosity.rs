@@ -1,7 +1,7 @@
 //! Stresses that relax: at once, never, and in two terms instead of one.
 
 use super::subject::{Compared, Relation, Subject, against};
-use crate::answer::{Answer, View, answer};
+use crate::answer::{View, steady};
 use crate::build;
 use crate::scene::{Memory, Scene};
 use mtled::material::{PronySeries, PronyTerm};
@@ -27,7 +27,7 @@ pub const RELATIONS: &[Relation] = &[
         compare: |subject| {
             let scene = remembering(&subject.scene, NEVER)?;
             let without = Scene { memory: None, ..scene.clone() };
-            let elastic = steady(&without)?;
+            let elastic = steady(build::problem(&without).ok()?)?;
             Some(against(&elastic, build::problem(&scene).ok()?, &View::default()))
         },
     },
@@ -48,7 +48,7 @@ pub const RELATIONS: &[Relation] = &[
             for (region, material) in elastic.regions.iter_mut().zip(parts) {
                 (region.material, region.viscosity) = (material, None);
             }
-            let elastic = answer(elastic).ok().filter(|answer| !answer.is_doubtful())?;
+            let elastic = steady(elastic)?;
             Some(against(&elastic, build::problem(&scene).ok()?, &View::default()))
         },
     },
@@ -60,11 +60,6 @@ fn remembering(scene: &Scene, time: f64) -> Option<Scene> {
     let scene = Scene { memory: None, ..scene.clone() };
     let fit = scene.law.is_split() && !scene.depends_on_way();
     fit.then_some(Scene { memory: Some(Memory { part, time }), ..scene })
-}
-
-/// The answer to a scene, if it has a stable one.
-fn steady(scene: &Scene) -> Option<Answer> {
-    answer(build::problem(scene).ok()?).ok().filter(|answer| !answer.is_doubtful())
 }
 
 fn in_two_halves(subject: &Subject) -> Option<Compared> {

@@ -23,12 +23,8 @@ fn parse(opened: Opened, unit: Option<LengthUnit>) -> Result<Image, Mistake> {
     let Opened { header, text, data, length, .. } = opened;
     let (size, scalar) = (header.sizes()?, header.scalar()?);
     let order = header.byte_order(scalar, header.encoding()?)?;
-    let (origin, directions) = header.frame()?;
-    let metres = match unit {
-        Some(unit) => unit.in_metres(),
-        None => header.unit()?.in_metres(),
-    };
-    let grid = Grid::new(size, origin * metres, directions * metres)?;
+    let (origin, directions) = header.frame(unit)?;
+    let grid = Grid::new(size, origin, directions)?;
     let stored = stored(&header, data, length, voxel_count(&size)? * scalar.size())?;
     let notes = header.doubts();
     Ok(Image { grid, scalar, order, stored, notes, header: Header::Nrrd { text } })

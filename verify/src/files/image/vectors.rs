@@ -106,12 +106,8 @@ fn of_nrrd(
         return Err(Mistake::bad_field("sizes", sizes, expected));
     }
     let order = header.byte_order(scalar, header.encoding()?)?;
-    let (origin, directions) = header.frame()?;
-    let metres = match unit {
-        Some(unit) => unit.in_metres(),
-        None => header.unit()?.in_metres(),
-    };
-    let grid = Grid::new(size, origin * metres, directions * metres)?;
+    let (origin, directions) = header.frame(unit)?;
+    let (grid, metres) = (Grid::new(size, origin, directions)?, header.metres(unit)?);
     let to_ras = match frame {
         Some(frame) => frame.to_ras(&directions),
         None => header.measurement_frame()?,

@@ -202,7 +202,7 @@ fn read_header(stream: &mut impl Read) -> Result<Start, Mistake> {
 fn size(header: &NiftiHeader, content: Content) -> Result<[usize; 3], Mistake> {
     let axes = usize::from(header.dim[0]);
     let sizes: Vec<usize> = header.dim[1..].iter().take(axes).map(|&n| usize::from(n)).collect();
-    let further: usize = sizes.iter().skip(3).product();
+    let further: usize = sizes.iter().skip(3).map(|&n| n.max(1)).product();
     if axes < 3 || further != content.count() {
         let expected = match content {
             Content::Numbers => {
