@@ -174,7 +174,8 @@ pub const KNOWN: &[Known] = &[
                 && scene.inclusion.is_some()
         },
         largest: 4e-5,
-        reason: "where the border between the materials meets a wall, round-off chooses whether the smallest cells are cut as planes or in tetrahedra: of some cells 5e-4 to 1e-2 of the                  weight lies elsewhere",
+        reason: "where the border between the materials meets a wall, round-off chooses whether the smallest cells are cut \
+                 as planes or in tetrahedra: of some cells 5e-4 to 1e-2 of the weight lies elsewhere",
     },
     Known {
         relations: PIECES,

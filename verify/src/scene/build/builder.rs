@@ -137,6 +137,14 @@ impl Builder<'_> {
         self.base_dir.join(file)
     }
 
+    /// Takes down what was read of a file that the case names: all `files` that belong to it, and
+    /// what should be known about them.
+    pub fn has_read(&mut self, key: &str, file: &Path, files: &[PathBuf], notes: &[String]) {
+        files.iter().for_each(|path| self.hash_file(key, path));
+        let named = |note: &String| format!("{}: {note}", file.display());
+        self.notes.extend(notes.iter().map(named));
+    }
+
     /// Adds a file that the case refers to, to the hash of the case.
     pub fn hash_file(&mut self, key: &str, path: &Path) {
         if let Err(error) = visit_bytes(path, |bytes| self.hash.update(bytes)) {

@@ -67,9 +67,7 @@ impl Builder<'_> {
                 return None;
             }
         };
-        read.files.iter().for_each(|path| self.hash_file(&key, path));
-        let named = |note: &String| format!("{}: {note}", format.file.display());
-        self.notes.extend(read.notes.iter().map(named));
+        self.has_read(&key, &format.file, &read.files, &read.notes);
         let scaled = |(position, vector)| (position, vector * format.factor);
         Some(read.vectors.into_iter().map(scaled).collect())
     }

@@ -126,11 +126,7 @@ impl Builder<'_> {
         }
         match files::read_label_map(&path, unit.map(LengthUnit::from), layer) {
             Ok(read) => {
-                for path in &read.files {
-                    self.hash_file(key, path);
-                }
-                let named = |note: &String| format!("{}: {note}", file.display());
-                self.notes.extend(read.notes.iter().map(named));
+                self.has_read(key, file, &read.files, &read.notes);
                 let map = Arc::new(read.map);
                 self.maps.insert((path, unit, layer), map.clone());
                 Some(map)
