@@ -47,7 +47,7 @@ pub fn estimated_memory(case: &Case, discretisation: &Discretisation) -> f64 {
 }
 
 /// Bytes of a position in `result.json`, with the numbers as text and as values.
-const PER_WRITTEN_POSITION: f64 = 960.0;
+const PER_WRITTEN_POSITION: f64 = 900.0;
 
 /// Vertices of the display mesh per box of its lattice \[–\].
 const VERTICES_PER_BOX: f64 = 1.4;
