@@ -97,6 +97,7 @@ macro_rules! published {
 
 published! {
     "bending_column": "case";
+    "block_on_sphere": "case";
     "bouncing_ball": "case";
     "cantilever_vibration": "load_50" "load_80";
     "cook_membrane":;

@@ -19,7 +19,7 @@ pub struct Template {
 }
 
 /// The templates, the simplest first.
-pub static TEMPLATES: [Template; 5] = [
+pub static TEMPLATES: [Template; 6] = [
     Template {
         name: "block",
         purpose: "a block between two plates, at rest",
@@ -34,6 +34,11 @@ pub static TEMPLATES: [Template; 5] = [
         name: "ball",
         purpose: "a ball that is pressed onto a floor, with contact",
         text: include_str!("templates/ball.toml"),
+    },
+    Template {
+        name: "brain",
+        purpose: "brain tissue that relaxes while it is held, with the constants of the literature",
+        text: include_str!("templates/brain.toml"),
     },
     Template {
         name: "surface",

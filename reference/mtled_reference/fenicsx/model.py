@@ -116,11 +116,15 @@ class Model:
         else:
             psi = strain_energy(self.material, first, second, J, ufl.ln)
             energy = psi * factor * dx
-        residual = ufl.derivative(energy, self.unknown)
+        residual = ufl.derivative(energy + self._energy_of_contact(), self.unknown)
         self.residual_form = self._form(residual)
         self.jacobian_form = self._form(ufl.derivative(residual, self.unknown))
         self.energy_form = self._form(psi * factor * dx)
         self._make_load_forms(factor, dx)
+
+    def _energy_of_contact(self):
+        """What a body that touches nothing does not have."""
+        return 0
 
     def _form(self, expression):
         return versions.form(expression, self.recipe.compiler_flags)
