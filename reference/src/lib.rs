@@ -142,3 +142,6 @@ pub static RACE_TIMINGS: &str = include_str!("../race/timings.json");
 
 /// Body forces that SymPy derived for the manufactured solutions, `manufactured/body_force.json`.
 pub static MANUFACTURED_BODY_FORCES: &str = include_str!("../manufactured/body_force.json");
+
+/// Text of the identities of the problems of the benchmark.
+pub static BENCHMARK: &str = include_str!("../benchmark.toml");

@@ -148,7 +148,7 @@ def measure_solvers(
     with_mtled: bool = True,
     **options: Any,
 ) -> Report:
-    """Errors and costs of programs that speak the solver protocol (``mtled study solvers``).
+    """Errors and costs of programs that speak the solver protocol (``mtled contest run``).
 
     ``solvers`` has commands with ``{job}`` and ``{answer}`` by names, or files of Python that
     :func:`mtled.solver` makes solvers. Without cases all bundled cases with a reference are run.
@@ -158,7 +158,7 @@ def measure_solvers(
         given = {"mtled": shlex.join([*_PROGRAM, "protocol", "solve"]) + " {job} {answer}"} | given
     entrants = [f"{name}={command}" for name, command in given.items()]
     options |= {"without_mtled": True, "solver": entrants}
-    return _report(["study", "solvers"], cases, Path("reports", "solvers"), options)
+    return _report(["contest", "run"], cases, Path("reports", "contest"), options)
 
 
 _PROGRAM = (sys.executable, "-m", "mtled")

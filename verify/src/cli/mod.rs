@@ -3,6 +3,7 @@
 mod answers;
 mod case;
 mod common;
+mod contest;
 mod init;
 mod inspect;
 mod lab;
@@ -65,7 +66,7 @@ const EXAMPLES: &str = "Examples:
   mtled case check my_case.toml                 find the mistakes in a case file
   mtled case list                               the bundled cases
   mtled runs export -o runs.csv                 the results of stored runs as a table
-  mtled study solvers --solver 'mine=python3 mine.py {job} {answer}'
+  mtled contest run --solver 'mine=python3 mine.py {job} {answer}'
                                                 how accurate and fast is my own solver?
   mtled reference check                         do the finite-element references agree?";
 
@@ -97,9 +98,13 @@ enum Command {
     Tune(tune::TuneArgs),
     /// Write a report again from its results.json, or compare two reports.
     Report(report::ReportArgs),
-    /// Study a case over ranges of its recipe, or race against finite elements or any solver.
+    /// Study a case over ranges of its recipe, or race against finite elements.
     #[command(subcommand)]
     Study(study::StudyCommand),
+    /// Put any solvers beside each other on the problems of the benchmark: run them, judge stored
+    /// results, write pages.
+    #[command(subcommand)]
+    Contest(contest::ContestCommand),
     /// List, show or remove the stored records of runs.
     #[command(subcommand)]
     Runs(runs::RunsCommand),
@@ -111,7 +116,7 @@ enum Command {
     /// Check, show or recompute the finite-element references.
     #[command(subcommand)]
     Reference(reference::ReferenceCommand),
-    /// Jobs and answers of the solver protocol, by which `mtled study solvers` measures any program.
+    /// Jobs and answers of the solver protocol, by which `mtled contest` measures any program.
     #[command(subcommand)]
     Protocol(protocol::ProtocolCommand),
     /// Print a completion script for a shell.
@@ -204,6 +209,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<u8> {
         Command::Tune(arguments) => tune::tune_cases(arguments, &cli.common),
         Command::Report(arguments) => report::report(arguments, &cli.common),
         Command::Study(command) => study::study(command, &cli.common),
+        Command::Contest(command) => contest::contest(command, &cli.common),
         Command::Runs(command) => runs::runs(command, &cli.common),
         Command::Merge(arguments) => runs::merge(arguments, &cli.common),
         Command::Case(command) => case::case(command, &cli.common),

@@ -12,6 +12,8 @@ mod version;
 
 pub use answer::{Answer, Refusal, RefusalReason, Refused, Reply, SolverName};
 pub use job::{Job, Probe, Resolution};
-pub use read::{AnswerFault, Answered, SoundReply, parse_job, parse_reply, read_reply};
+pub use read::{
+    AnswerFault, Answered, SoundReply, parse_job, parse_reply, read_reply, reply_value, sound_reply,
+};
 pub use schema::{answer_schema, job_schema};
 pub use version::PROTOCOL;

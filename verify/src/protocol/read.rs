@@ -68,7 +68,17 @@ pub struct Answered {
 
 /// Reads the reply to a job of a case with some number of instants.
 pub fn read_reply(path: &Path, case: &Case, instants: usize) -> Result<SoundReply, AnswerFault> {
-    match parse_reply(&read_text(path)?)? {
+    sound_reply(reply_value(path)?, case, instants)
+}
+
+/// Reads the file of a reply, whatever is in it.
+pub fn reply_value(path: &Path) -> Result<Value, AnswerFault> {
+    json(&read_text(path)?)
+}
+
+/// A reply to a job of a case with some number of instants.
+pub fn sound_reply(reply: Value, case: &Case, instants: usize) -> Result<SoundReply, AnswerFault> {
+    match reply_of(reply)? {
         Reply::Refusal(refusal) => Ok(SoundReply::Refused(refusal)),
         Reply::Answer(answer) => Ok(SoundReply::Answered(answered(answer, case, instants)?)),
     }
@@ -94,21 +104,28 @@ fn read_text(path: &Path) -> Result<String, AnswerFault> {
 
 /// The job in a text.
 pub fn parse_job(text: &str) -> Result<Job, AnswerFault> {
-    fitting(versioned(text)?)
+    fitting(versioned(json(text)?)?)
 }
 
 /// The reply in a text, whatever its job.
 pub fn parse_reply(text: &str) -> Result<Reply, AnswerFault> {
-    let value = versioned(text)?;
+    reply_of(json(text)?)
+}
+
+fn reply_of(value: Value) -> Result<Reply, AnswerFault> {
+    let value = versioned(value)?;
     match value.get("refused") {
         Some(_) => Ok(Reply::Refusal(fitting(value)?)),
         None => Ok(Reply::Answer(fitting(value)?)),
     }
 }
 
+fn json(text: &str) -> Result<Value, AnswerFault> {
+    serde_json::from_str(text).map_err(|error| not_json(text, &error))
+}
+
 /// A JSON object of this version of the protocol.
-fn versioned(text: &str) -> Result<Value, AnswerFault> {
-    let value: Value = serde_json::from_str(text).map_err(|error| not_json(text, &error))?;
+fn versioned(value: Value) -> Result<Value, AnswerFault> {
     match value.get("protocol") {
         Some(version) if version.as_u64() == Some(PROTOCOL.into()) => Ok(value),
         Some(version) => Err(AnswerFault::Version { found: version.clone() }),

@@ -1,7 +1,6 @@
 //! `mtled study`.
 
 mod race;
-mod solvers;
 
 use super::common::Common;
 use super::lab::sweep::{SweepArgs, sweep};
@@ -9,7 +8,6 @@ use crate::lab::sweep::Subject;
 use anyhow::Result;
 use clap::Subcommand;
 use race::{RaceArgs, race_study};
-use solvers::{SolversArgs, solvers_study};
 
 #[derive(Debug, Subcommand)]
 pub enum StudyCommand {
@@ -29,9 +27,6 @@ pub enum StudyCommand {
     /// Speed against error, beside FEniCSx and scikit-fem: the bonded block and two smooth
     /// problems over series of recipes and elements.
     Race(RaceArgs),
-    /// Any programs that speak the solver protocol beside mtled: errors against references, orders,
-    /// CPU time, memory, cost at equal error, and how their runs end.
-    Solvers(SolversArgs),
 }
 
 pub fn study(command: &StudyCommand, common: &Common) -> Result<u8> {
@@ -42,6 +37,5 @@ pub fn study(command: &StudyCommand, common: &Common) -> Result<u8> {
         StudyCommand::Convergence(arguments) => sweep(Subject::Convergence, arguments, common),
         StudyCommand::Stability(arguments) => sweep(Subject::Stability, arguments, common),
         StudyCommand::Race(arguments) => race_study(arguments, common),
-        StudyCommand::Solvers(arguments) => solvers_study(arguments, common),
     }
 }

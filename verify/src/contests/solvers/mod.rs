@@ -1,27 +1,29 @@
-//! Solvers that speak the protocol, measured on the same cases: any program that reads a job and
-//! writes an answer, and this one.
+//! The contest of solvers that speak the protocol: any program that reads a job and writes an
+//! answer, and this one. Runs are stored as raw results, and all that is said of them is judged
+//! from these.
 
 mod contest;
 mod doubt;
 mod entrant;
-mod family;
+mod identity;
+mod judged;
 mod outcome;
 mod own;
+mod pages;
+mod problem;
 mod process;
 mod report;
+mod results;
+mod run_tables;
 mod tables;
 
-pub use contest::{Contest, ContestCase, NotASpacing, Spacing, absolute};
+pub use contest::{Contest, absolute};
 pub use entrant::{Entrant, NotAnEntrant};
+pub use identity::{Identity, benchmark, hash_of_references};
+pub use judged::{CaseRuns, Judged, doubts, judge, problem_of};
+pub use outcome::{Outcome, SolverRun};
 pub use own::solve_job;
-
-use crate::machine::load_average;
-use anyhow::Result;
-use mtled_checks::study::Study;
-
-/// Runs a contest; `notify` is called before every run. None where the user has stopped it.
-pub fn hold(contest: &Contest, notify: &dyn Fn(&str)) -> Result<Option<Study>> {
-    let load_before = load_average();
-    let runs = contest.run(notify)?;
-    Ok(runs.map(|all| report::study(contest, &all, load_before)))
-}
+pub use pages::write_pages;
+pub use problem::{ContestCase, NotASpacing, Spacing};
+pub use report::study;
+pub use results::{Machine, Results, ResultsFault, StoredEnd, StoredRun, result_files};

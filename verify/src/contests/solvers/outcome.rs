@@ -1,9 +1,14 @@
 //! How one job with one program ended.
 
 use super::process::{ChildRun, Ended, Usage};
-use crate::protocol::{AnswerFault, Answered, Refused, SolverName, SoundReply};
+use super::results::StoredEnd;
+use crate::protocol::{
+    AnswerFault, Answered, Refused, SolverName, SoundReply, reply_value, sound_reply,
+};
+use crate::scene::Case;
 use mtled_checks::escape::printable;
-use std::io;
+use serde_json::Value;
+use std::path::Path;
 
 /// Lines of standard error that are shown.
 const LINES: usize = 3;
@@ -19,15 +24,13 @@ pub enum Outcome {
     Refused(SolverName, Refused),
     /// The program did not end in time and was killed.
     TimedOut,
-    /// The program or its answer breaks the protocol.
-    Faulty(Fault),
+    /// The program or its answer breaks the protocol, and how.
+    Faulty(String),
 }
 
 /// What is wrong with a program.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Fault {
-    #[error("does not start: {reason}")]
-    NotStarted { reason: String },
+enum Fault {
     #[error("ended with exit code {code}{last_words}")]
     Exit { code: i32, last_words: LastWords },
     #[error("ended by signal {signal}{last_words}")]
@@ -56,35 +59,19 @@ impl LastWords {
 }
 
 impl Outcome {
-    /// Of a program that could not be started.
-    pub fn not_started(error: &io::Error) -> Outcome {
-        Outcome::Faulty(Fault::NotStarted { reason: printable(&error.to_string()) })
-    }
-
-    /// Of a process that has ended; `reply` reads its answer. None where the user has stopped
-    /// this program.
-    pub fn of(
-        run: &ChildRun,
-        reply: impl FnOnce() -> Result<SoundReply, AnswerFault>,
-    ) -> Option<Outcome> {
-        let status = match run.ended {
-            Ended::Stopped => return None,
-            Ended::TimedOut => return Some(Outcome::TimedOut),
-            Ended::Exited(status) => status,
-        };
-        if !status.success() {
-            let last_words = LastWords::new(&run.last_words);
-            let fault = match (status.code(), signal(&status)) {
-                (None, Some(signal)) => Fault::Signal { signal, last_words },
-                (code, _) => Fault::Exit { code: code.unwrap_or(-1), last_words },
-            };
-            return Some(Outcome::Faulty(fault));
+    /// What a stored end is worth, where the job had so many instants.
+    pub fn judged(ended: &StoredEnd, case: &Case, instants: usize) -> Outcome {
+        match ended {
+            StoredEnd::TimedOut => Outcome::TimedOut,
+            StoredEnd::Fault(what) => Outcome::Faulty(what.clone()),
+            StoredEnd::Reply(reply) => match sound_reply(reply.clone(), case, instants) {
+                Ok(SoundReply::Answered(answered)) => Outcome::Answered(answered),
+                Ok(SoundReply::Refused(refusal)) => {
+                    Outcome::Refused(refusal.solver, refusal.refused)
+                }
+                Err(fault) => Outcome::Faulty(fault.to_string()),
+            },
         }
-        Some(match reply() {
-            Ok(SoundReply::Answered(answered)) => Outcome::Answered(answered),
-            Ok(SoundReply::Refused(refusal)) => Outcome::Refused(refusal.solver, refusal.refused),
-            Err(fault) => Outcome::Faulty(Fault::Answer(fault)),
-        })
     }
 
     /// The values.
@@ -112,8 +99,55 @@ impl Outcome {
                 format!("refused, {}: {}", refused.reason.label(), printable(&refused.what))
             }
             Outcome::TimedOut => "timed out".into(),
-            Outcome::Faulty(fault) => format!("FAULT: {}", printable(&fault.to_string())),
+            Outcome::Faulty(fault) => format!("FAULT: {}", printable(fault)),
         }
+    }
+}
+
+impl StoredEnd {
+    /// Of a process that has ended; its answer is read. None where the user has stopped this
+    /// program.
+    pub fn of(run: &ChildRun, answer: &Path) -> Option<StoredEnd> {
+        let status = match run.ended {
+            Ended::Stopped => return None,
+            Ended::TimedOut => return Some(StoredEnd::TimedOut),
+            Ended::Exited(status) => status,
+        };
+        let last_words = LastWords::new(&run.last_words);
+        let fault = match (status.success(), status.code(), signal(&status)) {
+            (true, ..) => match reply_value(answer) {
+                Ok(reply) => return Some(StoredEnd::Reply(rounded(reply))),
+                Err(fault) => Fault::Answer(fault),
+            },
+            (false, None, Some(signal)) => Fault::Signal { signal, last_words },
+            (false, code, _) => Fault::Exit { code: code.unwrap_or(-1), last_words },
+        };
+        Some(StoredEnd::Fault(fault.to_string()))
+    }
+
+    /// Of a program that could not be started.
+    pub fn not_started(error: &std::io::Error) -> StoredEnd {
+        StoredEnd::Fault(format!("does not start: {}", printable(&error.to_string())))
+    }
+}
+
+/// Digits with which numbers of an answer are stored: a million times finer than errors of one per
+/// mille, and half of the bytes.
+const DIGITS: usize = 9;
+
+/// A reply whose fractions have [`DIGITS`].
+fn rounded(reply: Value) -> Value {
+    match reply {
+        Value::Array(list) => list.into_iter().map(rounded).collect(),
+        Value::Object(keys) => keys.into_iter().map(|(key, value)| (key, rounded(value))).collect(),
+        Value::Number(number) if number.is_f64() => {
+            let value = number.as_f64().unwrap_or_default();
+            // Nine digits are a number again.
+            format!("{value:.*e}", DIGITS - 1)
+                .parse()
+                .map_or(Value::Number(number), |v: f64| v.into())
+        }
+        other => other,
     }
 }
 
@@ -150,6 +184,14 @@ impl SolverRun {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn fractions_are_stored_with_nine_digits_and_whole_numbers_as_they_are() {
+        let reply =
+            serde_json::json!({"u": [[0.12345678912345, -1e-300]], "unknowns": 12345678912u64});
+        let kept = serde_json::json!({"u": [[0.123456789, -1e-300]], "unknowns": 12345678912u64});
+        assert_eq!(rounded(reply), kept);
+    }
 
     #[test]
     fn last_words_are_the_last_lines_without_escape_sequences() {

@@ -1,10 +1,9 @@
-//! The contest as a study.
+//! Judged results as a study.
 
-use super::contest::{CaseRuns, Contest};
-use super::tables::{bar_of, endings, equal_errors, finest, orders_of, robustness, runs_of};
-use crate::machine::{load_average, peak_memory, provenance};
+use super::judged::{CaseRuns, Judged};
+use super::run_tables::{orders_of, runs_of};
+use super::tables::{endings, equal_errors, finest, losses, robustness, wins};
 use mtled_checks::escape::{file_name, printable};
-use mtled_checks::report::four_digits;
 use mtled_checks::study::{
     Bound, Check, Figure, Kind, Panels, Plot, Series, SeriesStyle, Study, axis, curve, styled,
 };
@@ -13,7 +12,8 @@ const TIMING: &str = "Every run is a process of its own, with one thread asked f
     time and peak memory are those that the system counts for the process and the children that it has \
     waited for, from its start to its end: the start of an interpreter, imports, compilation of kernels and \
     writing the answer are included; the shortest run of a program is an upper bound of its start. The \
-    programs run in turn, once each.";
+    programs run in turn, once each. \"≤\" marks a peak memory that the system cannot tell from that of \
+    the program that measures.";
 
 const ERRORS: &str = "Errors are root mean square differences from the reference over the largest value \
     of its kind. Differences that are not larger than the error bar of the reference are inconclusive: \
@@ -26,41 +26,38 @@ const COSTS: &str = "CPU times at equal error are interpolated logarithmically b
     extrapolated. Programs whose answers on a case are doubtful have no cost there.";
 
 /// The study with its tables, figures, checks and notes.
-pub fn study(contest: &Contest, all: &[CaseRuns], load_before: Option<f64>) -> Study {
+pub fn study(all: &Judged, command: String) -> Study {
     let mut study = Study {
         id: "solvers".into(),
         title: "Solvers beside each other".into(),
-        claim: "Programs that speak the solver protocol, on the same cases at the same resolutions: \
+        claim: "Programs that speak the solver protocol, on the same problems at the same resolutions: \
                 errors against stored references, measured CPU time and memory, and how many runs ended \
                 with an answer."
             .into(),
-        command: contest.command.clone(),
+        command,
         ..Study::default()
     };
-    study.tables.push(robustness(contest, all));
-    study.tables.push(equal_errors(contest, all));
-    study.tables.push(finest(contest, all));
-    for n in 0..contest.entrants.len() {
-        study.tables.push(orders_of(contest, all, n));
-        study.tables.push(runs_of(contest, all, n));
-        study.checks.push(check(contest, all, n));
+    study.tables.extend([robustness(all), wins(all), equal_errors(all)]);
+    study.tables.extend(losses(all));
+    study.tables.push(finest(all));
+    for (n, solver) in all.solvers.iter().enumerate() {
+        study.tables.push(orders_of(&solver.name, &all.cases, n));
+        study.tables.push(runs_of(&solver.name, &all.cases, n));
+        study.checks.push(check(all, n));
     }
-    study.figures.push(overview(contest, all));
-    let plots = all.iter().map(|case| plot(contest, case, SeriesStyle::Line));
-    let drawn = plots.filter(|plot| plot.series.iter().any(|series| !series.points.is_empty()));
-    study.figures.extend(drawn.map(Figure::Plot));
+    study.figures.push(overview(all));
     study.leading = 1;
-    study.notes = notes(contest, all, load_before);
+    study.notes = notes(all);
     study
 }
 
 /// Programs keep to the protocol; refusals and time limits are no faults.
-fn check(contest: &Contest, all: &[CaseRuns], entrant: usize) -> Check {
-    let name = printable(&contest.entrants[entrant].name);
-    let counts = endings(all, entrant);
+fn check(all: &Judged, solver: usize) -> Check {
+    let name = printable(&all.solvers[solver].name);
+    let counts = endings(&all.cases, solver);
     Check::new(
         &format!("solvers/{}", file_name(&name)),
-        &format!("{name}: faulty runs, and cases with doubtful answers"),
+        &format!("{name}: faulty runs, and problems with doubtful answers"),
         Kind::Exact,
         (counts.faulty + counts.doubtful) as f64,
         Bound::AtMost(0.0),
@@ -69,10 +66,12 @@ fn check(contest: &Contest, all: &[CaseRuns], entrant: usize) -> Check {
     )
 }
 
-fn overview(contest: &Contest, all: &[CaseRuns]) -> Figure {
-    let panels = all.iter().map(|case| {
-        let plot = plot(contest, case, SeriesStyle::Floor);
-        Figure::Plot(Plot { title: case.of.source.name.clone(), ..plot })
+/// Error over CPU time, a panel per problem.
+pub fn overview(all: &Judged) -> Figure {
+    let names: Vec<String> = all.solvers.iter().map(|solver| printable(&solver.name)).collect();
+    let panels = all.cases.iter().map(|case| {
+        let plot = plot(&names, case, SeriesStyle::Floor);
+        Figure::Plot(Plot { title: case.of.id.clone(), ..plot })
     });
     Figure::Panels(Panels {
         title: "Error over CPU time".into(),
@@ -85,27 +84,26 @@ fn overview(contest: &Contest, all: &[CaseRuns]) -> Figure {
 }
 
 /// Error over CPU time, a curve per program; the error bar of the reference as a line or a floor.
-fn plot(contest: &Contest, case: &CaseRuns, bar_style: SeriesStyle) -> Plot {
+pub fn plot(names: &[String], case: &CaseRuns, bar_style: SeriesStyle) -> Plot {
     let mut series: Vec<Series> = Vec::new();
     let mut range = (f64::INFINITY, 0.0f64);
-    for (n, entrant) in contest.entrants.iter().enumerate() {
+    for (n, name) in names.iter().enumerate() {
         let points = case.costs(n);
         range = points.iter().fold(range, |(low, high), p| (low.min(p.0), high.max(p.0)));
         let colour = Some(n);
-        series.push(Series { colour, ..curve(&printable(&entrant.name), points) });
+        series.push(Series { colour, ..curve(name, points) });
     }
-    let bar = bar_of(case).filter(|bar| *bar > 0.0 && range.1 > 0.0);
+    let bar = Some(case.of.bar()).filter(|bar| *bar > 0.0 && range.1 > 0.0);
     if let Some(bar) = bar {
         let points = vec![(range.0, bar), (range.1, bar)];
         let name = match bar_style {
             SeriesStyle::Floor => "below the reference's error bar",
             _ => "error bar of the reference",
         };
-        let bar = styled(name, points, bar_style);
-        series.push(Series { colour: Some(contest.entrants.len()), ..bar });
+        series.push(Series { colour: Some(names.len()), ..styled(name, points, bar_style) });
     }
     Plot {
-        title: format!("{}: error of the {}", case.of.source.name, case.of.group.label()),
+        title: format!("{}: error of the {}", case.of.id, case.of.group.label()),
         caption: "rms error over the CPU time of the whole process; lower left is better.".into(),
         x: axis("CPU time", "s", true),
         y: axis("rms error over the largest value", "1", true),
@@ -114,44 +112,40 @@ fn plot(contest: &Contest, case: &CaseRuns, bar_style: SeriesStyle) -> Plot {
     }
 }
 
-fn notes(contest: &Contest, all: &[CaseRuns], load_before: Option<f64>) -> Vec<String> {
-    let provenance = provenance();
-    let load = |load: Option<f64>| load.map_or("not known".into(), |load| format!("{load:.1}"));
+/// How it was measured, on which machines, and how each program was started.
+pub fn notes(all: &Judged) -> Vec<String> {
+    let machines = all
+        .machines
+        .iter()
+        .map(|machine| format!("{}, {}, {}", machine.processor, machine.system, machine.date));
+    let limits: Vec<String> = all.time_limits_s.iter().map(f64::to_string).collect();
     let mut notes = vec![
-        format!(
-            "{}, {}; load average {} at the start and {} at the end. Time limit of a run: {} s.",
-            provenance.processor,
-            provenance.date,
-            load(load_before),
-            load(load_average()),
-            contest.time_limit_s
-        ),
+        printable(&format!(
+            "Run on: {}. Time limit of a run: {} s.",
+            machines.collect::<Vec<_>>().join("; "),
+            limits.join(", ")
+        )),
         TIMING.to_string(),
         ERRORS.to_string(),
         COSTS.to_string(),
     ];
-    if let Some(bytes) = peak_memory() {
-        notes.push(format!(
-            "The system counts the memory of this program, {} MB at its peak, to a process until it \
-             has loaded its own: smaller peaks are not seen, which \"≤\" marks.",
-            four_digits(bytes as f64 / 1e6)
-        ));
-    }
-    for (n, entrant) in contest.entrants.iter().enumerate() {
-        let answers = || all.iter().flat_map(|case| &case.runs[n]);
-        let mut methods: Vec<&str> =
-            answers().filter_map(|run| run.outcome.answered()?.method.as_deref()).collect();
-        methods.sort_unstable();
-        methods.dedup();
-        let methods = match methods.len() {
-            0 => "no method is stated".to_string(),
-            1..=8 => methods.join("; "),
-            more => format!("{}; and {} more", methods[..8].join("; "), more - 8),
-        };
-        notes.push(printable(&format!(
-            "{}: {}. Method, in its own words: {methods}.",
-            entrant.name, entrant.shown
-        )));
-    }
+    notes.extend((0..all.solvers.len()).map(|n| about_solver(all, n)));
     notes
+}
+
+/// Command and method of a program.
+pub fn about_solver(all: &Judged, n: usize) -> String {
+    let solver = &all.solvers[n];
+    let answers = all.cases.iter().flat_map(|case| &case.runs[n]);
+    let mut methods: Vec<&str> =
+        answers.filter_map(|run| run.outcome.answered()?.method.as_deref()).collect();
+    methods.sort_unstable();
+    methods.dedup();
+    let methods = match methods.len() {
+        0 => "no method is stated".to_string(),
+        1..=8 => methods.join("; "),
+        more => format!("{}; and {} more", methods[..8].join("; "), more - 8),
+    };
+    let commands = solver.commands.join("; ");
+    printable(&format!("{}: {commands}. Method, in its own words: {methods}.", solver.name))
 }

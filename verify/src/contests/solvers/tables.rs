@@ -1,24 +1,18 @@
-//! The contest as tables.
+//! All solvers on all problems as tables.
 
-use super::contest::{CaseRuns, Contest};
-use super::doubt::false_claim;
+use super::judged::{CaseRuns, Judged, JudgedSolver, OWN};
 use super::outcome::{Outcome, SolverRun};
-use super::process::Usage;
-use crate::accuracy::{Cost, Group, cost_at};
+use super::run_tables::{label, memory_cell};
+use crate::accuracy::{Cost, cost_at};
 use crate::lab::label::{optional, percent};
 use mtled_checks::escape::printable;
-use mtled_checks::measure::log_log_fit;
 use mtled_checks::report::four_digits;
 use mtled_checks::study::{Cell, Table, number, text};
 
 /// Errors at which costs may be compared \[–\].
 const ERRORS: [f64; 8] = [0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005];
-/// A fitted order is reported only above this many times its standard deviation.
-const SIGNIFICANT: f64 = 2.0;
-
-fn label(text: impl Into<String>) -> Cell {
-    Cell::Text(text.into())
-}
+/// CPU times for which the best error is looked for \[s\].
+const BUDGETS_S: [f64; 4] = [0.1, 1.0, 10.0, 100.0];
 
 /// Counts of the endings of the runs of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -28,15 +22,15 @@ pub struct Endings {
     pub refused: usize,
     pub timed_out: usize,
     pub faulty: usize,
-    /// Cases with doubtful answers.
+    /// Problems with doubtful answers.
     pub doubtful: usize,
 }
 
-/// The endings of a program on all cases.
-pub fn endings(all: &[CaseRuns], entrant: usize) -> Endings {
+/// The endings of a program on some cases.
+pub fn endings(cases: &[CaseRuns], solver: usize) -> Endings {
     let mut endings = Endings::default();
-    for case in all {
-        for run in &case.runs[entrant] {
+    for case in cases {
+        for run in &case.runs[solver] {
             endings.runs += 1;
             match run.outcome {
                 Outcome::Answered(_) => endings.answered += 1,
@@ -45,16 +39,16 @@ pub fn endings(all: &[CaseRuns], entrant: usize) -> Endings {
                 Outcome::Faulty(_) => endings.faulty += 1,
             }
         }
-        endings.doubtful += usize::from(!case.doubts(entrant).is_empty());
+        endings.doubtful += usize::from(!case.doubts(solver).is_empty());
     }
     endings
 }
 
 /// A row per program: who it is and how its runs ended.
-pub fn robustness(contest: &Contest, all: &[CaseRuns]) -> Table {
-    let row = |(n, entrant): (usize, &super::entrant::Entrant)| {
-        let counts = endings(all, n);
-        let runs = || all.iter().flat_map(|case| &case.runs[n]);
+pub fn robustness(all: &Judged) -> Table {
+    let row = |(n, entrant): (usize, &JudgedSolver)| {
+        let counts = endings(&all.cases, n);
+        let runs = || all.cases.iter().flat_map(|case| &case.runs[n]);
         let solver = runs().find_map(|run| run.outcome.solver());
         let usages = || runs().filter_map(|run| run.usage);
         let memory = usages().max_by_key(|usage| usage.peak_memory_bytes);
@@ -86,74 +80,81 @@ pub fn robustness(contest: &Contest, all: &[CaseRuns]) -> Table {
             text("refused"),
             text("timed out"),
             text("faulty"),
-            text("cases with doubtful answers"),
+            text("problems with doubtful answers"),
             number("CPU time of all runs", "s"),
             number("of the shortest", "s"),
             number("largest peak memory", "MB"),
         ],
-        rows: contest.entrants.iter().enumerate().map(row).collect(),
+        rows: all.solvers.iter().enumerate().map(row).collect(),
     }
 }
 
 /// CPU time at equal error, a column per program.
-pub fn equal_errors(contest: &Contest, all: &[CaseRuns]) -> Table {
-    let mut columns = vec![text("case"), text("quantity"), text("rms error")];
-    let names = contest.entrants.iter().map(|entrant| printable(&entrant.name));
-    columns.extend(names.map(|name| number(&name, "s")));
+pub fn equal_errors(all: &Judged) -> Table {
+    let mut columns = vec![text("problem"), text("quantity"), text("rms error")];
+    columns.extend(names(all).map(|name| number(&name, "s")));
     Table {
         title: "CPU time at equal error".into(),
         columns,
-        rows: all.iter().flat_map(costs_of).collect(),
+        rows: all.cases.iter().flat_map(costs_of).collect(),
     }
 }
 
-/// A row for each error above the error bar of the reference that a program reaches.
-fn costs_of(case: &CaseRuns) -> Vec<Vec<Cell>> {
-    let bar = bar_of(case).unwrap_or(0.0);
+fn names(all: &Judged) -> impl Iterator<Item = String> {
+    all.solvers.iter().map(|solver| printable(&solver.name))
+}
+
+/// What an error costs each program on a case.
+struct ErrorCosts<'a> {
+    case: &'a CaseRuns<'a>,
+    error: f64,
+    costs: Vec<Option<Cost>>,
+}
+
+/// The errors above the error bar of the reference that a program reaches between two runs.
+fn error_costs<'a>(case: &'a CaseRuns<'a>) -> Vec<ErrorCosts<'a>> {
+    let bar = case.of.bar();
     let series: Vec<Vec<(f64, f64)>> = (0..case.runs.len())
         .map(|n| case.costs(n).iter().map(|&(cpu, error)| (error, cpu)).collect())
         .collect();
-    let row = |error: f64| {
+    let at = |error: f64| {
         let costs: Vec<Option<Cost>> = series.iter().map(|runs| cost_at(runs, error)).collect();
         let interpolated = costs.iter().flatten().any(|cost| !cost.at_most);
-        interpolated.then(|| {
-            let name = label(&case.of.source.name);
-            let mut cells = vec![name, label(case.of.group.label()), label(percent(error))];
-            cells.extend(series.iter().zip(&costs).map(|(runs, cost)| cost_cell(runs, *cost)));
-            cells
-        })
+        interpolated.then_some(ErrorCosts { case, error, costs })
     };
-    ERRORS.into_iter().filter(|error| *error >= bar).filter_map(row).collect()
+    ERRORS.into_iter().filter(|error| *error >= bar).filter_map(at).collect()
 }
 
-fn cost_cell(runs: &[(f64, f64)], cost: Option<Cost>) -> Cell {
+fn costs_of(case: &CaseRuns) -> Vec<Vec<Cell>> {
+    let row = |at: &ErrorCosts| {
+        let mut cells =
+            vec![label(&case.of.id), label(case.of.group.label()), label(percent(at.error))];
+        let each = at.costs.iter().enumerate();
+        cells.extend(each.map(|(n, cost)| cost_cell(!case.costs(n).is_empty(), *cost)));
+        cells
+    };
+    error_costs(case).iter().map(row).collect()
+}
+
+fn cost_cell(answered: bool, cost: Option<Cost>) -> Cell {
     match cost {
-        _ if runs.is_empty() => label("–"),
+        _ if !answered => label("–"),
         None => label("not reached"),
         Some(Cost { value, at_most: true }) => label(format!("< {}", four_digits(value))),
         Some(Cost { value, .. }) => Cell::Number(value),
     }
 }
 
-/// The error bar of the reference of a case, in the group that is compared first \[–\].
-pub fn bar_of(case: &CaseRuns) -> Option<f64> {
-    let values: Vec<Vec<f64>> =
-        case.of.reference.quantities.iter().map(|known| known.values.clone()).collect();
-    let known = case.of.reference.difference(&case.of.source.case, case.of.group, &values)?;
-    Some(known.bar)
-}
-
 /// Error and CPU time of the finest answered run, a pair of columns per program.
-pub fn finest(contest: &Contest, all: &[CaseRuns]) -> Table {
-    let mut columns = vec![text("case"), text("quantity"), number("error bar", "1")];
-    for entrant in &contest.entrants {
-        let name = printable(&entrant.name);
+pub fn finest(all: &Judged) -> Table {
+    let mut columns = vec![text("problem"), text("quantity"), number("error bar", "1")];
+    for name in names(all) {
         columns.push(number(&format!("{name}: rms error"), "1"));
         columns.push(number(&format!("{name}: CPU time"), "s"));
     }
     let row = |case: &CaseRuns| {
         let mut cells =
-            vec![label(&case.of.source.name), label(case.of.group.label()), optional(bar_of(case))];
+            vec![label(&case.of.id), label(case.of.group.label()), Cell::Number(case.of.bar())];
         for (n, runs) in case.runs.iter().enumerate() {
             let run = runs.iter().rfind(|run| run.outcome.answered().is_some());
             match (run, runs.last()) {
@@ -173,7 +174,7 @@ pub fn finest(contest: &Contest, all: &[CaseRuns]) -> Table {
     Table {
         title: "The finest answered run of each solver".into(),
         columns,
-        rows: all.iter().map(row).collect(),
+        rows: all.cases.iter().map(row).collect(),
     }
 }
 
@@ -186,113 +187,94 @@ fn short(outcome: &Outcome) -> &'static str {
     }
 }
 
-/// All runs of a program.
-pub fn runs_of(contest: &Contest, all: &[CaseRuns], entrant: usize) -> Table {
-    let rows =
-        all.iter().flat_map(|case| case.runs[entrant].iter().map(move |run| run_row(case, run)));
-    Table {
-        title: format!("{}: all runs", printable(&contest.entrants[entrant].name)),
-        columns: vec![
-            text("case"),
-            text("level"),
-            number("spacing", "m"),
-            text("unknowns"),
-            text("compared"),
-            number("error, rms", "1"),
-            number("error, largest", "1"),
-            text("against the error bar of the reference"),
-            number("reactions, rms error", "1"),
-            number("strain energy, error", "1"),
-            number("CPU time", "s"),
-            number("claimed", "s"),
-            number("wall time", "s"),
-            number("peak memory", "MB"),
-            text("outcome"),
-        ],
-        rows: rows.collect(),
-    }
+/// The smallest error that each program reaches within a CPU time, a table per time; below the
+/// error bar of the reference nothing is decided.
+pub fn budgets(all: &Judged) -> Vec<Table> {
+    BUDGETS_S.into_iter().map(|budget_s| best_errors(all, budget_s)).collect()
 }
 
-fn run_row(case: &CaseRuns, run: &SolverRun) -> Vec<Cell> {
-    let answered = run.outcome.answered();
-    let error = case.error(run);
-    let of = |group: Group| answered.and_then(|answered| case.of.error(group, answered));
-    let usage = run.usage;
-    let outcome = match false_claim(run) {
-        Some(claim) => format!("{}; {claim}", run.outcome.label()),
-        None => run.outcome.label(),
-    };
-    vec![
-        label(&case.of.source.name),
-        Cell::Number(run.level as f64),
-        Cell::Number(run.spacing_m),
-        answered.map_or(label("–"), |answered| label(answered.unknowns.to_string())),
-        label(case.of.group.label()),
-        optional(error.map(|error| error.rms)),
-        optional(error.map(|error| error.max)),
-        label(match error {
-            None => "–",
-            Some(error) if error.rms <= error.bar => "inconclusive: not larger",
-            Some(_) => "larger",
-        }),
-        optional(of(Group::Force).map(|error| error.rms)),
-        optional(of(Group::StrainEnergy).map(|error| error.rms)),
-        optional(run.cpu_s()),
-        optional(answered.and_then(|answered| answered.claimed_cpu_s)),
-        optional(usage.map(|usage| usage.wall_s)),
-        memory_cell(usage),
-        label(outcome),
-    ]
-}
-
-/// Peak memory \[MB\]; an upper bound where the system cannot tell it from that of this program.
-fn memory_cell(usage: Option<Usage>) -> Cell {
-    let Some(usage) = usage else { return label("–") };
-    let megabytes = usage.peak_memory_bytes as f64 / 1e6;
-    if usage.peak_memory_bytes <= usage.least_memory_bytes {
-        label(format!("≤ {}", four_digits(megabytes)))
-    } else {
-        Cell::Number(megabytes)
-    }
-}
-
-/// Orders and doubts of a program, a row per case with an answer.
-pub fn orders_of(contest: &Contest, all: &[CaseRuns], entrant: usize) -> Table {
+fn best_errors(all: &Judged, budget_s: f64) -> Table {
     let row = |case: &CaseRuns| {
-        let answers = case.runs[entrant].iter().filter(|run| run.outcome.answered().is_some());
-        let errors: Vec<(f64, crate::accuracy::Difference)> =
-            answers.filter_map(|run| Some((run.spacing_m, case.error(run)?))).collect();
-        if errors.is_empty() {
-            return None;
-        }
-        let above: Vec<(f64, f64)> =
-            errors.iter().filter(|(_, e)| e.rms > e.bar).map(|(h, e)| (*h, e.rms)).collect();
-        let fit = log_log_fit(&above).filter(|fit| fit.standard_deviation.is_finite());
-        let order = match fit {
-            Some(fit) if fit.slope > SIGNIFICANT * fit.standard_deviation => {
-                format!("{:.2} ± {:.2}", fit.slope, fit.standard_deviation)
-            }
-            Some(_) => "none: scatter".into(),
-            None => "inconclusive: fewer than three errors above the error bar".into(),
+        let within = |n: usize| {
+            let affordable = case.costs(n).into_iter().filter(|(cpu, _)| *cpu <= budget_s);
+            affordable.map(|(_, error)| error.max(case.of.bar())).reduce(f64::min)
         };
-        let doubts = case.doubts(entrant).iter().map(ToString::to_string).collect::<Vec<_>>();
+        let errors: Vec<Option<f64>> = (0..case.runs.len()).map(within).collect();
+        let best = errors.iter().flatten().copied().reduce(f64::min)?;
+        let cell = |error: &Option<f64>| match error {
+            None => label("–"),
+            Some(error) if *error <= best => label(format!("{} ●", percent(*error))),
+            Some(error) => label(percent(*error)),
+        };
+        let mut cells = vec![label(&case.of.id)];
+        cells.extend(errors.iter().map(cell));
+        Some(cells)
+    };
+    let mut columns = vec![text("problem")];
+    columns.extend(names(all).map(|name| text(&name)));
+    Table {
+        title: format!("Smallest error for {budget_s} CPU s; ● marks the best"),
+        columns,
+        rows: all.cases.iter().filter_map(row).collect(),
+    }
+}
+
+/// Where another program reaches an error for less, or alone: a row per problem and error. None
+/// where mtled did not take part.
+pub fn losses(all: &Judged) -> Option<Table> {
+    let own = all.solvers.iter().position(|solver| solver.name == OWN)?;
+    let row = |at: &ErrorCosts| {
+        let value = |n: usize| at.costs[n].map(|cost| cost.value);
+        let others = (0..at.costs.len()).filter(|n| *n != own);
+        let best = others.filter_map(|n| Some((value(n)?, n))).min_by(|a, b| a.0.total_cmp(&b.0));
+        let (cost, n) = best.filter(|(cost, _)| value(own).is_none_or(|own| own > *cost))?;
         Some(vec![
-            label(&case.of.source.name),
-            label(case.of.group.label()),
-            Cell::Number(above.len() as f64),
-            label(order),
-            label(if doubts.is_empty() { "none".into() } else { doubts.join("; ") }),
+            label(&at.case.of.id),
+            label(percent(at.error)),
+            cost_cell(!at.case.costs(own).is_empty(), at.costs[own]),
+            label(printable(&all.solvers[n].name)),
+            cost_cell(true, at.costs[n]),
+            optional(value(own).map(|own| own / cost)),
         ])
     };
-    Table {
-        title: format!("{}: observed orders", printable(&contest.entrants[entrant].name)),
+    let rows = all
+        .cases
+        .iter()
+        .flat_map(|case| error_costs(case).iter().filter_map(row).collect::<Vec<_>>());
+    Some(Table {
+        title: "Where mtled loses: errors that another solver reaches for less CPU time".into(),
         columns: vec![
-            text("case"),
-            text("quantity"),
-            text("errors above the error bar"),
-            text("order in the spacing"),
-            text("doubts"),
+            text("problem"),
+            text("rms error"),
+            number("mtled", "s"),
+            text("cheapest"),
+            number("its CPU time", "s"),
+            number("ratio", "1"),
         ],
-        rows: all.iter().filter_map(row).collect(),
+        rows: rows.collect(),
+    })
+}
+
+/// At how many errors of all problems each program is the cheapest, and of how many it reaches.
+pub fn wins(all: &Judged) -> Table {
+    let at: Vec<ErrorCosts> = all.cases.iter().flat_map(error_costs).collect();
+    let row = |(n, solver): (usize, &JudgedSolver)| {
+        let value = |at: &ErrorCosts, n: usize| at.costs[n].map(|cost| cost.value);
+        let cheapest = |at: &&ErrorCosts| {
+            value(at, n).is_some_and(|own| {
+                (0..at.costs.len()).all(|m| value(at, m).is_none_or(|cost| own <= cost))
+            })
+        };
+        vec![
+            label(printable(&solver.name)),
+            Cell::Number(at.iter().filter(cheapest).count() as f64),
+            Cell::Number(at.iter().filter(|at| at.costs[n].is_some()).count() as f64),
+            Cell::Number(at.len() as f64),
+        ]
+    };
+    Table {
+        title: "Levels of error reached, and reached for the least CPU time".into(),
+        columns: vec![text("solver"), text("cheapest at"), text("reached"), text("of")],
+        rows: all.solvers.iter().enumerate().map(row).collect(),
     }
 }

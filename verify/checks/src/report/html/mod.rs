@@ -1,6 +1,12 @@
 //! One page for people that works offline, in print and on small screens.
 
 mod figures;
+mod plain;
+mod template;
+
+pub use plain::{Link, Page, Part, page_to_html};
+pub use template::STYLE;
+pub(super) use template::{SCRIPT, pages};
 
 use super::change::{breakable, change_values, verdict_counts};
 use super::labels::{counts, duration, plural, result_line, study_counts, unit_text};
@@ -8,28 +14,11 @@ use super::number::{bound_text, four_digits};
 use super::svg;
 use crate::escape::printable_lines;
 use crate::study::{
-    Bound, Cell, Change, Check, Comparison, Kind, Outcome, Provenance, Report, Study, Table,
-    Verdict,
+    Bound, Change, Check, Comparison, Kind, Outcome, Provenance, Report, Study, Verdict,
 };
 use figures::{figure_value, leading_figures};
-use minijinja::{Environment, Value, context};
-
-/// Texts with more bytes get a wide column.
-const LONG: usize = 24;
-
-/// Style of every page; that of figures is [`svg::STYLE`].
-pub const STYLE: &str = include_str!("page/page.css");
-/// Script of every page.
-pub(super) const SCRIPT: &str = include_str!("page/page.js");
-
-/// The templates of all pages.
-pub(super) fn pages() -> anyhow::Result<Environment<'static>> {
-    let mut pages = Environment::new();
-    pages.add_template("shared.html", include_str!("page/shared.html"))?;
-    pages.add_template("index.html", include_str!("page/index.html"))?;
-    pages.add_template("compare.html", include_str!("page/compare.html"))?;
-    Ok(pages)
-}
+use minijinja::{Value, context};
+use template::table_value;
 
 /// The page as one file without links to other files.
 pub fn to_html(report: &Report) -> anyhow::Result<String> {
@@ -142,41 +131,6 @@ fn comparison_value(comparison: &Comparison) -> Value {
         holds => comparison.holds(),
         changes => change_values(&changes),
         same => change_values(&same),
-    }
-}
-
-fn table_value(table: &Table) -> Value {
-    let is_number =
-        |index: usize| table.rows.iter().any(|row| matches!(row.get(index), Some(Cell::Number(_))));
-    let columns: Vec<Value> = table
-        .columns
-        .iter()
-        .enumerate()
-        .map(|(index, column)| {
-            let unit = if column.unit == "1" { "" } else { column.unit.as_str() };
-            context! { name => column.name.as_str(), unit => unit, number => is_number(index) }
-        })
-        .collect();
-    let rows: Vec<Value> = table
-        .rows
-        .iter()
-        .map(|row| Value::from(row.iter().map(cell_value).collect::<Vec<_>>()))
-        .collect();
-    context! { title => table.title.as_str(), columns => columns, rows => rows }
-}
-
-fn cell_value(cell: &Cell) -> Value {
-    match cell {
-        // NaN in a table stands for a figure that does not exist.
-        Cell::Number(number) if number.is_nan() => {
-            context! { text => "–", key => "NaN", number => true }
-        }
-        Cell::Number(number) => {
-            context! { text => four_digits(*number), key => number.to_string(), number => true }
-        }
-        Cell::Text(text) => {
-            context! { text => text, key => text, number => false, long => text.len() > LONG }
-        }
     }
 }
 

@@ -1,8 +1,11 @@
 //! A child process with a time limit, whose processor time and memory the system measures.
 
-use super::family::Family;
+mod family;
+
 use crate::machine::peak_memory;
 use crate::run::interrupted;
+use family::Family;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::io::{self, Read};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -28,7 +31,8 @@ const LONGEST_PAUSE: Duration = Duration::from_millis(20);
 
 /// What a process has taken, by the system's account: its own and that of its children that it
 /// has waited for.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Usage {
     /// User and system time of all threads \[s\].
     pub cpu_s: f64,

@@ -55,20 +55,33 @@ impl Arena {
         format!("{name}=sh '{}' {{job}} {{answer}}", file.display())
     }
 
-    /// `mtled study solvers` on the block with these solvers, without mtled.
+    /// `mtled contest run` on the block with these solvers, without mtled.
     pub fn study(&self, solvers: &[String], more: &[&str]) -> Said {
-        let mut arguments = vec!["study", "solvers", "block.toml", "--without-mtled"];
+        let mut arguments = vec!["contest", "run", "block.toml", "--without-mtled"];
         arguments.extend(["--reference", "reference.json", "--out", "out", "--quiet"]);
         arguments.extend(solvers.iter().flat_map(|solver| ["--solver", solver]));
         arguments.extend(more);
         let (code, _, err) = mtled(self.dir.path(), &arguments);
         let read =
             |name: &str| std::fs::read_to_string(self.path("out").join(name)).unwrap_or_default();
-        Said { code, tables: read("solvers.md"), page: read("index.html"), err }
+        Said {
+            code,
+            tables: read("tables.md"),
+            page: read("index.html") + &read("solver-fake.html"),
+            err,
+        }
     }
 
     /// What is said about a solver of one script.
     pub fn about(&self, body: &str) -> Said {
         self.study(&[self.fake("fake", body)], &[])
+    }
+
+    /// `mtled contest check` on a file of results of the block: its code and messages.
+    pub fn check(&self, file: &str) -> (u8, String) {
+        let arguments = ["contest", "check", file, "--case", "block.toml"];
+        let own = ["--reference", "reference.json"];
+        let (code, out, err) = mtled(self.dir.path(), &[&arguments[..], &own].concat());
+        (u8::try_from(code).unwrap(), out + &err)
     }
 }

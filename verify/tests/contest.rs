@@ -1,12 +1,14 @@
-//! `mtled study solvers` and `mtled protocol` with made-up solvers: every way to break the
+//! `mtled contest` and `mtled protocol` with made-up solvers: every way to break the
 //! protocol is reported by its name.
 #![cfg(target_os = "linux")]
 
 mod common;
-#[path = "solvers/fake.rs"]
+#[path = "contest/fake.rs"]
 mod fake;
 #[path = "common/program.rs"]
 mod program;
+#[path = "contest/stored.rs"]
+mod stored;
 
 use fake::Arena;
 use mtled_verify::bundled::CASES;
@@ -55,14 +57,14 @@ fn an_honest_solver_gets_its_errors_its_order_and_its_measured_time() {
     let said = arena.about("reply");
     assert_eq!(said.code, 0, "{}", said.err);
     assert!(said.tables.contains("| fake | fake 1.2 | 3 | 3 | 0 | 0 | 0 | 0 |"), "{}", said.tables);
-    let text = std::fs::read_to_string(arena.path("out/results.json")).unwrap();
-    let results: Value = serde_json::from_str(&text).unwrap();
-    let tables = results["studies"][0]["tables"].as_array().unwrap();
-    let runs = tables.iter().find(|table| table["title"] == "fake: all runs").unwrap();
-    let errors: Vec<f64> =
-        runs["rows"].as_array().unwrap().iter().map(|row| row[5].as_f64().unwrap()).collect();
-    assert!(errors[0] > 0.09 && errors[0] < 0.11 && errors[2] < 0.02, "{errors:?}");
-    assert!(runs["rows"][0][10].as_f64().unwrap() >= 0.0, "{runs}");
+    let runs = said.tables.lines().skip_while(|line| *line != "## fake: all runs");
+    let rows: Vec<&str> = runs.filter(|line| line.starts_with("| block |")).collect();
+    let cell = |row: usize, column: usize| -> f64 {
+        rows[row].split('|').nth(column + 1).unwrap().trim().parse().unwrap()
+    };
+    let errors = [cell(0, 5), cell(2, 5)];
+    assert!(errors[0] > 0.09 && errors[0] < 0.11 && errors[1] < 0.02, "{errors:?}");
+    assert!(cell(0, 10) >= 0.0, "{rows:?}");
     assert!(
         said.tables.contains("none: scatter") || said.tables.contains(" ± "),
         "{}",
@@ -233,7 +235,7 @@ fn ctrl_c_ends_the_study_and_the_solver_that_runs() {
     let arena = Arena::new();
     let pid = arena.path("pid");
     let fake = arena.fake("slow", &format!("echo $$ >'{}'; sleep 300", pid.display()));
-    let mut arguments = vec!["study", "solvers", "block.toml", "--quiet", "--without-mtled"];
+    let mut arguments = vec!["contest", "run", "block.toml", "--quiet", "--without-mtled"];
     arguments.extend(["--reference", "reference.json", "--solver", &fake]);
     let mut study = program(&arena.dir, &arguments).spawn().unwrap();
     let written = || std::fs::read_to_string(&pid).is_ok_and(|text| text.ends_with('\n'));
@@ -267,7 +269,7 @@ fn a_mistake_on_the_command_line_runs_and_writes_nothing() {
     let arena = Arena::new();
     let said = |more: &[&str]| {
         let (code, out, err) =
-            mtled(&arena.dir, &[&["study", "solvers", "--out", "out"], more].concat());
+            mtled(&arena.dir, &[&["contest", "run", "--out", "out"], more].concat());
         assert!(code == 2 && out.is_empty() && !arena.path("out").exists(), "{code} {out}");
         err
     };
@@ -290,7 +292,7 @@ fn a_mistake_on_the_command_line_runs_and_writes_nothing() {
 #[test]
 fn mtled_takes_part_through_the_same_door() {
     let dir = TempDir::new().unwrap();
-    let arguments = ["study", "solvers", "uniaxial_bar", "--spacing", "x2,x1", "--out", "out"];
+    let arguments = ["contest", "run", "uniaxial_bar", "--spacing", "x2,x1", "--out", "out"];
     let (code, out, err) = mtled(&dir, &arguments);
     assert_eq!(code, 0, "{err}");
     assert!(out.contains("| mtled | mtled 0.1.0 | 2 | 2 | 0 | 0 | 0 | 0 |"), "{out}");

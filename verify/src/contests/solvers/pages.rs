@@ -1,0 +1,267 @@
+//! Pages of the contest: one in front, one for each solver, one for each problem. They need no
+//! network.
+
+use super::identity::{Identity, benchmark};
+use super::judged::{CaseRuns, Judged};
+use super::outcome::Outcome;
+use super::report::{about_solver, notes, overview, plot};
+use super::run_tables::{orders_of, runs_of, runs_on};
+use super::tables::{budgets, endings, equal_errors, finest, losses, robustness, wins};
+use anyhow::Result;
+use mtled_checks::escape::{file_name, printable};
+use mtled_checks::report::html::{Link, Page, Part, page_to_html};
+use mtled_checks::report::write_atomically;
+use mtled_checks::study::{Figure, Panels, Plot, SeriesStyle};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+const SEND: &str = "\
+mtled contest list                            # the problems
+mtled protocol job cube_shear-v1 try          # a job: try/job.json
+# write mine.py, which reads the job and writes the answer (reference/adapters/README.md)
+python3 mine.py try/job.json try/answer.json
+mtled protocol check try/job.json try/answer.json
+mtled contest run --solver 'mine=python3 mine.py {job} {answer}' --without-mtled --out mine
+mtled contest check mine/results
+# copy mine/results/mine to reference/results/mine and open a pull request";
+
+/// Writes all pages into a folder.
+pub fn write_pages(all: &Judged, out: &Path) -> Result<()> {
+    write(&front(all), out, "index.html")?;
+    for n in 0..all.solvers.len() {
+        write(&solver_page(all, n), out, &solver_file(&all.solvers[n].name))?;
+    }
+    for case in &all.cases {
+        write(&problem_page(all, case), out, &problem_file(&case.of.id))?;
+    }
+    Ok(())
+}
+
+fn write(page: &Page, out: &Path, name: &str) -> Result<()> {
+    write_atomically(&out.join(name), page_to_html(page)?.as_bytes())
+}
+
+fn solver_file(name: &str) -> String {
+    format!("solver-{}.html", file_name(name))
+}
+
+fn problem_file(id: &str) -> String {
+    format!("problem-{}.html", file_name(id))
+}
+
+fn group_of(case: &CaseRuns) -> String {
+    let inputs = &case.of.source.case.problem_hash;
+    let known = benchmark().into_iter().find(|identity| identity.inputs == *inputs);
+    known.map_or_else(|| "of your own".into(), |identity: Identity| identity.group)
+}
+
+fn front(all: &Judged) -> Page {
+    let losses = losses(all);
+    let lost = losses.as_ref().map_or(0, |table| table.rows.len());
+    let mut verdicts = Part {
+        title: "Who answers, and what it costs".into(),
+        tables: vec![robustness(all), wins(all)],
+        ..Part::default()
+    };
+    if losses.is_some() {
+        verdicts.texts.push(format!(
+            "mtled itself loses at {lost} of these levels; each is in the table \"Where mtled loses\" below."
+        ));
+    }
+    let equal = Part {
+        title: "CPU time at equal error".into(),
+        tables: losses.into_iter().chain([equal_errors(all)]).collect(),
+        folded: true,
+        ..Part::default()
+    };
+    Page {
+        title: "Solvers of soft bodies on the same problems".into(),
+        back: None,
+        lead: vec![format!(
+            "{} on {}, each with a reference that has an error bar: how far the answers are off, \
+             what they cost, and which runs ended without one. Every figure here is judged from the raw answers that \
+             are stored beside the problems.",
+            count(all.solvers.len(), "program", "programs"),
+            count(all.cases.len(), "problem", "problems")
+        )],
+        parts: vec![
+            verdicts,
+            Part {
+                title: "Error over CPU time".into(),
+                figures: vec![overview(all)],
+                ..Part::default()
+            },
+            Part {
+                title: "Smallest error for 0.1, 1, 10 and 100 CPU s".into(),
+                tables: budgets(all),
+                folded: true,
+                ..Part::default()
+            },
+            equal,
+            Part { title: "Solvers".into(), links: solver_links(all), ..Part::default() },
+            problems(all),
+            Part {
+                title: "Your solver".into(),
+                texts: vec![
+                    "Any program takes part that reads a JSON file and writes one. Its name and version, the machine, \
+                     the command and the raw answers go into a file per problem; a change of a problem makes a new \
+                     version of it."
+                        .into(),
+                ],
+                code: Some(SEND.into()),
+                ..Part::default()
+            },
+        ],
+        foot: notes(all),
+    }
+}
+
+fn count(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
+fn solver_links(all: &Judged) -> Vec<Link> {
+    let link = |(n, solver): (usize, &super::judged::JudgedSolver)| {
+        let counts = endings(&all.cases, n);
+        Link {
+            href: solver_file(&solver.name),
+            text: printable(&solver.name),
+            remark: format!("{} of {} runs answered", counts.answered, counts.runs),
+        }
+    };
+    all.solvers.iter().enumerate().map(link).collect()
+}
+
+fn problems(all: &Judged) -> Part {
+    let mut groups: BTreeMap<String, Vec<&CaseRuns>> = BTreeMap::new();
+    for case in &all.cases {
+        groups.entry(group_of(case)).or_default().push(case);
+    }
+    let link = |group: &str, case: &CaseRuns| Link {
+        href: problem_file(&case.of.id),
+        text: case.of.id.clone(),
+        remark: format!("{}. {}", printable(&case.of.source.case.title), printable(group)),
+    };
+    let links = groups.iter().flat_map(|(group, cases)| cases.iter().map(|case| link(group, case)));
+    Part { title: "Problems".into(), links: links.collect(), ..Part::default() }
+}
+
+fn back() -> Option<Link> {
+    let text = "All solvers and problems".into();
+    Some(Link { href: "index.html".into(), text, remark: String::new() })
+}
+
+fn solver_page(all: &Judged, n: usize) -> Page {
+    let name = printable(&all.solvers[n].name);
+    let counts = endings(&all.cases, n);
+    let panels = all.cases.iter().filter(|case| !case.costs(n).is_empty()).map(|case| {
+        let plot = plot(&names(all), case, SeriesStyle::Floor);
+        let floor = all.solvers.len();
+        let own = plot.series.into_iter().filter(|s| [Some(n), Some(floor)].contains(&s.colour));
+        Figure::Plot(Plot { title: case.of.id.clone(), series: own.collect(), ..plot })
+    });
+    let panels: Vec<Figure> = panels.collect();
+    let figures = if panels.is_empty() {
+        Vec::new()
+    } else {
+        let title = "Error over CPU time".into();
+        let caption =
+            "From coarse to fine. Below the error bar of the reference nothing is decided.".into();
+        vec![Figure::Panels(Panels { title, caption, panels })]
+    };
+    Page {
+        title: format!("{name} on the problems of the contest"),
+        back: back(),
+        lead: vec![
+            about_solver(all, n),
+            format!(
+                "Of {} runs {} answered, {} were refused, {} ran out of time and {} were faulty; answers on {} problems \
+                 are doubtful.",
+                counts.runs,
+                counts.answered,
+                counts.refused,
+                counts.timed_out,
+                counts.faulty,
+                counts.doubtful
+            ),
+        ],
+        parts: vec![
+            Part { title: "Error and cost".into(), figures, ..Part::default() },
+            refusals(all, n),
+            Part {
+                title: "Orders, doubts and all runs".into(),
+                tables: vec![orders_of(&name, &all.cases, n), runs_of(&name, &all.cases, n)],
+                ..Part::default()
+            },
+        ],
+        foot: notes(all).into_iter().take(4).collect(),
+    }
+}
+
+/// What a program did not answer, a line per problem and reason.
+fn refusals(all: &Judged, n: usize) -> Part {
+    let mut reasons: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for case in &all.cases {
+        for run in &case.runs[n] {
+            if !matches!(run.outcome, Outcome::Answered(_)) {
+                let problems = reasons.entry(run.outcome.label()).or_default();
+                if problems.last() != Some(&case.of.id.as_str()) {
+                    problems.push(&case.of.id);
+                }
+            }
+        }
+    }
+    let text = |(reason, problems): (&String, &Vec<&str>)| {
+        format!("{}: {}.", problems.join(", "), reason.trim_end_matches('.'))
+    };
+    let texts: Vec<String> = if reasons.is_empty() {
+        vec!["Every run ended with an answer.".into()]
+    } else {
+        reasons.iter().map(text).collect()
+    };
+    Part { title: "Runs without an answer".into(), texts, ..Part::default() }
+}
+
+fn problem_page(all: &Judged, case: &CaseRuns) -> Page {
+    let parsed = &case.of.source.case;
+    let own = Judged {
+        solvers: all.solvers.clone(),
+        cases: vec![CaseRuns { of: case.of, runs: case.runs.clone() }],
+        machines: all.machines.clone(),
+        time_limits_s: all.time_limits_s.clone(),
+    };
+    let figure = Figure::Plot(plot(&names(all), case, SeriesStyle::Line));
+    Page {
+        title: format!("{}: {}", case.of.id, printable(&parsed.title)),
+        back: back(),
+        lead: vec![printable(parsed.description.trim()), format!("Group: {}.", group_of(case))],
+        parts: vec![
+            Part {
+                title: "Error over CPU time".into(),
+                figures: vec![figure],
+                tables: vec![finest(&own), equal_errors(&own)],
+                ..Part::default()
+            },
+            Part {
+                title: "All runs".into(),
+                tables: vec![runs_on(case, &names(all))],
+                folded: true,
+                ..Part::default()
+            },
+            Part {
+                title: "The problem".into(),
+                texts: vec![
+                    format!("Reference: {}.", printable(&case.of.reference.source)),
+                    format!("Fingerprint of the inputs: {}.", parsed.problem_hash),
+                ],
+                code: Some(parsed.text().to_string()),
+                ..Part::default()
+            },
+        ],
+        foot: notes(all).into_iter().take(4).collect(),
+    }
+}
+
+fn names(all: &Judged) -> Vec<String> {
+    all.solvers.iter().map(|solver| printable(&solver.name)).collect()
+}
