@@ -5,8 +5,9 @@ use super::publish::{report_of, tables};
 use super::streams::print_data;
 use crate::bundled::REFERENCES;
 use crate::contests::solvers::{
-    Contest, ContestCase, Entrant, Identity, Judged, Outcome, Results, ResultsFault, SolverRun,
-    Spacing, StoredEnd, benchmark, doubts, judge, problem_of, result_files, study, write_pages,
+    Contest, ContestCase, Entrant, History, Identity, Judged, Outcome, Results, ResultsFault,
+    SolverRun, Spacing, StoredEnd, benchmark, doubts, judge, problem_of, result_files, study,
+    write_pages,
 };
 use crate::lab::label::percent;
 use crate::lab::store::Source;
@@ -73,6 +74,9 @@ pub struct PagesArgs {
     results: Vec<PathBuf>,
     #[command(flatten)]
     own: OwnProblems,
+    /// Figures of mtled by commit, as reports/history.py writes them, for a page of their own.
+    #[arg(long, value_name = "FILE")]
+    history: Option<PathBuf>,
     /// Folder for the pages and tables.md.
     #[arg(long, default_value = "reports/contest", value_name = "DIR")]
     out: PathBuf,
@@ -116,12 +120,14 @@ pub fn contest(command: &ContestCommand, common: &Common) -> Result<u8> {
             let start = Instant::now();
             let folder = tempfile::tempdir().context("cannot make a folder for bundled cases")?;
             let cases = problems(&arguments.own, folder.path())?;
+            let history = arguments.history.as_deref().map(History::read).transpose()?;
             let mut all = Vec::new();
             for file in files(&arguments.results)? {
                 let results = believed(&file, &cases);
                 all.push(results.with_context(|| file.display().to_string())?.0);
             }
-            publish(&all, &cases, &arguments.out, start, common)
+            let judged = Judged::new(&all, &cases)?;
+            publish(&judged, history.as_ref(), &arguments.out, start, common)
         }
     }
 }
@@ -161,20 +167,19 @@ fn run(arguments: &RunArgs, common: &Common) -> Result<u8> {
         return Ok(STOPPED);
     }
     let cases: Vec<ContestCase> = contest.cases.into_iter().map(|(case, _)| case).collect();
-    publish(&all, &cases, &arguments.out, start, common)
+    publish(&Judged::new(&all, &cases)?, None, &arguments.out, start, common)
 }
 
-/// Judges results, writes pages and tables and prints the latter.
+/// Writes pages and tables of judged results and prints the latter.
 fn publish(
-    all: &[Results],
-    cases: &[ContestCase],
+    judged: &Judged,
+    history: Option<&History>,
     out: &Path,
     start: Instant,
     common: &Common,
 ) -> Result<u8> {
-    let judged = Judged::new(all, cases)?;
-    let report = report_of("contest", study(&judged, command_line()), start);
-    write_pages(&judged, out)?;
+    let report = report_of("contest", study(judged, command_line()), start);
+    write_pages(judged, history, out)?;
     if let Some(overview) = report.studies[0].figures.first() {
         write_atomically(&out.join("overview.svg"), svg::to_svg_file(overview).as_bytes())?;
     }

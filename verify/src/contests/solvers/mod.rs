@@ -23,7 +23,7 @@ pub use identity::{Identity, benchmark, hash_of_references};
 pub use judged::{CaseRuns, Judged, doubts, judge, problem_of};
 pub use outcome::{Outcome, SolverRun};
 pub use own::solve_job;
-pub use pages::write_pages;
+pub use pages::{History, write_pages};
 pub use problem::{ContestCase, NotASpacing, Spacing};
 pub use report::study;
 pub use results::{Machine, Results, ResultsFault, StoredEnd, StoredRun, result_files};

@@ -1,6 +1,10 @@
 //! Pages of the contest: one in front, one for each solver, one for each problem. They need no
 //! network.
 
+mod history;
+
+pub use history::History;
+
 use super::identity::{Identity, benchmark};
 use super::judged::{CaseRuns, Judged};
 use super::outcome::Outcome;
@@ -12,7 +16,7 @@ use mtled_checks::escape::{file_name, printable};
 use mtled_checks::report::html::{Link, Page, Part, page_to_html};
 use mtled_checks::report::write_atomically;
 use mtled_checks::study::{Figure, Panels, Plot, SeriesStyle};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 const SEND: &str = "\
@@ -25,9 +29,16 @@ mtled contest run --solver 'mine=python3 mine.py {job} {answer}' --without-mtled
 mtled contest check mine/results
 # copy mine/results/mine to reference/results/mine and open a pull request";
 
-/// Writes all pages into a folder.
-pub fn write_pages(all: &Judged, out: &Path) -> Result<()> {
-    write(&front(all), out, "index.html")?;
+/// Writes all pages into a folder, with one of the history of mtled where it is known.
+pub fn write_pages(all: &Judged, history: Option<&History>, out: &Path) -> Result<()> {
+    let mut first = front(all);
+    if let Some(history) = history {
+        write(&history.page(back()), out, HISTORY)?;
+        let text = "mtled by commit".into();
+        let links = vec![Link { href: HISTORY.into(), text, remark: String::new() }];
+        first.parts.push(Part { title: "History".into(), links, ..Part::default() });
+    }
+    write(&first, out, "index.html")?;
     for n in 0..all.solvers.len() {
         write(&solver_page(all, n), out, &solver_file(&all.solvers[n].name))?;
     }
@@ -36,6 +47,9 @@ pub fn write_pages(all: &Judged, out: &Path) -> Result<()> {
     }
     Ok(())
 }
+
+/// Page of the history.
+const HISTORY: &str = "history.html";
 
 fn write(page: &Page, out: &Path, name: &str) -> Result<()> {
     write_atomically(&out.join(name), page_to_html(page)?.as_bytes())
@@ -66,6 +80,15 @@ fn front(all: &Judged) -> Page {
     if losses.is_some() {
         verdicts.texts.push(format!(
             "mtled itself loses at {lost} of these levels; each is in the table \"Where mtled loses\" below."
+        ));
+    }
+    let processors: BTreeSet<&str> =
+        all.machines.iter().map(|machine| machine.processor.as_str()).collect();
+    if processors.len() > 1 {
+        let names: Vec<String> = processors.into_iter().map(printable).collect();
+        verdicts.texts.push(format!(
+            "Times of several machines are beside each other, and compare only within one: {}.",
+            names.join(", ")
         ));
     }
     let equal = Part {
