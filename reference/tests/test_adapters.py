@@ -1,13 +1,17 @@
 """What the adapters of the solver protocol share."""
 
+import importlib
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
 
-from mtled_reference.adapters.cases import counts, is_even
-from mtled_reference.adapters.files import from_values
+from mtled_reference.adapters.cases import counts, is_even, read
+from mtled_reference.adapters.files import Refused, from_values
 from mtled_reference.shared.case import BodyForce, read_case
+from mtled_reference.shared.materials import strain_energy
 
 CASES = Path(__file__).parent.parent / "cases"
 
@@ -45,3 +49,87 @@ def test_values_of_a_reference_file_become_an_answer():
     assert answer["displacements_m"] == {"line": [[[1, 2, 3], [4, 5, 6]]]}
     assert answer["reactions_n"] == {"top": [[1, 0, 0]]} and answer["strain_energy_j"] == [7]
     assert answer["moments_nm"] == {} and answer["unknowns"] == 12
+
+
+NOT_SOLVED = ("pressures", "springs", "cavities", "initial_velocities")
+
+
+def job_of_a_bar(folder: Path, law: str, spacing: float, **loads) -> dict:
+    """What adapters read of a job: the uniaxial bar of a law."""
+    text = (CASES / "uniaxial_bar.toml").read_text()
+    path = folder / "uniaxial_bar.toml"
+    path.write_text(text.replace("neo_hookean_log_j", law))
+    case = read_case(path)
+    material = case.regions[0].material
+    energies = {
+        "neo_hookean_log_j": "mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2",
+        "neo_hookean_isochoric": "mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2",
+    }
+    of_job = {
+        "law": law,
+        "strain_energy": energies[law],
+        "density_kg_per_m3": material.density,
+        "shear_modulus_pa": material.shear_modulus,
+        "lame_modulus_pa": material.lame_modulus,
+        "bulk_modulus_pa": material.bulk_modulus,
+        "young_modulus_pa": 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio),
+        "poisson_ratio": material.poisson_ratio,
+    } | dict.fromkeys(("fibres", "sheets", "prony", "active_stress"))
+    problem = {
+        "loads": dict.fromkeys(NOT_SOLVED, []) | loads,
+        "regions": [{"material": of_job}],
+    }
+    return {
+        "case_file": path,
+        "spacing_m": spacing,
+        "level": 0,
+        "threads": 1,
+        "time_limit_s": 60.0,
+        "instants_s": [1.0],
+        "problem": problem,
+    }
+
+
+def stretched(case, stretch: float) -> tuple[float, float]:
+    """Stretch across a bar [–] and its strain energy per volume [Pa]."""
+    material = case.regions[0].material
+
+    def energy(across: float) -> float:
+        squares = np.array([stretch, across, across]) ** 2
+        second = 0.5 * (squares.sum() ** 2 - (squares**2).sum())
+        J = stretch * across**2
+        return float(strain_energy(material, squares.sum(), second, J, np.log))
+
+    found = minimize_scalar(energy, bounds=(0.8, 1.0), method="bounded", options={"xatol": 1e-12})
+    return found.x, found.fun
+
+
+PROGRAMS = [
+    ("ngsolve", "ngsolve", "neo_hookean_log_j", 1e-7),
+    ("ngsolve", "ngsolve", "neo_hookean_isochoric", 1e-7),
+]
+"""Adapters, packages that they need, laws, and errors [–] of what should be exact."""
+
+
+@pytest.mark.parametrize("adapter, package, law, error", PROGRAMS)
+def test_a_program_stretches_a_bar(adapter, package, law, error, tmp_path):
+    pytest.importorskip(package)
+    job = job_of_a_bar(tmp_path, law, 0.01)
+    case = read(job)
+    answer = importlib.import_module(f"mtled_reference.adapters.{adapter}").solve(job)
+    across, energy = stretched(case, 1.2)
+    exact = case.probes[0].positions * [0.2, across - 1.0, across - 1.0]
+    (found,) = answer["displacements_m"]["lattice"]
+    np.testing.assert_allclose(found, exact, atol=0.02 * error)
+    if "strain_energy_j" in answer:
+        np.testing.assert_allclose(answer["strain_energy_j"], energy * 4e-5, rtol=10 * error)
+    if "reactions_n" in answer:
+        left, right = answer["reactions_n"]["left"][0], answer["reactions_n"]["right"][0]
+        np.testing.assert_allclose(left[0], -right[0], rtol=10 * error)
+        assert right[0] > 0.0
+
+
+@pytest.mark.parametrize("name", NOT_SOLVED)
+def test_a_load_that_adapters_do_not_know_is_refused(name, tmp_path):
+    with pytest.raises(Refused, match=name.split("_")[0]):
+        read(job_of_a_bar(tmp_path, "neo_hookean_log_j", 0.01, **{name: [{}]}))

@@ -3,12 +3,49 @@
 import numpy as np
 
 from .. import LEVELS
-from ..shared.case import Case
-from ..shared.selection import bounding_box
+from ..shared.case import Case, read_case
+from ..shared.selection import bounding_box, selected
 from .files import Refused
 
 EVEN = {"all", "plane", "half_space", "box"}
 """Selections whose borders an even mesh of a box can follow."""
+
+
+def read(job: dict) -> Case:
+    """The case of a job; refuses what no adapter of this folder solves."""
+    try:
+        case = read_case(job["case_file"])
+    except ValueError as error:
+        raise Refused(str(error)) from None
+    problem = job["problem"]
+    for name in ("pressures", "springs", "cavities", "initial_velocities"):
+        if problem["loads"][name]:
+            raise Refused(name.replace("_", " "))
+    for region in problem["regions"]:
+        material = region["material"]
+        if material["fibres"] or material["sheets"] or material["active_stress"]:
+            raise Refused("fibres")
+        if material["prony"]:
+            raise Refused("viscosity")
+    return case
+
+
+def read_without_contact(job: dict) -> Case:
+    """The case of a job; refuses also contact, supports that are released, body forces on parts
+    and selections that are not known."""
+    case = read(job)
+    if case.obstacles:
+        raise Refused("contact")
+    if any(np.isfinite(row.release) for row in case.prescriptions):
+        raise Refused("supports that are released")
+    if any(force.selector != "all" for force in case.body_forces):
+        raise Refused("body forces on a part of the body")
+    for row in (*case.prescriptions, *case.regions, *case.tractions):
+        try:
+            selected(row.selector, np.zeros((1, 3)), 0.0)
+        except ValueError as error:
+            raise Refused(str(error)) from None
+    return case
 
 
 def is_even(case: Case) -> bool:
