@@ -13,9 +13,9 @@ try:
 except ImportError:
     from scipy.sparse.linalg import spsolve
 
-from ..shared.case import Case, read_case
+from ..shared.case import Case
 from ..shared.selection import selected
-from .cases import counts
+from .cases import counts, read
 from .files import Refused, answer
 
 LOAD_STEPS = (5, 20)
@@ -27,10 +27,7 @@ NEARLY_INCOMPRESSIBLE = 0.45
 
 def solve(job: dict) -> dict:
     """The answer to a job."""
-    try:
-        case = read_case(job["case_file"])
-    except ValueError as error:
-        raise Refused(str(error)) from None
+    case = read(job)
     _refuse_others(case, job)
     low, high, numbers = counts(case, job["spacing_m"], 1)
     mesh = felupe.Cube(a=low, b=high, n=tuple(n + 1 for n in numbers))

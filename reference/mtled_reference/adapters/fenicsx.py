@@ -13,10 +13,10 @@ from ..fenicsx.mesh_shapes import box
 from ..fenicsx.model import Model, Recipe
 from ..fenicsx.newton import Newton, solve_static
 from ..fenicsx.record import Recorder
-from ..shared.case import Case, read_case
+from ..shared.case import Case
 from ..shared.errors import NotConverged
 from ..solve import solver
-from .cases import counts, is_even, reference_level
+from .cases import counts, is_even, read, reference_level
 from .files import Refused, answer, from_values
 
 RESIDUAL = 1e-6
@@ -27,10 +27,7 @@ LOAD_STEPS = (4, 16)
 
 def solve(job: dict) -> dict:
     """The answer to a job."""
-    try:
-        case = read_case(job["case_file"])
-    except ValueError as error:
-        raise Refused(str(error)) from None
+    case = read(job)
     try:
         return _even(case, job) if is_even(case) else _stored(case, job)
     except (NotConverged, FloatingPointError) as error:

@@ -12,10 +12,10 @@ from ..scikit_fem.mesh import mesh_of_blocks
 from ..scikit_fem.model import Model
 from ..scikit_fem.newton import solve_static
 from ..scikit_fem.record import Recorder
-from ..shared.case import Case, read_case
+from ..shared.case import Case
 from ..shared.errors import NotConverged
 from ..solve import solver
-from .cases import counts, is_even, reference_level
+from .cases import counts, is_even, read, reference_level
 from .files import Refused, answer, from_values
 
 RESIDUAL = 1e-6
@@ -25,10 +25,7 @@ LOAD_STEPS = 4
 
 def solve(job: dict) -> dict:
     """The answer to a job."""
-    try:
-        case = read_case(job["case_file"])
-    except ValueError as error:
-        raise Refused(str(error)) from None
+    case = read(job)
     try:
         return _even(case, job) if is_even(case) else _stored(case, job)
     except (NotConverged, FloatingPointError) as error:
