@@ -1,6 +1,7 @@
 """What the adapters of the solver protocol share."""
 
-import importlib
+import importlib.util
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from scipy.optimize import minimize_scalar
 
 from mtled_reference.adapters.cases import counts, is_even, read
 from mtled_reference.adapters.files import Refused, from_values
+from mtled_reference.adapters.nodal import Nodal
 from mtled_reference.shared.case import BodyForce, read_case
 from mtled_reference.shared.materials import strain_energy
 
@@ -107,13 +109,15 @@ def stretched(case, stretch: float) -> tuple[float, float]:
 PROGRAMS = [
     ("ngsolve", "ngsolve", "neo_hookean_log_j", 1e-7),
     ("ngsolve", "ngsolve", "neo_hookean_isochoric", 1e-7),
+    ("calculix", "ccx", "neo_hookean_isochoric", 2e-5),
 ]
-"""Adapters, packages that they need, laws, and errors [–] of what should be exact."""
+"""Adapters, what they need, laws, and errors [–] of what should be exact."""
 
 
-@pytest.mark.parametrize("adapter, package, law, error", PROGRAMS)
-def test_a_program_stretches_a_bar(adapter, package, law, error, tmp_path):
-    pytest.importorskip(package)
+@pytest.mark.parametrize("adapter, needed, law, error", PROGRAMS)
+def test_a_program_stretches_a_bar(adapter, needed, law, error, tmp_path):
+    if not (importlib.util.find_spec(needed) or shutil.which(needed)):
+        pytest.skip(f"{needed} is not installed")
     job = job_of_a_bar(tmp_path, law, 0.01)
     case = read(job)
     answer = importlib.import_module(f"mtled_reference.adapters.{adapter}").solve(job)
@@ -133,3 +137,28 @@ def test_a_program_stretches_a_bar(adapter, package, law, error, tmp_path):
 def test_a_load_that_adapters_do_not_know_is_refused(name, tmp_path):
     with pytest.raises(Refused, match=name.split("_")[0]):
         read(job_of_a_bar(tmp_path, "neo_hookean_log_j", 0.01, **{name: [{}]}))
+
+
+@pytest.mark.parametrize("degree, simplices", [(1, False), (2, False), (1, True)])
+def test_even_meshes_interpolate_linear_fields_and_have_the_volume(degree, simplices):
+    case = read_case(CASES / "uniaxial_bar.toml")
+    model = Nodal(case, 0.005, degree, simplices)
+    gradient = np.array([[0.1, 0.2, 0.3], [0.0, 0.1, 0.2], [0.3, 0.0, 0.1]])
+    found = model.displacements(model.points @ gradient)["lattice"]
+    np.testing.assert_allclose(found, case.probes[0].positions @ gradient, atol=1e-15)
+    np.testing.assert_allclose(model.masses().sum(), 0.04, rtol=1e-12)
+    area = model.facet.integrals(model.points[model.facets]).sum()
+    np.testing.assert_allclose(area, 2 * 0.0004 + 4 * 0.002, rtol=1e-12)
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+def test_meshes_of_netgen_follow_the_cap_of_a_ball(degree):
+    pytest.importorskip("netgen.occ")
+    model = Nodal(read_case(CASES / "sphere_gravity.toml"), 0.0075, degree)
+    volume = model.masses().sum() / 1000.0
+    np.testing.assert_allclose(volume, 4 / 3 * np.pi * 0.04**3, rtol=0.02 / degree**4)
+    ((_, mine),) = model.owned
+    facets = model.facets[mine.all(axis=1)[model.facets].all(axis=1)]
+    cap = model.facet.integrals(model.points[facets]).sum()
+    np.testing.assert_allclose(cap, 2 * np.pi * 0.04 * 0.01, rtol=0.02 / degree**4)
+    np.testing.assert_allclose(model.loads(1.0).sum(axis=0), [0, 0, -9810 * volume], atol=1e-12)

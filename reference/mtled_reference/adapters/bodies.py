@@ -4,8 +4,12 @@ borders of regions and of selections on the surface.
 pip install netgen-mesher, which ngsolve brings along.
 """
 
-import netgen.occ as occ
 import numpy as np
+
+try:
+    import netgen.occ as occ
+except ImportError:
+    occ = None
 
 from ..shared.case import Case
 from ..shared.selection import selected
@@ -18,6 +22,8 @@ TOLERANCE = 1e-3
 def mesh(case: Case, edge: float):
     """Netgen's mesh of a body with edges of a length [m]. Each face of the body, or each edge in
     plane strain, has a number and the name `face NUMBER`."""
+    if occ is None:
+        raise Refused("netgen-mesher is not installed")
     body = _face(case) if case.dimension == 2 else _cut(case)
     for number, face in enumerate(body.edges if case.dimension == 2 else body.faces):
         face.name = f"face {number}"
@@ -30,7 +36,8 @@ class Surface:
 
     def __init__(self, case: Case, netgen, spacing: float):
         self.tolerance = TOLERANCE * spacing
-        self.vertices = case.positions(netgen.Coordinates()[:, : case.dimension])
+        # A copy: Netgen frees its own with the mesh.
+        self.vertices = case.positions(netgen.Coordinates()[:, : case.dimension].copy())
         elements = (netgen.Elements1D if case.dimension == 2 else netgen.Elements2D)().NumPy()
         width = 2 if case.dimension == 2 else elements["nodes"].shape[1]
         corners, faces = elements["nodes"][:, :width].astype(int) - 1, elements["index"]

@@ -36,6 +36,8 @@ def read_without_contact(job: dict) -> Case:
     case = read(job)
     if case.obstacles:
         raise Refused("contact")
+    if any(region.material.law == "linear_elastic" for region in case.regions):
+        raise Refused("the law linear_elastic")
     if any(np.isfinite(row.release) for row in case.prescriptions):
         raise Refused("supports that are released")
     if any(force.selector != "all" for force in case.body_forces):
