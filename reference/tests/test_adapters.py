@@ -110,6 +110,7 @@ PROGRAMS = [
     ("ngsolve", "ngsolve", "neo_hookean_log_j", 1e-7),
     ("ngsolve", "ngsolve", "neo_hookean_isochoric", 1e-7),
     ("calculix", "ccx", "neo_hookean_isochoric", 2e-5),
+    ("tatva", "tatva", "neo_hookean_log_j", 1e-7),
 ]
 """Adapters, what they need, laws, and errors [–] of what should be exact."""
 

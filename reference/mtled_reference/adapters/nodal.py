@@ -14,6 +14,8 @@ from .files import Refused
 
 CANDIDATES = {False: 2, True: 64}
 """Cells that are searched for a position, of boxes and of simplices."""
+NEWTON = 4
+"""Iterations for the coordinates of a position in a curved cell."""
 CURVED = 0.05
 """How far a position may be outside of its cell, in coordinates of the cell [–]."""
 
@@ -162,23 +164,31 @@ class Nodal:
 
     def located(self, positions: np.ndarray):
         """Nodes (p, k) and shape functions (p, k) of the cells in which positions lie."""
-        where = self.points[self.cells]
-        count = min(CANDIDATES[self.element.simplex], len(where))
-        corners = self.element.nodes.shape[1] + 1 if self.element.simplex else 8
-        tree = cKDTree(where[:, :corners].mean(axis=1))
-        _, near = tree.query(positions, k=range(1, count + 1))
-        at = np.full((*near.shape, 3), 0.25 if self.element.simplex else 0.0)
-        for _ in range(4 if self.element.simplex else 2):
-            shapes, slopes = self.element.shapes(at), self.element.gradients(at)
-            miss = positions[:, None] - np.einsum("pca,pcai->pci", shapes, where[near])
-            jacobian = np.einsum("pcad,pcai->pcid", slopes, where[near])
-            at += np.linalg.solve(jacobian, miss[..., None])[..., 0]
-        outside = self.element.outside(at)
-        best = outside.argmin(axis=1)
-        rows = np.arange(len(positions))
-        if outside[rows, best].max() > CURVED:
+        middles = self.points[self.cells].mean(axis=1)
+        count = min(CANDIDATES[self.element.simplex], len(middles))
+        _, near = cKDTree(middles).query(positions, k=range(1, count + 1))
+        cells, at, outside = self._nearest(positions, near)
+        for row in np.flatnonzero(outside > CURVED)[:, None]:
+            every = np.arange(len(middles))[None]
+            cells[row], at[row], outside[row] = self._nearest(positions[row], every)
+        if outside.max() > CURVED:
             raise Refused("a probe outside the mesh", "resolution")
-        return self.cells[near[rows, best]], self.element.shapes(at[rows, best])
+        return self.cells[cells], self.element.shapes(at)
+
+    def _nearest(self, positions: np.ndarray, near: np.ndarray):
+        """Of cells (p, c) those that contain positions best, where, and how far outside."""
+        nodes = self.points[self.cells[near]]
+        at = np.full((*near.shape, 3), 0.25 if self.element.simplex else 0.0)
+        for _ in range(NEWTON):
+            shapes, slopes = self.element.shapes(at), self.element.gradients(at)
+            miss = positions[:, None] - np.einsum("pca,pcai->pci", shapes, nodes)
+            jacobian = np.einsum("pcad,pcai->pcid", slopes, nodes)
+            at += np.linalg.solve(jacobian, miss[..., None])[..., 0]
+        miss = positions[:, None] - np.einsum("pca,pcai->pci", self.element.shapes(at), nodes)
+        found = np.linalg.norm(miss, axis=-1) <= bodies.TOLERANCE * self.spacing
+        outside = np.where(found, self.element.outside(at), np.inf)
+        best, rows = outside.argmin(axis=1), np.arange(len(positions))
+        return near[rows, best], at[rows, best], outside[rows, best]
 
     def answer(self, instants: list) -> dict:
         """What an answer has of displacements and forces of supports (n, 3) at instants; the
