@@ -109,6 +109,8 @@ def stretched(case, stretch: float) -> tuple[float, float]:
 PROGRAMS = [
     ("ngsolve", "ngsolve", "neo_hookean_log_j", 1e-7),
     ("ngsolve", "ngsolve", "neo_hookean_isochoric", 1e-7),
+    ("sfepy", "sfepy", "neo_hookean_log_j", 1e-7),
+    ("sfepy", "sfepy", "neo_hookean_isochoric", 1e-7),
     ("calculix", "ccx", "neo_hookean_isochoric", 2e-5),
     ("tatva", "tatva", "neo_hookean_log_j", 1e-7),
 ]

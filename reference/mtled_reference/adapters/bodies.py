@@ -8,6 +8,7 @@ import numpy as np
 
 try:
     import netgen.occ as occ
+    from pyngcore import SetNumThreads
 except ImportError:
     occ = None
 
@@ -24,6 +25,8 @@ def mesh(case: Case, edge: float):
     plane strain, has a number and the name `face NUMBER`."""
     if occ is None:
         raise Refused("netgen-mesher is not installed")
+    # Idle threads of Netgen wait actively.
+    SetNumThreads(1)
     body = _face(case) if case.dimension == 2 else _cut(case)
     for number, face in enumerate(body.edges if case.dimension == 2 else body.faces):
         face.name = f"face {number}"

@@ -74,7 +74,7 @@ class Recorder:
 def solve(job: dict) -> dict:
     """The answer to a job."""
     case = read_without_contact(job)
-    # Idle threads of NGSolve and Netgen wait actively.
+    # Idle threads of NGSolve wait actively.
     ngs.SetNumThreads(job["threads"])
     model = Model(case, job)
     recorder = Recorder(model)
