@@ -66,6 +66,7 @@ def job_of_a_bar(folder: Path, law: str, spacing: float, **loads) -> dict:
     energies = {
         "neo_hookean_log_j": "mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2",
         "neo_hookean_isochoric": "mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2",
+        "st_venant_kirchhoff": "lambda/2 (tr E)^2 + mu tr E^2",
     }
     of_job = {
         "law": law,
@@ -78,6 +79,7 @@ def job_of_a_bar(folder: Path, law: str, spacing: float, **loads) -> dict:
         "poisson_ratio": material.poisson_ratio,
     } | dict.fromkeys(("fibres", "sheets", "prony", "active_stress"))
     problem = {
+        "motion": {"kind": "static", "load_end_s": 1.0},
         "loads": dict.fromkeys(NOT_SOLVED, []) | loads,
         "regions": [{"material": of_job}],
     }
@@ -113,6 +115,7 @@ PROGRAMS = [
     ("sfepy", "sfepy", "neo_hookean_isochoric", 1e-7),
     ("calculix", "ccx", "neo_hookean_isochoric", 2e-5),
     ("tatva", "tatva", "neo_hookean_log_j", 1e-7),
+    ("simulators.mujoco", "mujoco", "st_venant_kirchhoff", 1e-4),
 ]
 """Adapters, what they need, laws, and errors [–] of what should be exact."""
 

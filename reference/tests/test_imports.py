@@ -19,6 +19,7 @@ MAY_IMPORT = {
     "whole_brain": {"shared", *CODES, "brain"},
     "": {"shared", *CODES, "brain", "whole_brain", "race"},
     "adapters": {"", "shared", *CODES},
+    "adapters/simulators": {"adapters"},
 }
 """The folders from which the files of a folder may import, beside their own; the root of
 the package is ""."""
