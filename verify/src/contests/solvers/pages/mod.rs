@@ -247,6 +247,8 @@ fn refusals(all: &Judged, n: usize) -> Part {
 
 fn problem_page(all: &Judged, case: &CaseRuns) -> Page {
     let parsed = &case.of.source.case;
+    let words: Vec<&str> = parsed.description.split_whitespace().collect();
+    let description = printable(&words.join(" "));
     let own = Judged {
         solvers: all.solvers.clone(),
         cases: vec![CaseRuns { of: case.of, runs: case.runs.clone() }],
@@ -257,7 +259,7 @@ fn problem_page(all: &Judged, case: &CaseRuns) -> Page {
     Page {
         title: format!("{}: {}", case.of.id, printable(&parsed.title)),
         back: back(),
-        lead: vec![printable(parsed.description.trim()), format!("Group: {}.", group_of(case))],
+        lead: vec![description, format!("Group: {}.", group_of(case))],
         parts: vec![
             Part {
                 title: "Error over CPU time".into(),
