@@ -1,4 +1,4 @@
-"""Solves a job with MuJoCo's flexes: python -m mtled_reference.adapters.simulators.mujoco JOB ANSWER
+"""Solves a job with MuJoCo: python -m mtled_reference.adapters.simulators.mujoco JOB ANSWER
 
 MuJoCo 4.0.0, pip install mujoco; meshes of bodies other than boxes need pip install netgen-mesher.
 Bodies in 3-D, at rest or in motion, in the idiom of the simulator: point masses at the nodes of a
