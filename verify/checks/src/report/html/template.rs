@@ -7,7 +7,7 @@ use minijinja::{Environment, Value, context};
 /// Texts with more bytes get a wide column.
 const LONG: usize = 24;
 
-/// Style of every page; that of figures is [`svg::STYLE`].
+/// Style of every page; that of figures is [`super::super::svg::STYLE`].
 pub const STYLE: &str = include_str!("page/page.css");
 /// Script of every page.
 pub const SCRIPT: &str = include_str!("page/page.js");

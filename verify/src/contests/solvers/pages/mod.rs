@@ -21,7 +21,7 @@ use std::path::Path;
 
 const SEND: &str = "\
 mtled contest list                            # the problems
-mtled protocol job cube_shear-v1 try          # a job: try/job.json
+mtled protocol job cube_shear try             # a job: try/job.json
 # write mine.py, which reads the job and writes the answer (reference/adapters/README.md)
 python3 mine.py try/job.json try/answer.json
 mtled protocol check try/job.json try/answer.json
@@ -70,15 +70,43 @@ fn group_of(case: &CaseRuns) -> String {
 }
 
 fn front(all: &Judged) -> Page {
-    let losses = losses(all);
-    let lost = losses.as_ref().map_or(0, |table| table.rows.len());
-    let mut verdicts = Part {
-        title: "Who answers, and what it costs".into(),
-        tables: vec![robustness(all), wins(all)],
+    let (solvers, problems) = (all.solvers.len(), all.cases.len());
+    let lead = format!(
+        "{} on {}, each with a reference that has an error bar: how far the answers are off, \
+         what they cost, and which runs ended without one. Every figure here is judged from the raw answers that \
+         are stored beside the problems.",
+        count(solvers, "program", "programs"),
+        count(problems, "problem", "problems")
+    );
+    let overview = Part {
+        title: "Error over CPU time".into(),
+        figures: vec![overview(all)],
         ..Part::default()
     };
-    if losses.is_some() {
-        verdicts.texts.push(format!(
+    let best = Part {
+        title: "Smallest error for 0.1, 1, 10 and 100 CPU s".into(),
+        tables: budgets(all),
+        folded: true,
+        ..Part::default()
+    };
+    let links = Part { title: "Solvers".into(), links: solver_links(all), ..Part::default() };
+    let parts = vec![
+        endings_and_costs(all),
+        overview,
+        best,
+        equal_costs(all),
+        links,
+        problem_links(all),
+        your_solver(),
+    ];
+    let title = "Solvers of soft bodies on the same problems".into();
+    Page { title, back: None, lead: vec![lead], parts, foot: notes(all) }
+}
+
+fn endings_and_costs(all: &Judged) -> Part {
+    let mut texts = Vec::new();
+    if let Some(lost) = losses(all).map(|table| table.rows.len()) {
+        texts.push(format!(
             "mtled itself loses at {lost} of these levels; each is in the table \"Where mtled loses\" below."
         ));
     }
@@ -86,56 +114,32 @@ fn front(all: &Judged) -> Page {
         all.machines.iter().map(|machine| machine.processor.as_str()).collect();
     if processors.len() > 1 {
         let names: Vec<String> = processors.into_iter().map(printable).collect();
-        verdicts.texts.push(format!(
+        texts.push(format!(
             "Times of several machines are beside each other, and compare only within one: {}.",
             names.join(", ")
         ));
     }
-    let equal = Part {
+    let tables = vec![robustness(all), wins(all)];
+    Part { title: "Who answers, and what it costs".into(), texts, tables, ..Part::default() }
+}
+
+fn equal_costs(all: &Judged) -> Part {
+    Part {
         title: "CPU time at equal error".into(),
-        tables: losses.into_iter().chain([equal_errors(all)]).collect(),
+        tables: losses(all).into_iter().chain([equal_errors(all)]).collect(),
         folded: true,
         ..Part::default()
-    };
-    Page {
-        title: "Solvers of soft bodies on the same problems".into(),
-        back: None,
-        lead: vec![format!(
-            "{} on {}, each with a reference that has an error bar: how far the answers are off, \
-             what they cost, and which runs ended without one. Every figure here is judged from the raw answers that \
-             are stored beside the problems.",
-            count(all.solvers.len(), "program", "programs"),
-            count(all.cases.len(), "problem", "problems")
-        )],
-        parts: vec![
-            verdicts,
-            Part {
-                title: "Error over CPU time".into(),
-                figures: vec![overview(all)],
-                ..Part::default()
-            },
-            Part {
-                title: "Smallest error for 0.1, 1, 10 and 100 CPU s".into(),
-                tables: budgets(all),
-                folded: true,
-                ..Part::default()
-            },
-            equal,
-            Part { title: "Solvers".into(), links: solver_links(all), ..Part::default() },
-            problems(all),
-            Part {
-                title: "Your solver".into(),
-                texts: vec![
-                    "Any program takes part that reads a JSON file and writes one. Its name and version, the machine, \
-                     the command and the raw answers go into a file per problem; a change of a problem makes a new \
-                     version of it."
-                        .into(),
-                ],
-                code: Some(SEND.into()),
-                ..Part::default()
-            },
-        ],
-        foot: notes(all),
+    }
+}
+
+fn your_solver() -> Part {
+    let text = "Any program takes part that reads a JSON file and writes one. Its name and version, the machine, the \
+                command and the raw answers go into a file per problem; a change of a problem makes a new version of it.";
+    Part {
+        title: "Your solver".into(),
+        texts: vec![text.into()],
+        code: Some(SEND.into()),
+        ..Part::default()
     }
 }
 
@@ -155,7 +159,7 @@ fn solver_links(all: &Judged) -> Vec<Link> {
     all.solvers.iter().enumerate().map(link).collect()
 }
 
-fn problems(all: &Judged) -> Part {
+fn problem_links(all: &Judged) -> Part {
     let mut groups: BTreeMap<String, Vec<&CaseRuns>> = BTreeMap::new();
     for case in &all.cases {
         groups.entry(group_of(case)).or_default().push(case);
