@@ -141,3 +141,10 @@ fn a_crash_is_a_result_of_its_own() {
     };
     checked(crash, 0, "FAULT: ended by signal 11");
 }
+
+#[test]
+fn the_results_that_are_stored_beside_the_problems_are_believed() {
+    let stored = concat!(env!("CARGO_MANIFEST_DIR"), "/../reference/results");
+    let (code, out, err) = mtled(".", &["contest", "check", stored]);
+    assert!([0, 3].contains(&code) && out.lines().count() >= 200, "{code} {err}");
+}
