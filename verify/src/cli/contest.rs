@@ -2,19 +2,20 @@
 
 use super::common::{Common, STOPPED, command_line};
 use super::publish::{report_of, tables};
-use super::streams::print_data;
 use crate::bundled::REFERENCES;
 use crate::contests::solvers::{
-    Contest, ContestCase, Entrant, History, Identity, Judged, Outcome, Results, ResultsFault,
-    SolverRun, Spacing, StoredEnd, benchmark, doubts, judge, problem_of, result_files, study,
-    write_pages,
+    Contest, ContestCase, Entrant, History, Identity, Judged, LONGEST_RUN_S, Outcome, Results,
+    ResultsFault, SolverRun, Spacing, StoredEnd, benchmark, doubts, judge, problem_of,
+    refuse_twice, result_files, study, write_pages,
 };
 use crate::lab::label::percent;
 use crate::lab::store::Source;
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
+use mtled_checks::escape::printable;
 use mtled_checks::input::read_text;
 use mtled_checks::report::{ensure_writable, json, svg, write_atomically};
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -106,14 +107,14 @@ Examples:
 /// A time limit \[s\]; a week at most.
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value <= 604_800.0 => Ok(value),
+        Ok(value) if value > 0.0 && value <= LONGEST_RUN_S => Ok(value),
         _ => Err("it must be a time in seconds, more than 0 and at most a week".into()),
     }
 }
 
 pub fn contest(command: &ContestCommand, common: &Common) -> Result<u8> {
     match command {
-        ContestCommand::List => list(),
+        ContestCommand::List => list(common),
         ContestCommand::Run(arguments) => run(arguments, common),
         ContestCommand::Check(arguments) => check(arguments, common),
         ContestCommand::Pages(arguments) => {
@@ -127,17 +128,19 @@ pub fn contest(command: &ContestCommand, common: &Common) -> Result<u8> {
                 all.push(results.with_context(|| file.display().to_string())?.0);
             }
             let judged = Judged::new(&all, &cases)?;
-            publish(&judged, history.as_ref(), &arguments.out, start, common)
+            // Faults and doubts are what the pages are about.
+            publish(&judged, history.as_ref(), &arguments.out, start, common).map(|_| 0)
         }
     }
 }
 
-fn list() -> Result<u8> {
+fn list(common: &Common) -> Result<u8> {
     let row = |problem: Identity| {
         let (id, group) = (problem.id, problem.group);
         format!("{id}  {group}\n  inputs {}\n  references {}\n", problem.inputs, problem.references)
     };
-    print_data(&benchmark().into_iter().map(row).collect::<String>())?;
+    let document = || Ok(serde_json::to_string(&benchmark())? + "\n");
+    common.print_summary(&document, &|| benchmark().into_iter().map(row).collect())?;
     Ok(0)
 }
 
@@ -192,40 +195,78 @@ fn publish(
     Ok(report.outcome().exit_code())
 }
 
+/// What is said of a file of results.
+#[derive(Serialize)]
+struct Verdict {
+    file: String,
+    /// None where it is not believed.
+    result: Option<String>,
+    faults: Vec<String>,
+    doubts: Vec<String>,
+}
+
 /// Says of every file whether it is believed, and how its runs ended. Exit code 1 where one is not
 /// believed, 3 where answers are doubtful.
 fn check(arguments: &CheckArgs, common: &Common) -> Result<u8> {
     let folder = tempfile::tempdir().context("cannot make a folder for the bundled cases")?;
     let cases = problems(&arguments.own, folder.path())?;
-    let (mut sound, mut clear) = (true, true);
+    let (mut verdicts, mut all) = (Vec::new(), Vec::new());
     for file in files(&arguments.results)? {
-        let shown = file.display();
-        let (results, case) = match believed(&file, &cases) {
-            Ok(known) => known,
-            Err(fault) => {
-                sound = false;
-                common.complain(format!("{shown}: {fault}"));
-                continue;
-            }
-        };
-        let runs = judge(&results, case);
-        print_data(&format!("{shown}: {}\n", judgement(&results, case, &runs)))?;
-        for (n, (run, stored)) in runs.iter().zip(&results.runs).enumerate() {
-            if let (Outcome::Faulty(fault), StoredEnd::Reply(_)) = (&run.outcome, &stored.ended) {
-                sound = false;
-                common.complain(format!("{shown}: runs[{n}]: {fault}"));
-            }
+        let mut verdict = verdict(&file, &cases, &mut all);
+        if verdict.result.is_some()
+            && let Err(fault) = refuse_twice(&all)
+        {
+            verdict.faults.push(fault.to_string());
+            all.pop();
         }
-        for doubt in doubts(case, &runs) {
-            clear = false;
-            common.complain(format!("{shown}: doubtful: {doubt}"));
+        verdicts.push(verdict);
+    }
+    let line = |verdict: &Verdict| {
+        let result = verdict.result.as_ref()?;
+        Some(format!("{}: {result}\n", verdict.file))
+    };
+    let text = || verdicts.iter().filter_map(line).collect::<String>();
+    common.print_summary(&|| Ok(serde_json::to_string(&verdicts)? + "\n"), &text)?;
+    for verdict in &verdicts {
+        let file = &verdict.file;
+        verdict.faults.iter().for_each(|fault| common.complain(format!("{file}: {fault}")));
+        let doubts = verdict.doubts.iter();
+        doubts.for_each(|doubt| common.complain(format!("{file}: doubtful: {doubt}")));
+    }
+    Ok(if verdicts.iter().any(|verdict| !verdict.faults.is_empty()) {
+        1
+    } else if verdicts.iter().any(|verdict| !verdict.doubts.is_empty()) {
+        3
+    } else {
+        0
+    })
+}
+
+/// Judges a file; its results are added to `all` where they are believed.
+fn verdict(file: &Path, cases: &[ContestCase], all: &mut Vec<Results>) -> Verdict {
+    let mut verdict = Verdict {
+        file: printable(&file.display().to_string()),
+        result: None,
+        faults: Vec::new(),
+        doubts: Vec::new(),
+    };
+    let (results, case) = match believed(file, cases) {
+        Ok(known) => known,
+        Err(fault) => {
+            verdict.faults.push(fault.to_string());
+            return verdict;
+        }
+    };
+    let runs = judge(&results, case);
+    for (n, (run, stored)) in runs.iter().zip(&results.runs).enumerate() {
+        if let (Outcome::Faulty(fault), StoredEnd::Reply(_)) = (&run.outcome, &stored.ended) {
+            verdict.faults.push(format!("runs[{n}]: {fault}"));
         }
     }
-    Ok(match (sound, clear) {
-        (false, _) => 1,
-        (true, false) => 3,
-        (true, true) => 0,
-    })
+    verdict.doubts = doubts(case, &runs).iter().map(ToString::to_string).collect();
+    verdict.result = Some(judgement(&results, case, &runs));
+    all.push(results);
+    verdict
 }
 
 fn believed<'a>(

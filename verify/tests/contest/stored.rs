@@ -61,21 +61,18 @@ fn an_answer_without_a_probe_is_refused() {
 
 #[test]
 fn a_run_that_took_no_time_is_refused() {
-    refused(
-        |results| results["runs"][0]["usage"]["cpu_s"] = json!(0.0),
-        "times must be more than 0",
-    );
+    refused(|results| results["runs"][0]["usage"]["cpu_s"] = json!(0.0), "no process starts");
     let forget = |results: &mut Value| {
         results["runs"][0].as_object_mut().unwrap().remove("usage");
     };
-    refused(forget, "a run that replies has taken time");
+    refused(forget, "a run that started has taken time");
 }
 
 #[test]
 fn an_answer_beyond_the_time_limit_is_refused() {
     refused(
         |results| results["runs"][2]["usage"]["wall_s"] = json!(500.0),
-        "beyond the time limit",
+        "5 s beyond the time limit",
     );
 }
 
@@ -132,6 +129,96 @@ fn pages_of_stored_results_are_those_of_the_run() {
 fn every_problem_of_the_benchmark_is_listed_with_its_fingerprints() {
     let (code, out, _) = mtled(Arena::new().dir.path(), &["contest", "list"]);
     assert!(code == 0 && out.contains("cube_shear-v1") && out.contains("references "), "{out}");
+}
+
+#[test]
+fn names_that_are_no_names_and_days_that_are_no_days_are_refused() {
+    for name in ["", "..", "a/b", "a\u{1b}[31m", " x", &"x".repeat(41)] {
+        refused(|results| results["solver"] = json!(name), "a name has 1 to 40 letters");
+    }
+    for day in ["", "yesterday", "2026-13-01", "2026-1-1"] {
+        refused(|results| results["machine"]["date"] = json!(day), "is not a day");
+    }
+    refused(|results| results["command"] = json!(" "), "command is empty");
+    refused(|results| results["time_limit_s"] = json!(-1.0), "time_limit_s must be more than 0");
+    refused(|results| results["runs"][0]["spacing_m"] = json!(1e300), "lengths from 1e-9");
+}
+
+#[test]
+fn a_run_that_timed_out_before_its_limit_is_refused() {
+    refused(|results| results["runs"][0]["ended"] = json!("timed_out"), "within the time limit");
+}
+
+#[test]
+fn nobody_answers_in_the_name_of_this_program() {
+    refused(|results| results["solver"] = json!("mtled"), "but fake 1.2 answers");
+}
+
+#[test]
+fn lists_in_place_of_objects_are_refused() {
+    let list = |results: &mut Value| {
+        let run = results["runs"][0].as_object().unwrap().values().cloned().collect();
+        results["runs"][0] = Value::Array(run);
+    };
+    refused(list, "must be JSON objects");
+}
+
+#[test]
+fn answers_that_nearly_are_the_same_are_doubted_and_so_is_nothing_at_all() {
+    let everywhere = |value: fn(usize) -> f64| {
+        move |results: &mut Value| {
+            for (n, run) in results["runs"].as_array_mut().unwrap().iter_mut().enumerate() {
+                let probes = &mut run["ended"]["reply"]["displacements_m"];
+                for probe in probes.as_object_mut().unwrap().values_mut() {
+                    probe[0][0] = json!([value(n), value(n), value(n)]);
+                }
+            }
+        }
+    };
+    checked(everywhere(|n| 0.02 + 1e-12 * n as f64), 3, "does not depend on the resolution");
+    checked(everywhere(|_| 0.0), 3, "the displacement is 0 everywhere");
+}
+
+#[test]
+fn more_than_one_thread_is_doubted() {
+    let busy = |results: &mut Value| {
+        results["runs"][0]["usage"]["wall_s"] = json!(1.0);
+        results["runs"][0]["usage"]["cpu_s"] = json!(4.0);
+    };
+    checked(busy, 3, "4 threads at once");
+}
+
+#[test]
+fn two_files_of_one_solver_on_one_problem_are_refused() {
+    let (arena, results) = honest();
+    std::fs::write(arena.path("out/results/copy.json"), results.to_string()).unwrap();
+    let (code, said) = arena.check("out/results");
+    assert!(code == 1 && said.contains("in another file too"), "{said}");
+    let (code, said) = arena.check("nowhere");
+    assert!(code == 2 && said.contains("cannot read nowhere"), "{said}");
+}
+
+#[test]
+fn times_of_another_machine_are_not_compared() {
+    let (arena, mut results) = honest();
+    let shown = |more: &str| {
+        let own = ["--case", "block.toml", "--reference", "reference.json", "--out", "pages"];
+        let files = ["contest", "pages", "out/results", more];
+        let (code, _, err) = mtled(arena.dir.path(), &[&files[..], &own].concat());
+        assert_eq!(code, 0, "{err}");
+        std::fs::read_to_string(arena.path("pages/tables.md")).unwrap()
+    };
+    let second = |tables: &str| {
+        let mut costs = tables.lines().skip_while(|line| *line != "## CPU time at equal error");
+        let row = costs.find(|line| line.starts_with("| block |")).unwrap().to_string();
+        row.split('|').map(str::trim).rfind(|cell| !cell.is_empty()).unwrap().to_string()
+    };
+    results["solver"] = json!("second");
+    std::fs::write(arena.path("second.json"), results.to_string()).unwrap();
+    assert_ne!(second(&shown("second.json")), "–");
+    results["machine"]["processor"] = json!("Z80");
+    std::fs::write(arena.path("second.json"), results.to_string()).unwrap();
+    assert_eq!(second(&shown("second.json")), "–");
 }
 
 #[test]

@@ -11,6 +11,10 @@ const WRONG_UNITS: [i32; 4] = [-6, -3, 3, 6];
 const FACTOR: f64 = 0.1;
 /// Smallest cosine between an answer and the reference for which a factor means something \[–\].
 const COSINE: f64 = 0.98;
+/// Answers are the same that differ by less than this over the largest value \[–\].
+const SAME: f64 = 1e-7;
+/// Processor time over that on the clock beyond which more than one thread ran \[–\].
+const THREADS: f64 = 1.3;
 /// A claim is named where it differs by more than this from what was measured, relative \[–\] …
 const CLAIM: f64 = 0.5;
 /// … and by more than this \[s\].
@@ -25,6 +29,12 @@ pub enum Doubt {
     Units { family: &'static str, factor: String, power: i32 },
     #[error("the answer does not depend on the resolution")]
     SameAnswers,
+    #[error("the displacement is 0 everywhere")]
+    Nothing,
+    #[error("the error is beyond all numbers")]
+    Infinite,
+    #[error("{threads} threads at once, where one was asked for")]
+    Threads { threads: String },
     #[error(
         "the unknowns do not grow with the resolution: {first} on level {coarse}, {last} on level {fine}"
     )]
@@ -57,12 +67,25 @@ pub fn wrong_units(answered: &Answered, reference: &[ReferenceValues]) -> Option
 
 /// Whether a series of runs from coarse to fine looks as if no system had been solved. Answers
 /// that are the same are right where none `differs` from the reference.
-pub fn about_series(runs: &[SolverRun], differs: bool) -> Vec<Doubt> {
+pub fn about_series(
+    runs: &[SolverRun],
+    reference: &[ReferenceValues],
+    differs: bool,
+) -> Vec<Doubt> {
     let answered: Vec<(usize, &Answered)> =
         runs.iter().filter_map(|run| Some((run.level, run.outcome.answered()?))).collect();
     let [(coarse, first), .., (fine, last)] = answered[..] else { return Vec::new() };
     let mut doubts = Vec::new();
-    if differs && answered.windows(2).all(|pair| pair[0].1.values == pair[1].1.values) {
+    let same = |pair: &[(usize, &Answered)]| {
+        let both = places(pair[0].1, reference).zip(places(pair[1].1, reference));
+        let (mut apart, mut size) = (0.0f64, 0.0f64);
+        for (one, other) in both {
+            apart = apart.max((one - other).abs());
+            size = size.max(one.abs());
+        }
+        apart <= SAME * size
+    };
+    if differs && answered.windows(2).all(same) {
         doubts.push(Doubt::SameAnswers);
     }
     if last.unknowns <= first.unknowns {
@@ -70,6 +93,29 @@ pub fn about_series(runs: &[SolverRun], differs: bool) -> Vec<Doubt> {
         doubts.push(Doubt::Unknowns { coarse, first, fine, last });
     }
     doubts
+}
+
+/// The displacements of an answer.
+fn places<'a>(
+    answered: &'a Answered,
+    reference: &'a [ReferenceValues],
+) -> impl Iterator<Item = f64> + 'a {
+    let all = answered.values.iter().zip(reference);
+    let moved = all.filter(|(_, known)| known.quantity.family == Family::Displacement);
+    moved.filter_map(|(values, _)| values.as_ref()).flatten().copied()
+}
+
+/// Whether a run answers that nothing moves.
+pub fn is_nothing(run: &SolverRun, reference: &[ReferenceValues]) -> bool {
+    let Some(answered) = run.outcome.answered() else { return false };
+    places(answered, reference).all(|part| part == 0.0)
+}
+
+/// Whether a run took more processor time than one thread can.
+pub fn about_threads(run: &SolverRun) -> Option<Doubt> {
+    let usage = run.usage?;
+    let more = usage.cpu_s > THREADS * usage.wall_s + CLAIM_S;
+    more.then(|| Doubt::Threads { threads: four_digits(usage.cpu_s / usage.wall_s) })
 }
 
 /// What a run claims and what was measured, where they differ strongly.

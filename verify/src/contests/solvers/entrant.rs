@@ -19,11 +19,26 @@ pub struct Entrant {
     pub shown: String,
 }
 
+/// What a name must be, since folders and pages are called after it.
+pub const NAME_RULE: &str = "a name has 1 to 40 letters, digits, spaces, `-`, `_`, `+` or `.` and \
+                             starts with a letter or a digit";
+
+/// Whether a text is the name of a solver.
+pub fn is_name(text: &str) -> bool {
+    let allowed = |c: char| c.is_alphanumeric() || " -_+.".contains(c);
+    text.chars().count() <= 40
+        && text.chars().all(allowed)
+        && text.starts_with(char::is_alphanumeric)
+        && !text.ends_with([' ', '.'])
+}
+
 /// Why a text names no program.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NotAnEntrant {
     #[error("`{text}` is not NAME=COMMAND, such as 'mine=python3 mine.py {{job}} {{answer}}'")]
     NoName { text: String },
+    #[error("`{name}`: {NAME_RULE}")]
+    Name { name: String },
     #[error("the command of {name} has a quotation mark that is not closed")]
     Quotation { name: String },
     #[error("the command of {name} lacks {placeholder}")]
@@ -39,6 +54,9 @@ impl FromStr for Entrant {
         let named = parts.filter(|(name, command)| !name.is_empty() && !command.is_empty());
         let (name, command) = named.ok_or(NotAnEntrant::NoName { text: text.into() })?;
         let name = name.to_string();
+        if !is_name(&name) {
+            return Err(NotAnEntrant::Name { name });
+        }
         let shown = command.to_string();
         let Some(command) = shlex::split(command) else {
             return Err(NotAnEntrant::Quotation { name });
@@ -88,6 +106,8 @@ mod tests {
         for (text, part) in [
             ("python3 mine.py {job} {answer}", "is not NAME=COMMAND"),
             ("=x {job} {answer}", "is not NAME=COMMAND"),
+            ("../evil=x {job} {answer}", "a name has 1 to 40 letters"),
+            ("a/b=x {job} {answer}", "a name has 1 to 40 letters"),
             ("a=x '{job} {answer}", "quotation mark"),
             ("a=x {answer}", "lacks {job}"),
             ("a=x {job}", "lacks {answer}"),

@@ -2,12 +2,12 @@
 //! asked and of what answers are compared with.
 
 use crate::bundled::bundled_reference;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 /// A problem of the benchmark. Where its inputs or its references change it becomes the next
 /// version, so that results of one version are always about the same thing.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Identity {
     /// Such as `cube_shear-v1`.

@@ -1,9 +1,9 @@
 //! Stored results, judged: errors against references, doubts, costs.
 
-use super::doubt::{Doubt, about_series, wrong_units};
+use super::doubt::{Doubt, about_series, about_threads, is_nothing, wrong_units};
 use super::outcome::{Outcome, SolverRun};
 use super::problem::ContestCase;
-use super::results::{Machine, Results, ResultsFault};
+use super::results::{Machine, OWN, Results, ResultsFault, refuse_twice};
 use crate::accuracy::Difference;
 
 /// Results of solvers on problems.
@@ -29,12 +29,14 @@ pub struct JudgedSolver {
 }
 
 /// All runs of a case.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct CaseRuns<'a> {
     /// The case.
     pub of: &'a ContestCase,
     /// \[program\]\[resolution\]; none of a program without results.
     pub runs: Vec<Vec<SolverRun>>,
+    /// Of each program, whether its runs are those of another machine, whose times do not compare.
+    pub elsewhere: Vec<bool>,
 }
 
 /// The problem that results are of.
@@ -67,6 +69,8 @@ pub fn judge(results: &Results, case: &ContestCase) -> Vec<SolverRun> {
 impl<'a> Judged<'a> {
     /// Judges results, each of one of the cases.
     pub fn new(all: &[Results], cases: &'a [ContestCase]) -> Result<Judged<'a>, ResultsFault> {
+        refuse_twice(all)?;
+        let machine = commonest(all);
         let mut names: Vec<&str> = all.iter().map(|results| results.solver.as_str()).collect();
         names.sort_unstable_by_key(|name| (*name != OWN, *name));
         names.dedup();
@@ -81,11 +85,13 @@ impl<'a> Judged<'a> {
         for results in all {
             let of = problem_of(results, cases)?;
             let known = judged.iter().position(|case| case.of.id == of.id).unwrap_or_else(|| {
-                judged.push(CaseRuns { of, runs: vec![Vec::new(); names.len()] });
+                let (runs, elsewhere) = (vec![Vec::new(); names.len()], vec![false; names.len()]);
+                judged.push(CaseRuns { of, runs, elsewhere });
                 judged.len() - 1
             });
-            let place = names.iter().position(|name| *name == results.solver);
-            judged[known].runs[place.unwrap_or_default()] = judge(results, of);
+            let place = names.iter().position(|name| *name == results.solver).unwrap_or_default();
+            judged[known].runs[place] = judge(results, of);
+            judged[known].elsewhere[place] = Some(place_of(results)) != machine;
         }
         judged.sort_by(|a, b| a.of.id.cmp(&b.of.id));
         let mut time_limits_s: Vec<f64> = all.iter().map(|results| results.time_limit_s).collect();
@@ -100,8 +106,20 @@ impl<'a> Judged<'a> {
     }
 }
 
-/// Name of this program among the solvers.
-pub const OWN: &str = "mtled";
+/// Processor and system.
+fn place_of(results: &Results) -> (&str, &str) {
+    (&results.machine.processor, &results.machine.system)
+}
+
+/// The machine that most results are of, the first by name of several.
+fn commonest(all: &[Results]) -> Option<(&str, &str)> {
+    let mut counts = std::collections::BTreeMap::new();
+    for results in all {
+        *counts.entry(place_of(results)).or_insert(0usize) += 1;
+    }
+    let most = counts.values().max().copied()?;
+    counts.into_iter().find(|(_, count)| *count == most).map(|(place, _)| place)
+}
 
 fn each_once<T: Ord>(values: impl Iterator<Item = T>) -> Vec<T> {
     let mut all: Vec<T> = values.collect();
@@ -122,9 +140,9 @@ impl CaseRuns<'_> {
     }
 
     /// CPU time \[s\] and error \[–\] of the runs of a program, from coarse to fine; none where
-    /// its answers are doubtful.
+    /// its answers are doubtful, or times are those of another machine.
     pub fn costs(&self, solver: usize) -> Vec<(f64, f64)> {
-        if !self.doubts(solver).is_empty() {
+        if self.elsewhere[solver] || !self.doubts(solver).is_empty() {
             return Vec::new();
         }
         let runs = self.runs[solver].iter();
@@ -136,7 +154,14 @@ impl CaseRuns<'_> {
 pub fn doubts(case: &ContestCase, runs: &[SolverRun]) -> Vec<Doubt> {
     let answers = runs.iter().filter_map(|run| run.outcome.answered());
     let units = answers.map(|answer| wrong_units(answer, &case.reference.quantities));
-    let mut errors = runs.iter().filter_map(|run| case.error(case.group, run.outcome.answered()?));
-    let differs = errors.any(|error| error.rms > error.bar);
-    units.flatten().take(1).chain(about_series(runs, differs)).collect()
+    let errors = runs.iter().filter_map(|run| case.error(case.group, run.outcome.answered()?));
+    let errors: Vec<Difference> = errors.collect();
+    let differs = errors.iter().any(|error| error.rms > error.bar);
+    let infinite = errors.iter().any(|error| !error.rms.is_finite()).then_some(Doubt::Infinite);
+    let threads = runs.iter().filter_map(about_threads).take(1);
+    let quantities = &case.reference.quantities;
+    let nothing = differs && runs.iter().any(|run| is_nothing(run, quantities));
+    let nothing = nothing.then_some(Doubt::Nothing);
+    let single = units.flatten().take(1).chain(infinite).chain(nothing).chain(threads);
+    single.chain(about_series(runs, quantities, differs)).collect()
 }

@@ -26,4 +26,6 @@ pub use own::solve_job;
 pub use pages::{History, write_pages};
 pub use problem::{ContestCase, NotASpacing, Spacing};
 pub use report::study;
-pub use results::{Machine, Results, ResultsFault, StoredEnd, StoredRun, result_files};
+pub use results::{
+    LONGEST_RUN_S, Machine, Results, ResultsFault, StoredEnd, StoredRun, refuse_twice, result_files,
+};

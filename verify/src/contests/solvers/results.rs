@@ -1,6 +1,7 @@
 //! Results of a solver on a problem, as they are stored: raw answers with what they cost, on which
 //! machine. All that is said of them is judged again from this file.
 
+use super::entrant::{NAME_RULE, is_name};
 use super::process::Usage;
 use mtled_checks::input::read_text;
 use serde::{Deserialize, Serialize};
@@ -86,10 +87,18 @@ pub enum ResultsFault {
         "inputs: the results are of another problem than {problem} is; its fingerprint is {expected}"
     )]
     Inputs { problem: String, expected: String },
+    #[error("solver: {NAME_RULE}")]
+    Name,
+    #[error("solver is `{OWN}`, but {found} answers")]
+    Impersonation { found: String },
+    #[error("{key} {reason}")]
+    Field { key: &'static str, reason: &'static str },
+    #[error("{solver} has results of {problem} in another file too: one of them must go")]
+    Twice { solver: String, problem: String },
     #[error("runs: there are none")]
     NoRuns,
     #[error(
-        "runs[{run}].spacing_m is {spacing_m} m; spacings must be positive and go from coarse to fine"
+        "runs[{run}].spacing_m is {spacing_m:e} m; spacings must be lengths from 1e-9 to 1e9 m that go from coarse to fine"
     )]
     Order { run: usize, spacing_m: f64 },
     #[error("runs[{run}].usage: {reason}")]
@@ -102,9 +111,18 @@ impl Results {
     /// Reads a file; its replies are not looked at.
     pub fn read(path: &Path) -> Result<Results, ResultsFault> {
         let unreadable = |reason: String| ResultsFault::Unreadable(reason);
+        let bytes = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?.len();
+        if bytes > LONGEST {
+            return Err(unreadable(format!("it has more than {LONGEST} bytes")));
+        }
         let text = read_text(path).map_err(|error| unreadable(error.to_string()))?;
         let value: Value =
             serde_json::from_str(&text).map_err(|error| unreadable(error.to_string()))?;
+        // Lists would be read as the keys in their order.
+        let mut runs = value["runs"].as_array().into_iter().flatten();
+        if !value.is_object() || !runs.all(Value::is_object) {
+            return Err(unreadable("results and each of their runs must be JSON objects".into()));
+        }
         match value.get("results") {
             Some(version) if version.as_u64() != Some(RESULTS.into()) => {
                 return Err(ResultsFault::Version(version.clone()));
@@ -123,29 +141,61 @@ impl Results {
         if self.runs.is_empty() {
             return Err(ResultsFault::NoRuns);
         }
+        self.check_labels()?;
         let mut coarser = f64::INFINITY;
         for (run, stored) in self.runs.iter().enumerate() {
             let spacing_m = stored.spacing_m;
-            if !(spacing_m > 0.0 && spacing_m < coarser) {
+            if !(LENGTHS_M.contains(&spacing_m) && spacing_m < coarser) {
                 return Err(ResultsFault::Order { run, spacing_m });
             }
             coarser = spacing_m;
-            let replied = matches!(stored.ended, StoredEnd::Reply(_));
-            let reason = match stored.usage {
-                None if replied => Some("is missing; a run that replies has taken time"),
-                Some(usage) if !(usage.cpu_s > 0.0 && usage.wall_s > 0.0) => {
-                    Some("times must be more than 0")
-                }
-                Some(usage) if replied && usage.wall_s > self.time_limit_s + GRACE_S => {
-                    Some("wall_s is beyond the time limit, and yet there is a reply")
-                }
-                _ => None,
-            };
-            if let Some(reason) = reason {
+            if let Some(reason) = self.fault_of_usage(stored) {
                 return Err(ResultsFault::Usage { run, reason });
             }
         }
         self.check_solver()
+    }
+
+    fn fault_of_usage(&self, run: &StoredRun) -> Option<&'static str> {
+        let (limit_s, replied) = (self.time_limit_s, matches!(run.ended, StoredEnd::Reply(_)));
+        let Some(usage) = run.usage else {
+            let started = !matches!(run.ended, StoredEnd::Fault(_));
+            return started.then_some("is missing; a run that started has taken time");
+        };
+        if !(usage.cpu_s.is_finite() && usage.wall_s.is_finite()) {
+            Some("times must be finite")
+        } else if usage.cpu_s < LEAST_CPU_S || usage.wall_s <= 0.0 {
+            Some("no process starts, reads and writes within 0.1 ms")
+        } else if usage.cpu_s > MOST_THREADS * usage.wall_s + GRACE_S {
+            Some("cpu_s is more than a thousand threads take in wall_s")
+        } else if replied && usage.wall_s > limit_s + GRACE_S {
+            Some("wall_s is more than 5 s beyond the time limit, and yet there is a reply")
+        } else if run.ended == StoredEnd::TimedOut && usage.wall_s < limit_s {
+            Some("wall_s is within the time limit, and yet the run has timed out")
+        } else {
+            None
+        }
+    }
+
+    /// What is not a number.
+    fn check_labels(&self) -> Result<(), ResultsFault> {
+        if !is_name(&self.solver) {
+            return Err(ResultsFault::Name);
+        }
+        let field = |key, reason| Err(ResultsFault::Field { key, reason });
+        if !(self.time_limit_s > 0.0 && self.time_limit_s <= LONGEST_RUN_S) {
+            return field("time_limit_s", "must be more than 0 and at most a week");
+        }
+        if self.command.trim().is_empty() {
+            return field("command", "is empty");
+        }
+        if self.machine.processor.trim().is_empty() || self.machine.system.trim().is_empty() {
+            return field("machine", "must name processor and system");
+        }
+        if !is_date(&self.machine.date) {
+            return field("machine.date", "is not a day such as 2026-11-29");
+        }
+        Ok(())
     }
 
     /// One program in one version has made all replies.
@@ -160,6 +210,9 @@ impl Results {
                 Some(first) if *first != found => {
                     return Err(ResultsFault::Solver { run, first: first.clone(), found });
                 }
+                _ if self.solver == OWN && name != OWN => {
+                    return Err(ResultsFault::Impersonation { found });
+                }
                 _ => first = Some(found),
             }
         }
@@ -173,12 +226,50 @@ impl Results {
     }
 }
 
+/// Name of this program among the solvers.
+pub const OWN: &str = "mtled";
+/// The longest time limit \[s\]: a week.
+pub const LONGEST_RUN_S: f64 = 604_800.0;
 /// What a process may take to be killed beyond its time limit \[s\].
 const GRACE_S: f64 = 5.0;
+/// Less than any process takes \[s\].
+const LEAST_CPU_S: f64 = 1e-4;
+/// Threads beyond which a processor time is a mistake.
+const MOST_THREADS: f64 = 1000.0;
+/// Spacings that mean something \[m\].
+const LENGTHS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+/// The longest file of results that is read \[byte\].
+const LONGEST: u64 = 1 << 27;
+
+/// Whether a text is a day, YYYY-MM-DD.
+pub fn is_date(text: &str) -> bool {
+    let parts: Vec<&str> = text.split('-').collect();
+    let number = |part: &str, digits: usize| {
+        let whole = part.len() == digits && part.bytes().all(|byte| byte.is_ascii_digit());
+        whole.then(|| part.parse::<u32>().ok()).flatten()
+    };
+    let [year, month, day] = parts[..] else { return false };
+    number(year, 4).is_some()
+        && number(month, 2).is_some_and(|month| (1..=12).contains(&month))
+        && number(day, 2).is_some_and(|day| (1..=31).contains(&day))
+}
+
+/// Says where two files are results of one solver on one problem.
+pub fn refuse_twice(all: &[Results]) -> Result<(), ResultsFault> {
+    let mut seen = std::collections::BTreeSet::new();
+    for results in all {
+        // Folders may not tell capitals from small letters.
+        if !seen.insert((results.solver.to_lowercase(), &results.problem)) {
+            let (solver, problem) = (results.solver.clone(), results.problem.clone());
+            return Err(ResultsFault::Twice { solver, problem });
+        }
+    }
+    Ok(())
+}
 
 /// The files `*.json` in a folder and those below, in the order of their names; a file itself.
 pub fn result_files(path: &Path) -> std::io::Result<Vec<PathBuf>> {
-    if !path.is_dir() {
+    if !std::fs::metadata(path)?.is_dir() {
         return Ok(vec![path.to_path_buf()]);
     }
     let entries = std::fs::read_dir(path)?.map(|entry| entry.map(|entry| entry.path()));

@@ -1,7 +1,8 @@
 //! All solvers on all problems as tables.
 
-use super::judged::{CaseRuns, Judged, JudgedSolver, OWN};
+use super::judged::{CaseRuns, Judged, JudgedSolver};
 use super::outcome::{Outcome, SolverRun};
+use super::results::OWN;
 use super::run_tables::{label, memory_cell};
 use crate::accuracy::{Cost, cost_at};
 use crate::lab::label::{optional, percent};
@@ -49,16 +50,19 @@ pub fn robustness(all: &Judged) -> Table {
     let row = |(n, entrant): (usize, &JudgedSolver)| {
         let counts = endings(&all.cases, n);
         let runs = || all.cases.iter().flat_map(|case| &case.runs[n]);
-        let solver = runs().find_map(|run| run.outcome.solver());
+        let replies = runs().filter_map(|run| run.outcome.solver());
+        let mut replies: Vec<String> = replies
+            .map(|solver| printable(&format!("{} {}", solver.name, solver.version)))
+            .collect();
+        replies.sort_unstable();
+        replies.dedup();
         let usages = || runs().filter_map(|run| run.usage);
         let memory = usages().max_by_key(|usage| usage.peak_memory_bytes);
         let least = usages().map(|usage| usage.cpu_s).reduce(f64::min);
         let count = |count: usize| Cell::Number(count as f64);
         vec![
             label(printable(&entrant.name)),
-            label(solver.map_or("–".into(), |solver| {
-                printable(&format!("{} {}", solver.name, solver.version))
-            })),
+            label(if replies.is_empty() { "–".into() } else { replies.join(", ") }),
             count(counts.runs),
             count(counts.answered),
             count(counts.refused),

@@ -1,5 +1,6 @@
 //! How errors and work of mtled itself have changed from commit to commit.
 
+use super::super::results::is_date;
 use crate::lab::label::optional;
 use anyhow::{Context, Result, bail};
 use mtled_checks::input::read_text;
@@ -43,6 +44,9 @@ impl History {
                 Ok(value) if f64::is_finite(value) => value,
                 _ => bail!("{shown}: line {}: `{value}` is not a number", n + 2),
             };
+            if !is_date(date) {
+                bail!("{shown}: line {}: `{date}` is not a day such as 2026-11-29", n + 2);
+            }
             let commit = (date.to_string(), commit.to_string());
             if history.commits.last() != Some(&commit) {
                 history.commits.push(commit);
@@ -144,7 +148,11 @@ mod tests {
         let history = read(&format!("{sound}2026-11-22,b,work/x/evaluations,3\n")).unwrap();
         assert_eq!((history.commits.len(), history.figures.len()), (2, 2));
         assert_eq!(history.page(None).parts.len(), 3);
-        for (more, part) in [("1,2,3\n", "line 3 has 3 columns"), ("1,2,3,x\n", "line 3: `x`")] {
+        for (more, part) in [
+            ("1,2,3\n", "line 3 has 3 columns"),
+            ("1,2,3,x\n", "line 3: `x`"),
+            ("1,2,3,4\n", "`1` is not a day"),
+        ] {
             let error = read(&format!("{sound}{more}")).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
         }

@@ -115,7 +115,7 @@ fn endings_and_costs(all: &Judged) -> Part {
     if processors.len() > 1 {
         let names: Vec<String> = processors.into_iter().map(printable).collect();
         texts.push(format!(
-            "Times of several machines are beside each other, and compare only within one: {}.",
+            "Results are of several machines. Costs are those of the one that most are of; others have errors only: {}.",
             names.join(", ")
         ));
     }
@@ -255,7 +255,7 @@ fn problem_page(all: &Judged, case: &CaseRuns) -> Page {
     let description = printable(&words.join(" "));
     let own = Judged {
         solvers: all.solvers.clone(),
-        cases: vec![CaseRuns { of: case.of, runs: case.runs.clone() }],
+        cases: vec![case.clone()],
         machines: all.machines.clone(),
         time_limits_s: all.time_limits_s.clone(),
     };
