@@ -13,8 +13,9 @@ const FACTOR: f64 = 0.1;
 const COSINE: f64 = 0.98;
 /// Answers are the same that differ by less than this over the largest value \[–\].
 const SAME: f64 = 1e-7;
-/// Processor time over that on the clock beyond which more than one thread ran \[–\].
-const THREADS: f64 = 1.3;
+/// Processor time over that on the clock beyond which more than one thread ran \[–\]. Compilers of
+/// kernels take a second one for a while, whose time is counted.
+const THREADS: f64 = 2.0;
 /// A claim is named where it differs by more than this from what was measured, relative \[–\] …
 const CLAIM: f64 = 0.5;
 /// … and by more than this \[s\].
