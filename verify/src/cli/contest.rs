@@ -5,8 +5,8 @@ use super::publish::{report_of, tables};
 use crate::bundled::REFERENCES;
 use crate::contests::solvers::{
     Contest, ContestCase, Entrant, History, Identity, Judged, LONGEST_RUN_S, Outcome, Results,
-    ResultsFault, SolverRun, Spacing, StoredEnd, benchmark, doubts, judge, problem_of,
-    refuse_twice, result_files, study, write_pages,
+    ResultsFault, Seen, SolverRun, Spacing, StoredEnd, benchmark, doubts, judge, problem_of,
+    result_files, study, write_pages,
 };
 use crate::lab::label::percent;
 use crate::lab::store::Source;
@@ -135,12 +135,12 @@ pub fn contest(command: &ContestCommand, common: &Common) -> Result<u8> {
 }
 
 fn list(common: &Common) -> Result<u8> {
-    let row = |problem: Identity| {
-        let (id, group) = (problem.id, problem.group);
+    let row = |problem: &Identity| {
+        let (id, group) = (&problem.id, &problem.group);
         format!("{id}  {group}\n  inputs {}\n  references {}\n", problem.inputs, problem.references)
     };
-    let document = || Ok(serde_json::to_string(&benchmark())? + "\n");
-    common.print_summary(&document, &|| benchmark().into_iter().map(row).collect())?;
+    let document = || Ok(serde_json::to_string(benchmark())? + "\n");
+    common.print_summary(&document, &|| benchmark().iter().map(row).collect())?;
     Ok(0)
 }
 
@@ -210,17 +210,10 @@ struct Verdict {
 fn check(arguments: &CheckArgs, common: &Common) -> Result<u8> {
     let folder = tempfile::tempdir().context("cannot make a folder for the bundled cases")?;
     let cases = problems(&arguments.own, folder.path())?;
-    let (mut verdicts, mut all) = (Vec::new(), Vec::new());
-    for file in files(&arguments.results)? {
-        let mut verdict = verdict(&file, &cases, &mut all);
-        if verdict.result.is_some()
-            && let Err(fault) = refuse_twice(&all)
-        {
-            verdict.faults.push(fault.to_string());
-            all.pop();
-        }
-        verdicts.push(verdict);
-    }
+    let mut seen = Seen::default();
+    let files = files(&arguments.results)?;
+    let verdicts: Vec<Verdict> =
+        files.iter().map(|file| verdict(file, &cases, &mut seen)).collect();
     let line = |verdict: &Verdict| {
         let result = verdict.result.as_ref()?;
         Some(format!("{}: {result}\n", verdict.file))
@@ -242,8 +235,8 @@ fn check(arguments: &CheckArgs, common: &Common) -> Result<u8> {
     })
 }
 
-/// Judges a file; its results are added to `all` where they are believed.
-fn verdict(file: &Path, cases: &[ContestCase], all: &mut Vec<Results>) -> Verdict {
+/// Judges a file, beside those that were judged before.
+fn verdict(file: &Path, cases: &[ContestCase], seen: &mut Seen) -> Verdict {
     let mut verdict = Verdict {
         file: printable(&file.display().to_string()),
         result: None,
@@ -265,7 +258,7 @@ fn verdict(file: &Path, cases: &[ContestCase], all: &mut Vec<Results>) -> Verdic
     }
     verdict.doubts = doubts(case, &runs).iter().map(ToString::to_string).collect();
     verdict.result = Some(judgement(&results, case, &runs));
-    all.push(results);
+    verdict.faults.extend(seen.add(&results).err().map(|fault| fault.to_string()));
     verdict
 }
 

@@ -99,11 +99,8 @@ fn write_job(case: &str, out: &Path, spacing: Spacing, common: &Common) -> Resul
         let file = out.join("bundled/cases").join(format!("{case}.toml"));
         source = Source::find(&file.display().to_string(), folder.path(), &[])?;
     }
-    let own = source.case.problem.recipe.spacing();
-    let spacing_m = match (spacing, own) {
-        (Spacing::Metres(metres), _) => metres,
-        (Spacing::Factor(factor), Some(own)) => factor * own,
-        (Spacing::Factor(_), None) => bail!("{case} has no spacing; give --spacing in metres"),
+    let Some(spacing_m) = spacing.metres(source.case.problem.recipe.spacing()) else {
+        bail!("{case} has no spacing; give --spacing in metres");
     };
     std::fs::create_dir_all(&out)?;
     let (case, case_file) = absolute(&source, &out)?;

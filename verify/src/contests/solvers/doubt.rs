@@ -48,13 +48,7 @@ pub fn wrong_units(answered: &Answered, reference: &[ReferenceValues]) -> Option
     let families = [Family::Displacement, Family::Force, Family::Moment, Family::StrainEnergy];
     let names = ["the displacement", "the reaction", "the moment", "the strain energy"];
     families.into_iter().zip(names).find_map(|(family, name)| {
-        let (mut computed, mut known) = (Vec::new(), Vec::new());
-        for (values, reference) in answered.values.iter().zip(reference) {
-            if let Some(values) = values.as_ref().filter(|_| reference.quantity.family == family) {
-                computed.extend_from_slice(values);
-                known.extend_from_slice(&reference.values);
-            }
-        }
+        let (computed, known) = both(answered, reference, |of| of == family);
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let size = product(&known, &known);
         let factor = product(&computed, &known) / size;
@@ -78,13 +72,11 @@ pub fn about_series(
     let [(coarse, first), .., (fine, last)] = answered[..] else { return Vec::new() };
     let mut doubts = Vec::new();
     let same = |pair: &[(usize, &Answered)]| {
-        let both = places(pair[0].1, reference).zip(places(pair[1].1, reference));
-        let (mut apart, mut size) = (0.0f64, 0.0f64);
-        for (one, other) in both {
-            apart = apart.max((one - other).abs());
-            size = size.max(one.abs());
-        }
-        apart <= SAME * size
+        let [one, other] = [pair[0].1, pair[1].1].map(|answered| telling(answered, reference));
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
+        let apart = largest(&mut one.iter().zip(&other).map(|(a, b)| a - b));
+        apart <= SAME * largest(&mut one.iter().copied())
     };
     if differs && answered.windows(2).all(same) {
         doubts.push(Doubt::SameAnswers);
@@ -96,20 +88,32 @@ pub fn about_series(
     doubts
 }
 
-/// The displacements of an answer.
-fn places<'a>(
-    answered: &'a Answered,
-    reference: &'a [ReferenceValues],
-) -> impl Iterator<Item = f64> + 'a {
-    let all = answered.values.iter().zip(reference);
-    let moved = all.filter(|(_, known)| known.quantity.family == Family::Displacement);
-    moved.filter_map(|(values, _)| values.as_ref()).flatten().copied()
+/// Values of an answer in some families, and those of the reference.
+fn both(
+    answered: &Answered,
+    reference: &[ReferenceValues],
+    wanted: impl Fn(Family) -> bool,
+) -> (Vec<f64>, Vec<f64>) {
+    let (mut computed, mut known) = (Vec::new(), Vec::new());
+    for (values, reference) in answered.values.iter().zip(reference) {
+        if let Some(values) = values.as_ref().filter(|_| wanted(reference.quantity.family)) {
+            computed.extend_from_slice(values);
+            known.extend_from_slice(&reference.values);
+        }
+    }
+    (computed, known)
 }
 
-/// Whether a run answers that nothing moves.
+/// The displacements of an answer; all its values where the case has no probes.
+fn telling(answered: &Answered, reference: &[ReferenceValues]) -> Vec<f64> {
+    let (moved, _) = both(answered, reference, |family| family == Family::Displacement);
+    if moved.is_empty() { both(answered, reference, |_| true).0 } else { moved }
+}
+
+/// Whether a run answers that nothing moves; of a case without probes, that nothing happens.
 pub fn is_nothing(run: &SolverRun, reference: &[ReferenceValues]) -> bool {
     let Some(answered) = run.outcome.answered() else { return false };
-    places(answered, reference).all(|part| part == 0.0)
+    telling(answered, reference).iter().all(|part| *part == 0.0)
 }
 
 /// Whether a run took more processor time than one thread can.
@@ -135,6 +139,7 @@ pub fn false_claim(run: &SolverRun) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contests::solvers::outcome::Outcome;
     use crate::protocol::SolverName;
     use crate::reference::Quantity;
 
@@ -166,6 +171,25 @@ mod tests {
         assert!(matches!(doubt, Doubt::Units { power: 3, .. }), "{doubt:?}");
         let doubt = wrong_units(&answered(&[1e-5, -2e-6, 0.0]), &reference()).unwrap();
         assert!(matches!(doubt, Doubt::Units { power: -3, .. }), "{doubt:?}");
+    }
+
+    #[test]
+    fn answers_of_a_case_without_probes_are_judged_by_what_they_have() {
+        let run = |level: usize, force: f64| SolverRun {
+            level,
+            spacing_m: 0.1,
+            outcome: Outcome::Answered(Answered {
+                unknowns: level as u64 + 1,
+                ..answered(&[force, 0.0, 0.0])
+            }),
+            usage: None,
+        };
+        let mut reference = reference();
+        reference[0].quantity.family = Family::Force;
+        assert_eq!(about_series(&[run(0, 1.0), run(1, 1.1)], &reference, true), []);
+        assert!(!is_nothing(&run(0, 1.0), &reference) && is_nothing(&run(0, 0.0), &reference));
+        let same = about_series(&[run(0, 1.0), run(1, 1.0)], &reference, true);
+        assert_eq!(same, [Doubt::SameAnswers]);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 use crate::bundled::bundled_reference;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::sync::LazyLock;
 
 /// A problem of the benchmark. Where its inputs or its references change it becomes the next
 /// version, so that results of one version are always about the same thing.
@@ -29,17 +30,20 @@ struct Manifest {
 }
 
 /// The problems of the benchmark, in the order of their names.
-pub fn benchmark() -> Vec<Identity> {
-    // A test reads it.
-    toml_edit::de::from_str::<Manifest>(mtled_reference::BENCHMARK)
-        .map(|manifest| manifest.problem)
-        .unwrap_or_default()
+pub fn benchmark() -> &'static [Identity] {
+    static PROBLEMS: LazyLock<Vec<Identity>> = LazyLock::new(|| {
+        // A test reads it.
+        toml_edit::de::from_str::<Manifest>(mtled_reference::BENCHMARK)
+            .map(|manifest| manifest.problem)
+            .unwrap_or_default()
+    });
+    &PROBLEMS
 }
 
 impl Identity {
     /// The problem with these inputs.
-    pub fn of_inputs(inputs: &str) -> Option<Identity> {
-        benchmark().into_iter().find(|identity| identity.inputs == inputs)
+    pub fn of_inputs(inputs: &str) -> Option<&'static Identity> {
+        benchmark().iter().find(|identity| identity.inputs == inputs)
     }
 }
 
@@ -77,7 +81,7 @@ mod tests {
                 Identity { id, case: name.to_string(), group, inputs, references }
             })
             .collect();
-        for (found, known) in found.iter().zip(&known) {
+        for (found, known) in found.iter().zip(known) {
             assert_eq!(found, known, "a problem that has changed becomes its next version");
         }
         assert_eq!(found.len(), known.len());

@@ -3,7 +3,7 @@
 use super::doubt::{Doubt, about_series, about_threads, is_nothing, wrong_units};
 use super::outcome::{Outcome, SolverRun};
 use super::problem::ContestCase;
-use super::results::{Machine, OWN, Results, ResultsFault, refuse_twice};
+use super::results::{Machine, OWN, Results, ResultsFault, Seen};
 use crate::accuracy::Difference;
 
 /// Results of solvers on problems.
@@ -35,8 +35,11 @@ pub struct CaseRuns<'a> {
     pub of: &'a ContestCase,
     /// \[program\]\[resolution\]; none of a program without results.
     pub runs: Vec<Vec<SolverRun>>,
-    /// Of each program, whether its runs are those of another machine, whose times do not compare.
-    pub elsewhere: Vec<bool>,
+    /// \[program\]: what makes its answers doubtful, each once.
+    pub doubts: Vec<Vec<Doubt>>,
+    /// \[program\]: CPU time \[s\] and error \[–\] of its runs, from coarse to fine; none where
+    /// its answers are doubtful, or times are those of another machine.
+    pub costs: Vec<Vec<(f64, f64)>>,
 }
 
 /// The problem that results are of.
@@ -69,7 +72,8 @@ pub fn judge(results: &Results, case: &ContestCase) -> Vec<SolverRun> {
 impl<'a> Judged<'a> {
     /// Judges results, each of one of the cases.
     pub fn new(all: &[Results], cases: &'a [ContestCase]) -> Result<Judged<'a>, ResultsFault> {
-        refuse_twice(all)?;
+        let mut seen = Seen::default();
+        all.iter().try_for_each(|results| seen.add(results))?;
         let machine = commonest(all);
         let mut names: Vec<&str> = all.iter().map(|results| results.solver.as_str()).collect();
         names.sort_unstable_by_key(|name| (*name != OWN, *name));
@@ -85,13 +89,12 @@ impl<'a> Judged<'a> {
         for results in all {
             let of = problem_of(results, cases)?;
             let known = judged.iter().position(|case| case.of.id == of.id).unwrap_or_else(|| {
-                let (runs, elsewhere) = (vec![Vec::new(); names.len()], vec![false; names.len()]);
-                judged.push(CaseRuns { of, runs, elsewhere });
+                judged.push(CaseRuns::new(of, names.len()));
                 judged.len() - 1
             });
-            let place = names.iter().position(|name| *name == results.solver).unwrap_or_default();
-            judged[known].runs[place] = judge(results, of);
-            judged[known].elsewhere[place] = Some(place_of(results)) != machine;
+            let solver = names.iter().position(|name| *name == results.solver).unwrap_or_default();
+            let comparable = Some(place_of(results)) == machine;
+            judged[known].add(solver, judge(results, of), comparable);
         }
         judged.sort_by(|a, b| a.of.id.cmp(&b.of.id));
         let mut time_limits_s: Vec<f64> = all.iter().map(|results| results.time_limit_s).collect();
@@ -128,25 +131,25 @@ fn each_once<T: Ord>(values: impl Iterator<Item = T>) -> Vec<T> {
     all
 }
 
-impl CaseRuns<'_> {
+impl<'a> CaseRuns<'a> {
+    fn new(of: &'a ContestCase, solvers: usize) -> CaseRuns<'a> {
+        let (runs, doubts) = (vec![Vec::new(); solvers], vec![Vec::new(); solvers]);
+        CaseRuns { of, runs, doubts, costs: vec![Vec::new(); solvers] }
+    }
+
+    /// Adds the runs of a program, and whether their times compare.
+    fn add(&mut self, solver: usize, runs: Vec<SolverRun>, comparable: bool) {
+        self.doubts[solver] = doubts(self.of, &runs);
+        if comparable && self.doubts[solver].is_empty() {
+            let cost = |run: &SolverRun| Some((run.cpu_s()?, self.error(run)?.rms));
+            self.costs[solver] = runs.iter().filter_map(cost).collect();
+        }
+        self.runs[solver] = runs;
+    }
+
     /// The error of a run in the group that is compared first.
     pub fn error(&self, run: &SolverRun) -> Option<Difference> {
         self.of.error(self.of.group, run.outcome.answered()?)
-    }
-
-    /// What makes the answers of a program doubtful, each once.
-    pub fn doubts(&self, solver: usize) -> Vec<Doubt> {
-        doubts(self.of, &self.runs[solver])
-    }
-
-    /// CPU time \[s\] and error \[–\] of the runs of a program, from coarse to fine; none where
-    /// its answers are doubtful, or times are those of another machine.
-    pub fn costs(&self, solver: usize) -> Vec<(f64, f64)> {
-        if self.elsewhere[solver] || !self.doubts(solver).is_empty() {
-            return Vec::new();
-        }
-        let runs = self.runs[solver].iter();
-        runs.filter_map(|run| Some((run.cpu_s()?, self.error(run)?.rms))).collect()
     }
 }
 

@@ -27,5 +27,5 @@ pub use pages::{History, write_pages};
 pub use problem::{ContestCase, NotASpacing, Spacing};
 pub use report::study;
 pub use results::{
-    LONGEST_RUN_S, Machine, Results, ResultsFault, StoredEnd, StoredRun, refuse_twice, result_files,
+    LONGEST_RUN_S, Machine, Results, ResultsFault, Seen, StoredEnd, StoredRun, result_files,
 };

@@ -50,6 +50,16 @@ impl FromStr for Spacing {
     }
 }
 
+impl Spacing {
+    /// In metres, where that of the case is known if it is needed.
+    pub fn metres(self, own: Option<f64>) -> Option<f64> {
+        match self {
+            Spacing::Metres(metres) => Some(metres),
+            Spacing::Factor(factor) => Some(factor * own?),
+        }
+    }
+}
+
 impl ContestCase {
     /// A case with the reference solution that belongs to its problem: one of `files` (name,
     /// text), or the bundled one.
@@ -70,20 +80,17 @@ impl ContestCase {
         let group = group.with_context(|| format!("{} has nothing to compare", case.name))?;
         // A file of the user's own may differ from the bundled reference.
         let identity = Identity::of_inputs(&case.problem_hash).filter(|_| own.is_none());
-        let id = identity.map_or_else(|| source.name.clone(), |identity| identity.id);
+        let id = identity.map_or(&source.name, |identity| &identity.id).clone();
         Ok(ContestCase { id, source, reference, group })
     }
 
     /// Distances of nodes \[m\], which must go from coarse to fine.
     pub fn ladder(&self, spacings: &[Spacing]) -> Result<Vec<f64>> {
         let own = self.source.case.problem.recipe.spacing();
-        let file = self.source.file.display();
-        let metres = spacings.iter().map(|spacing| match (spacing, own) {
-            (Spacing::Metres(metres), _) => Ok(*metres),
-            (Spacing::Factor(factor), Some(own)) => Ok(factor * own),
-            (Spacing::Factor(_), None) => bail!("{file} has no spacing; give spacings in metres"),
-        });
-        let metres: Vec<f64> = metres.collect::<Result<_>>()?;
+        let metres = spacings.iter().map(|spacing| spacing.metres(own));
+        let Some(metres) = metres.collect::<Option<Vec<f64>>>() else {
+            bail!("{} has no spacing; give spacings in metres", self.source.file.display());
+        };
         if metres.windows(2).all(|pair| pair[0] > pair[1]) {
             Ok(metres)
         } else {

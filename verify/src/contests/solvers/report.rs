@@ -88,7 +88,7 @@ pub fn plot(names: &[String], case: &CaseRuns, bar_style: SeriesStyle) -> Plot {
     let mut series: Vec<Series> = Vec::new();
     let mut range = (f64::INFINITY, 0.0f64);
     for (n, name) in names.iter().enumerate() {
-        let points = case.costs(n);
+        let points = case.costs[n].clone();
         range = points.iter().fold(range, |(low, high), p| (low.min(p.0), high.max(p.0)));
         let colour = Some(n);
         series.push(Series { colour, ..curve(name, points) });

@@ -6,6 +6,7 @@ use super::process::Usage;
 use mtled_checks::input::read_text;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Version of the layout.
@@ -254,17 +255,20 @@ pub fn is_date(text: &str) -> bool {
         && number(day, 2).is_some_and(|day| (1..=31).contains(&day))
 }
 
-/// Says where two files are results of one solver on one problem.
-pub fn refuse_twice(all: &[Results]) -> Result<(), ResultsFault> {
-    let mut seen = std::collections::BTreeSet::new();
-    for results in all {
+/// Of which solvers on which problems there are results.
+#[derive(Debug, Default)]
+pub struct Seen(BTreeSet<(String, String)>);
+
+impl Seen {
+    /// Refuses results of a solver on a problem that there are results of.
+    pub fn add(&mut self, results: &Results) -> Result<(), ResultsFault> {
+        let (solver, problem) = (results.solver.clone(), results.problem.clone());
         // Folders may not tell capitals from small letters.
-        if !seen.insert((results.solver.to_lowercase(), &results.problem)) {
-            let (solver, problem) = (results.solver.clone(), results.problem.clone());
-            return Err(ResultsFault::Twice { solver, problem });
+        match self.0.insert((solver.to_lowercase(), problem.clone())) {
+            true => Ok(()),
+            false => Err(ResultsFault::Twice { solver, problem }),
         }
     }
-    Ok(())
 }
 
 /// The files `*.json` in a folder and those below, in the order of their names; a file itself.

@@ -121,7 +121,7 @@ pub fn orders_of(name: &str, cases: &[CaseRuns], solver: usize) -> Table {
             Some(_) => "none: scatter".into(),
             None => "inconclusive: fewer than three errors above the error bar".into(),
         };
-        let doubts = case.doubts(solver).iter().map(ToString::to_string).collect::<Vec<_>>();
+        let doubts = case.doubts[solver].iter().map(ToString::to_string).collect::<Vec<_>>();
         Some(vec![
             label(&case.of.id),
             label(case.of.group.label()),

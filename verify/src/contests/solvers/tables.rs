@@ -40,7 +40,7 @@ pub fn endings(cases: &[CaseRuns], solver: usize) -> Endings {
                 Outcome::Faulty(_) => endings.faulty += 1,
             }
         }
-        endings.doubtful += usize::from(!case.doubts(solver).is_empty());
+        endings.doubtful += usize::from(!case.doubts[solver].is_empty());
     }
     endings
 }
@@ -118,9 +118,8 @@ struct ErrorCosts<'a> {
 /// The errors above the error bar of the reference that a program reaches between two runs.
 fn error_costs<'a>(case: &'a CaseRuns<'a>) -> Vec<ErrorCosts<'a>> {
     let bar = case.of.bar();
-    let series: Vec<Vec<(f64, f64)>> = (0..case.runs.len())
-        .map(|n| case.costs(n).iter().map(|&(cpu, error)| (error, cpu)).collect())
-        .collect();
+    let swapped = |runs: &Vec<(f64, f64)>| runs.iter().map(|&(cpu, error)| (error, cpu)).collect();
+    let series: Vec<Vec<(f64, f64)>> = case.costs.iter().map(swapped).collect();
     let at = |error: f64| {
         let costs: Vec<Option<Cost>> = series.iter().map(|runs| cost_at(runs, error)).collect();
         let interpolated = costs.iter().flatten().any(|cost| !cost.at_most);
@@ -134,7 +133,7 @@ fn costs_of(case: &CaseRuns) -> Vec<Vec<Cell>> {
         let mut cells =
             vec![label(&case.of.id), label(case.of.group.label()), label(percent(at.error))];
         let each = at.costs.iter().enumerate();
-        cells.extend(each.map(|(n, cost)| cost_cell(!case.costs(n).is_empty(), *cost)));
+        cells.extend(each.map(|(n, cost)| cost_cell(!case.costs[n].is_empty(), *cost)));
         cells
     };
     error_costs(case).iter().map(row).collect()
@@ -163,7 +162,7 @@ pub fn finest(all: &Judged) -> Table {
             let run = runs.iter().rfind(|run| run.outcome.answered().is_some());
             match (run, runs.last()) {
                 (None, Some(last)) => cells.extend([label(short(&last.outcome)), label("–")]),
-                (Some(_), _) if !case.doubts(n).is_empty() => {
+                (Some(_), _) if !case.doubts[n].is_empty() => {
                     cells.extend([label("doubtful"), label("–")]);
                 }
                 (run, _) => {
@@ -199,11 +198,12 @@ pub fn budgets(all: &Judged) -> Vec<Table> {
 
 fn best_errors(all: &Judged, budget_s: f64) -> Table {
     let row = |case: &CaseRuns| {
-        let within = |n: usize| {
-            let affordable = case.costs(n).into_iter().filter(|(cpu, _)| *cpu <= budget_s);
-            affordable.map(|(_, error)| error.max(case.of.bar())).reduce(f64::min)
+        let bar = case.of.bar();
+        let within = |runs: &Vec<(f64, f64)>| {
+            let affordable = runs.iter().filter(|(cpu, _)| *cpu <= budget_s);
+            affordable.map(|(_, error)| error.max(bar)).reduce(f64::min)
         };
-        let errors: Vec<Option<f64>> = (0..case.runs.len()).map(within).collect();
+        let errors: Vec<Option<f64>> = case.costs.iter().map(within).collect();
         let best = errors.iter().flatten().copied().reduce(f64::min)?;
         let cell = |error: &Option<f64>| match error {
             None => label("–"),
@@ -235,7 +235,7 @@ pub fn losses(all: &Judged) -> Option<Table> {
         Some(vec![
             label(&at.case.of.id),
             label(percent(at.error)),
-            cost_cell(!at.case.costs(own).is_empty(), at.costs[own]),
+            cost_cell(!at.case.costs[own].is_empty(), at.costs[own]),
             label(printable(&all.solvers[n].name)),
             cost_cell(true, at.costs[n]),
             optional(value(own).map(|own| own / cost)),

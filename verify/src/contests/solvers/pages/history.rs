@@ -1,6 +1,7 @@
 //! How errors and work of mtled itself have changed from commit to commit.
 
 use super::super::results::is_date;
+use super::super::run_tables::label;
 use crate::lab::label::optional;
 use anyhow::{Context, Result, bail};
 use mtled_checks::input::read_text;
@@ -68,7 +69,7 @@ impl History {
             ..Part::default()
         };
         let row = |(n, (date, commit)): (usize, &(String, String))| {
-            vec![Cell::Number((n + 1) as f64), cell(date), cell(commit)]
+            vec![Cell::Number((n + 1) as f64), label(date), label(commit)]
         };
         let commits = Table {
             title: "Commits that changed the accepted figures".into(),
@@ -97,7 +98,7 @@ impl History {
         let row = |(name, values): &Named| {
             let (first, last) = (values.first().map(|v| v.1), values.last().map(|v| v.1));
             let ratio = first.zip(last).map(|(first, last)| last / first);
-            vec![cell(name), optional(first), optional(last), optional(ratio)]
+            vec![label(name.as_str()), optional(first), optional(last), optional(ratio)]
         };
         let columns: Vec<Column> =
             vec![text("figure"), number("first", "1"), number("last", "1"), number("ratio", "1")];
@@ -110,10 +111,6 @@ impl History {
 }
 
 type Named<'a> = (&'a String, &'a Vec<(usize, f64)>);
-
-fn cell(text: &str) -> Cell {
-    Cell::Text(text.into())
-}
 
 fn plot(title: &str, quantity: &str, figures: &[Named]) -> Figure {
     let series = |(n, (name, values)): (usize, &Named)| {

@@ -5,7 +5,7 @@ mod history;
 
 pub use history::History;
 
-use super::identity::{Identity, benchmark};
+use super::identity::Identity;
 use super::judged::{CaseRuns, Judged};
 use super::outcome::Outcome;
 use super::report::{about_solver, notes, overview, plot};
@@ -15,7 +15,7 @@ use anyhow::Result;
 use mtled_checks::escape::{file_name, printable};
 use mtled_checks::report::html::{Link, Page, Part, page_to_html};
 use mtled_checks::report::write_atomically;
-use mtled_checks::study::{Figure, Panels, Plot, SeriesStyle};
+use mtled_checks::study::{Figure, Panels, Plot, SeriesStyle, Table};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -63,10 +63,9 @@ fn problem_file(id: &str) -> String {
     format!("problem-{}.html", file_name(id))
 }
 
-fn group_of(case: &CaseRuns) -> String {
+fn group_of(case: &CaseRuns) -> &'static str {
     let inputs = &case.of.source.case.problem_hash;
-    let known = benchmark().into_iter().find(|identity| identity.inputs == *inputs);
-    known.map_or_else(|| "of your own".into(), |identity: Identity| identity.group)
+    Identity::of_inputs(inputs).map_or("of your own", |identity| &identity.group)
 }
 
 fn front(all: &Judged) -> Page {
@@ -90,11 +89,12 @@ fn front(all: &Judged) -> Page {
         ..Part::default()
     };
     let links = Part { title: "Solvers".into(), links: solver_links(all), ..Part::default() };
+    let losses = losses(all);
     let parts = vec![
-        endings_and_costs(all),
+        endings_and_costs(all, losses.as_ref()),
         overview,
         best,
-        equal_costs(all),
+        equal_costs(all, losses),
         links,
         problem_links(all),
         your_solver(),
@@ -103,9 +103,9 @@ fn front(all: &Judged) -> Page {
     Page { title, back: None, lead: vec![lead], parts, foot: notes(all) }
 }
 
-fn endings_and_costs(all: &Judged) -> Part {
+fn endings_and_costs(all: &Judged, losses: Option<&Table>) -> Part {
     let mut texts = Vec::new();
-    if let Some(lost) = losses(all).map(|table| table.rows.len()) {
+    if let Some(lost) = losses.map(|table| table.rows.len()) {
         texts.push(format!(
             "mtled itself loses at {lost} of these levels; each is in the table \"Where mtled loses\" below."
         ));
@@ -123,10 +123,10 @@ fn endings_and_costs(all: &Judged) -> Part {
     Part { title: "Who answers, and what it costs".into(), texts, tables, ..Part::default() }
 }
 
-fn equal_costs(all: &Judged) -> Part {
+fn equal_costs(all: &Judged, losses: Option<Table>) -> Part {
     Part {
         title: "CPU time at equal error".into(),
-        tables: losses(all).into_iter().chain([equal_errors(all)]).collect(),
+        tables: losses.into_iter().chain([equal_errors(all)]).collect(),
         folded: true,
         ..Part::default()
     }
@@ -160,7 +160,7 @@ fn solver_links(all: &Judged) -> Vec<Link> {
 }
 
 fn problem_links(all: &Judged) -> Part {
-    let mut groups: BTreeMap<String, Vec<&CaseRuns>> = BTreeMap::new();
+    let mut groups: BTreeMap<&str, Vec<&CaseRuns>> = BTreeMap::new();
     for case in &all.cases {
         groups.entry(group_of(case)).or_default().push(case);
     }
@@ -181,7 +181,7 @@ fn back() -> Option<Link> {
 fn solver_page(all: &Judged, n: usize) -> Page {
     let name = printable(&all.solvers[n].name);
     let counts = endings(&all.cases, n);
-    let panels = all.cases.iter().filter(|case| !case.costs(n).is_empty()).map(|case| {
+    let panels = all.cases.iter().filter(|case| !case.costs[n].is_empty()).map(|case| {
         let plot = plot(&names(all), case, SeriesStyle::Floor);
         let floor = all.solvers.len();
         let own = plot.series.into_iter().filter(|s| [Some(n), Some(floor)].contains(&s.colour));
