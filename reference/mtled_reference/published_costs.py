@@ -132,13 +132,7 @@ def _under_loads(body: Body, path: Path, counts: tuple[int, ...], steps: int) ->
     model = Model(case, Recipe(cell, 2, points, cells, size, "mapped block", kinematics))
     solve_static(model, Conditions(model), Newton(model, RESIDUAL), steps, lambda *_: None)
 
-    def displacement(point) -> np.ndarray:
-        distances = np.linalg.norm(model.positions - point, axis=1)
-        if distances.min() > 1e-6:
-            raise ValueError(f"no node lies at {point}")
-        return np.append(model.u()[int(np.argmin(distances))], 0.0)
-
-    return displacement
+    return lambda point: np.append(model.displacement(point, 1e-6), 0.0)
 
 
 def _under_pressure(body: Body, path: Path, counts: tuple[int, ...], steps: int) -> Callable:

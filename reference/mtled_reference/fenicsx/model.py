@@ -153,6 +153,14 @@ class Model:
         """The nodal values of u (nodes, components)."""
         return self.unknown.x.array[self.fields]
 
+    def displacement(self, place, within: float = 1e-9) -> np.ndarray:
+        """u (components,) of the node at a reference position, up to a distance [m]."""
+        count = self.positions.shape[1]
+        distances = np.linalg.norm(self.positions - np.asarray(place)[:count], axis=1)
+        if distances.min() > within:
+            raise ValueError(f"no node lies at {place}")
+        return self.u()[int(np.argmin(distances))]
+
     def strain_energy(self) -> float:
         """∫ ψ dV of the meshed part [J]."""
         return float(fem.assemble_scalar(self.energy_form))

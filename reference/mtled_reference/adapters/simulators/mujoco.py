@@ -8,9 +8,8 @@ prescribed has no joint and is moved with the frame of its body; loads are force
 The material is MuJoCo's, with the E and ν of the job at small strain: for a law of St. Venant and
 Kirchhoff its own, and for every other law the only other one that it has, `elastic3d = 1`, the
 simplified stable neo-Hookean energy (Smith, De Goes and Kim, ACM Trans. Graph. 37, 12, 2018).
-The integrator is `discrete`, the only one that is implicit in positions. A body at rest is found by
-motion that is stopped whenever the kinetic energy has passed a peak (Barnes, Int. J. Space Struct.
-14, 89, 1999). Reactions are not told. Refused is damping, which flexes have in another form only.
+The integrator is `discrete`, the only one that is implicit in positions. A body at rest is found as
+in `rest.py`. Reactions are not told. Refused is damping, which flexes have in another form only.
 """
 
 import mujoco
@@ -19,6 +18,7 @@ import numpy as np
 from ..cases import read_without_contact
 from ..files import Refused, answer
 from ..nodal import Nodal
+from .rest import at_rest
 
 STEPS_PER_WAVE = (32, 128, 512)
 """Steps in the time of a shear wave through the body, tried in turn where MuJoCo's linear solver
@@ -110,17 +110,16 @@ def _at_rest(nodal: Nodal, job: dict) -> list:
 
 
 def _relaxed(flexes: Flexes, steps: int) -> np.ndarray:
-    end, masses, energy = flexes.nodal.case.time.load_end, flexes.nodal.masses()[:, None], 0.0
-    for step in range(1, WAVES * steps):
-        before = flexes.u.copy()
-        flexes.step(end, min(1.0, 0.5 * step / steps))
-        change, last = flexes.u - before, energy
-        energy = (masses * change**2).sum()
-        if step > 2 * steps and energy < last:
-            flexes.data.qvel[:], energy = 0.0, 0.0
-        if step > 2 * steps and np.abs(change).max() <= AT_REST * np.abs(flexes.u).max():
-            return flexes.u
-    raise Refused(f"no rest after {step} steps", "not_converged")
+    end = flexes.nodal.case.time.load_end
+
+    def advance(scale: float) -> np.ndarray:
+        flexes.step(end, scale)
+        return flexes.u
+
+    def stop() -> None:
+        flexes.data.qvel[:] = 0.0
+
+    return at_rest(advance, stop, flexes.nodal.masses(), 2 * steps, WAVES * steps, AT_REST)
 
 
 def _in_motion(nodal: Nodal, job: dict) -> list:

@@ -8,8 +8,7 @@ that prescribes some of the components cannot be stated. Loads are forces on par
 
 The material is Newton's only one for solids, the stable neo-Hookean energy (Smith, De Goes and
 Kim, ACM Trans. Graph. 37, 12, 2018) with the Lamé moduli of the job at small strain. A body at rest
-is found by motion that is stopped whenever the kinetic energy has passed a peak (Barnes, Int. J.
-Space Struct. 14, 89, 1999). The first run of all compiles kernels for ten seconds.
+is found as in `rest.py`. The first run of all compiles kernels for ten seconds.
 """
 
 import newton
@@ -19,6 +18,7 @@ import warp as wp
 from ..cases import read_without_contact
 from ..files import Refused, answer
 from ..nodal import Nodal
+from .rest import at_rest
 
 STEPS_PER_WAVE = 32
 """Steps in the time of a shear wave through the body."""
@@ -81,27 +81,25 @@ def _rest(model: Nodal, job: dict, held: np.ndarray) -> np.ndarray:
         model=body, iterations=ITERATIONS, particle_enable_self_contact=False
     )
     before, after, control = body.state(), body.state(), body.control()
-    loads, masses = model.loads(end), model.masses()[:, None]
-    u, energy = np.zeros_like(model.points), 0.0
-    for step in range(1, STEPS + 1):
-        scale = min(1.0, step / RAMP)
+    loads, u = model.loads(end), np.zeros_like(model.points)
+
+    def advance(scale: float) -> np.ndarray:
+        nonlocal before, after, u
         start = u.copy()
         start[held] = model.prescribed(end, scale)[held]
         before.particle_q.assign((model.points + start).astype(np.float32))
         before.particle_f.assign((scale * loads).astype(np.float32))
         solver.step(before, after, control, None, wave / STEPS_PER_WAVE)
         before, after = after, before
-        new = before.particle_q.numpy() - model.points
-        if not np.isfinite(new).all():
+        u = before.particle_q.numpy() - model.points
+        if not np.isfinite(u).all():
             raise Refused("positions that are not finite", "not_converged")
-        change, last, u = new - u, energy, new
-        energy = (masses * change**2).sum()
-        if step > RAMP and energy < last:
-            before.particle_qd.zero_()
-            energy = 0.0
-        if step > RAMP and np.abs(change).max() <= AT_REST * np.abs(u).max():
-            return u
-    raise Refused(f"no rest after {STEPS} steps", "not_converged")
+        return u
+
+    def stop() -> None:
+        before.particle_qd.zero_()
+
+    return at_rest(advance, stop, model.masses(), RAMP, STEPS, AT_REST)
 
 
 if __name__ == "__main__":
