@@ -126,6 +126,22 @@ fn pages_of_stored_results_are_those_of_the_run() {
 }
 
 #[test]
+fn pages_do_not_hang_on_the_order_of_the_files() {
+    let arena = Arena::new();
+    let solvers = ["one", "two"].map(|name| arena.fake(name, "reply"));
+    assert_eq!(arena.study(&solvers, &[]).code, 0);
+    let pages = |files: [&str; 2], out: &str| {
+        let own = ["--case", "block.toml", "--reference", "reference.json", "--out", out];
+        let arguments = [&["contest", "pages", "--quiet"][..], &files, &own].concat();
+        assert_eq!(mtled(arena.dir.path(), &arguments).0, 0);
+        let read = |page: &str| std::fs::read_to_string(arena.path(out).join(page)).unwrap();
+        ["index.html", "tables.md"].map(read)
+    };
+    let files = ["out/results/one/block.json", "out/results/two/block.json"];
+    assert_eq!(pages(files, "forth"), pages([files[1], files[0]], "back"));
+}
+
+#[test]
 fn every_problem_of_the_benchmark_is_listed_with_its_fingerprints() {
     let (code, out, _) = mtled(Arena::new().dir.path(), &["contest", "list"]);
     assert!(code == 0 && out.contains("cube_shear-v1") && out.contains("references "), "{out}");
