@@ -6,6 +6,7 @@ use super::{Kind, Row, Run};
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::neighbours::Neighbours;
 use crate::error::Error;
+use crate::problem::MaterialBorders;
 
 /// A node lies on an edge that is nearer than this \[spacing\]: the corners of the largest cells
 /// at edges are 0.11 from their middle.
@@ -29,6 +30,12 @@ const OPPOSITE: f64 = -0.7;
 /// layers of a tenth of the stiffness in series, 3 spacings give 1.12 times the force, 2 give
 /// 1.27 times, and 1 gives 1.57 times.
 const ACROSS: f64 = 2.5;
+/// The same where borders between materials are sharp: thinner layers may escape what looks for them.
+const ACROSS_SHARP: f64 = 0.24;
+/// The same of nearly incompressible layers, which lock without nodes inside.
+const ACROSS_FULL: f64 = 0.95;
+/// Poisson's ratio from which that is so \[–\].
+const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 /// Ratio of moduli from which that matters \[–\]: at 0.3 it is 4 % with 2 spacings.
 const CONTRAST: f64 = 4.0;
 
@@ -124,10 +131,20 @@ impl Run<'_> {
         };
         let row = |region: usize| {
             let across = 2.0 * self.largest_depth(region)? / self.spacing;
-            let (asked, limit) = (ACROSS.max(across), 1e-6);
+            let (asked, limit) = (self.spacings_across(region).max(across), 1e-6);
             Some(Row::numbers(Kind::Layer, &regions[region].name, asked, across, limit))
         };
         (0..regions.len()).filter(|&region| differs(region)).filter_map(row).collect()
+    }
+
+    /// Those that a layer of a region needs \[–\].
+    fn spacings_across(&self, region: usize) -> f64 {
+        let poisson = self.problem.regions[region].material.law.constants().poisson_ratio();
+        match self.problem.recipe.material_borders {
+            MaterialBorders::Straddled => ACROSS,
+            MaterialBorders::Sharp if poisson < NEARLY_INCOMPRESSIBLE => ACROSS_SHARP,
+            MaterialBorders::Sharp => ACROSS_FULL,
+        }
     }
 
     /// Radius \[m\] of the largest ball in a region; `None` where no distances say that.

@@ -6,8 +6,8 @@ use crate::geometry::{Field, Selector};
 use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use crate::motion::observe::Observer;
 use crate::problem::{
-    Amplitude, BodyForce, EssentialCondition, Motion, Newton, Obstacle, Prescribed, Pressure,
-    Recipe, Region, Traction,
+    Amplitude, BodyForce, EssentialCondition, MaterialBorders, Motion, Newton, Obstacle,
+    Prescribed, Pressure, Recipe, Region, Traction,
 };
 use crate::simulation::Simulation;
 
@@ -179,8 +179,8 @@ fn mass_volume_and_centre_that_are_not_those_of_the_shape_are_doubted() {
 }
 
 #[test]
-fn a_soft_layer_of_one_spacing_is_doubted_and_one_of_four_is_not() {
-    let layer = |thickness: f64| {
+fn soft_layers_that_are_too_thin_for_their_borders_are_doubted_and_others_are_not() {
+    let problem = |thickness: f64| {
         let mut problem = block();
         let part = cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, thickness]);
         let part = Selector::Inside { shape: part, tolerance: 0.0 };
@@ -189,13 +189,22 @@ fn a_soft_layer_of_one_spacing_is_doubted_and_one_of_four_is_not() {
         problem.loads = Default::default();
         problem.loads.body_forces = block().loads.body_forces;
         problem.loads.body_forces[0].acceleration = Vector3::new(0.0, 0.0, -0.2).into();
-        run(&problem)
+        problem
     };
-    let (thin, thick) = (layer(0.01), layer(0.04));
+    let (thin, thick) = (run(&problem(0.01)), run(&problem(0.04)));
     assert!(doubts(&thin).contains(&Kind::Layer));
     assert!(!doubts(&thick).contains(&Kind::Layer), "{:?}", row(&thick, Kind::Layer));
     let Figure::Number(across) = row(&thin, Kind::Layer).done else { panic!() };
     assert!((across - 1.0).abs() < 0.01, "{across}");
+    let sharp = |poisson_ratio: f64, thickness: f64| {
+        let mut problem = problem(thickness);
+        problem.recipe.material_borders = MaterialBorders::Sharp;
+        let constants = ElasticConstants::from_young_poisson(300.0, poisson_ratio).unwrap();
+        problem.regions[0].material.law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
+        doubts(&run(&problem)).contains(&Kind::Layer)
+    };
+    assert!(!sharp(0.3, 0.005) && sharp(0.3, 0.0015));
+    assert!(!sharp(0.49, 0.01) && sharp(0.49, 0.005));
 }
 
 #[test]

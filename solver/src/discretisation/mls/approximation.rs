@@ -6,7 +6,8 @@ use crate::algebra::tensor::Vector3;
 use crate::discretisation::mls::held_sides::HeldSides;
 use crate::discretisation::mls::inverse::{inverse, norm_1};
 use crate::discretisation::mls::regularised::{linear_part, regularise, restore_linear};
-use crate::discretisation::mls::sides::{Sides, Stiffness};
+use crate::discretisation::mls::sides::Sides;
+use crate::discretisation::mls::stiffness::Stiffness;
 use crate::discretisation::mls::sums::{
     fill, moment_matrix, slope_moments, slope_right_sides, weigh,
 };
@@ -94,8 +95,8 @@ impl Approximation {
     /// The same where points do not see nodes that are softer than they are.
     /// Radii are `dilation` spacings.
     pub fn with_sides(self, stiffness: Stiffness, dilation: f64) -> Approximation {
-        let spacing: Vec<f64> = self.influence_radius.iter().map(|r| r / dilation).collect();
-        let sides = Some(Sides::new(stiffness, &self.nodes, &spacing));
+        let sides = Sides::new(stiffness, &self.nodes, &self.influence_radius, dilation);
+        let sides = Some(sides);
         Approximation { sides, ..self }
     }
 
@@ -200,35 +201,40 @@ impl Approximation {
     ) -> Result<(), PoorSupport> {
         if let Some(held) = self.held.as_ref().filter(|held| held.is_held(X)) {
             let seen = |node: u32| held.holds(node);
-            if self.evaluate_seeing(X, seen, false, scratch, support).is_ok() {
+            if self.evaluate_seeing(X, seen, |_| {}, scratch, support).is_ok() {
                 return Ok(());
             }
             // So little is held here that its border alone has nodes.
-            return self.evaluate_seeing(X, |_| true, false, scratch, support);
+            return self.evaluate_seeing(X, |_| true, |_| {}, scratch, support);
         }
+        let through_body = |nodes: &mut Vec<u32>| self.keep_seen(X, nodes);
         if let Some(sides) = &self.sides {
             let softest = sides.softest_seen(X);
             let seen = |node: u32| sides.is_seen(node, softest) && self.deforms(node);
-            if self.evaluate_seeing(X, seen, true, scratch, support).is_ok() {
+            let through_material = |nodes: &mut Vec<u32>| {
+                through_body(nodes);
+                sides.keep_seen(X, nodes);
+            };
+            if self.evaluate_seeing(X, seen, through_material, scratch, support).is_ok() {
                 return Ok(());
             }
         }
         let deforms = |node: u32| self.deforms(node);
-        let result = self.evaluate_seeing(X, deforms, true, scratch, support);
+        let result = self.evaluate_seeing(X, deforms, through_body, scratch, support);
         if result.is_ok() || self.visibility.is_none() {
             return result;
         }
-        let result = self.evaluate_seeing(X, deforms, false, scratch, support);
+        let result = self.evaluate_seeing(X, deforms, |_| {}, scratch, support);
         support.across_gap = result.is_ok();
         result
     }
 
-    /// From the nodes around X that are `seen` only, those behind gaps left out or not.
+    /// From those nodes around X that are `seen` and that `keep` keeps.
     fn evaluate_seeing(
         &self,
         X: &Vector3,
         seen: impl Fn(u32) -> bool,
-        by_sight: bool,
+        keep: impl Fn(&mut Vec<u32>),
         scratch: &mut Scratch,
         support: &mut Support,
     ) -> Result<(), PoorSupport> {
@@ -237,9 +243,7 @@ impl Approximation {
         loop {
             support.clear(enlargement);
             self.find(X, enlargement, &seen, &mut scratch.near);
-            if let (true, Some(visibility)) = (by_sight, &self.visibility) {
-                visibility.keep_seen(X, &mut scratch.near.nodes);
-            }
+            keep(&mut scratch.near.nodes);
             let result = with_vectors!(level, (simd, _numbers) => {
                 self.evaluate_near(simd, X, enlargement, &mut scratch.near, support)
             });

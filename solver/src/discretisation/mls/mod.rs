@@ -6,6 +6,7 @@ mod inverse;
 mod radii;
 mod regularised;
 mod sides;
+mod stiffness;
 mod sums;
 mod support;
 mod visibility;
@@ -13,8 +14,8 @@ mod visibility;
 pub use approximation::{Approximation, LARGEST_ENLARGEMENT};
 pub(crate) use held_sides::ON_BORDER;
 pub(crate) use inverse::inverse;
-pub(crate) use sides::Crossing;
-pub use sides::Stiffness;
+pub(crate) use stiffness::Crossing;
+pub use stiffness::Stiffness;
 pub(crate) use support::Scratch;
 pub use support::{PoorSupport, Support};
 

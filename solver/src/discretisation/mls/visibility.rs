@@ -172,7 +172,7 @@ impl Visibility {
 }
 
 /// Whether two ascending lists share a member.
-fn have_common(mut a: &[u32], mut b: &[u32]) -> bool {
+pub(super) fn have_common(mut a: &[u32], mut b: &[u32]) -> bool {
     while let (Some(x), Some(y)) = (a.first(), b.first()) {
         match x.cmp(y) {
             std::cmp::Ordering::Less => a = &a[1..],

@@ -1,56 +1,123 @@
 //! Nodes on the borders between materials (method book, section 5).
 #![allow(non_snake_case)]
 
+use crate::algebra::tensor::Vector3;
 use crate::discretisation::mls::{Crossing, Stiffness};
 use crate::discretisation::nodes::cloud::NodeCloud;
-use crate::geometry::{PointHash, Shape};
+use crate::geometry::{PointHash, Shape, project};
 use rayon::prelude::*;
 
 /// Nodes on borders are at least this far apart \[spacing\].
 const APART: f64 = 0.75;
-/// Nodes inside make room for borders, and borders for nodes of the boundary \[spacing\].
-const ROOM: f64 = 0.5;
+/// Nodes make room for those on borders that are closer; not round, since round-off would choose
+/// among the nodes in the middle of a layer of one spacing \[spacing\].
+const ROOM: f64 = 0.491_7;
+/// Places between two nodes of the boundary that are closer to it are on it \[spacing\].
+const ON_BOUNDARY: f64 = 0.1;
+/// Where the normals of the boundary around a node are looked at \[spacing\].
+const BESIDE: f64 = 0.05;
+/// Normals of one face have a larger product.
+const SAME_FACE: f64 = 0.7;
+/// Normals of two borders have a smaller product where these lie on the two sides of a layer.
+const OTHER_SHEET: f64 = -0.151_3;
+
+/// A node to be, on a border.
+struct BorderNode {
+    crossing: Crossing,
+    /// Towards the softer side.
+    normal: Vector3,
+    /// How many faces of the body meet there; 0 inside.
+    faces: usize,
+}
+
 /// Puts nodes about a spacing apart on the borders between materials, on the stiffer side by a
-/// round-off, in place of the nodes inside that are close to them; none where a material is too
-/// thin to be told apart.
+/// round-off, in place of the nodes that are close to them: on both borders of a layer, however
+/// thin, and where a border meets the boundary on both.
 pub(crate) fn place_nodes_on_borders(cloud: &mut NodeCloud, body: &Shape, stiffness: &Stiffness) {
+    let (nodes, spacing) = (&cloud.positions, &cloud.spacing);
+    let crossings = stiffness.crossings(nodes, spacing);
+    let mut found: Vec<BorderNode> = crossings
+        .into_par_iter()
+        .filter_map(|crossing| border_node(crossing, cloud, body, stiffness))
+        .collect();
+    // On edges first, then on faces; short ways first, since they meet borders almost at right
+    // angles.
+    found.sort_by(|a, b| {
+        b.faces.cmp(&a.faces).then(a.crossing.length.total_cmp(&b.crossing.length))
+    });
     let smallest = ROOM * cloud.smallest_spacing();
     let largest = cloud.spacing.iter().fold(0.0f64, |a, &b| a.max(b));
-    let empty = || PointHash::new(smallest, largest);
-    let (mut boundary, mut borders, mut placed) = (empty(), empty(), empty());
-    for (X, _) in cloud.positions.iter().zip(&cloud.on_boundary).filter(|(_, on)| **on) {
-        boundary.insert(*X);
-    }
-    let mut crossings = stiffness.crossings(&cloud.positions, &cloud.spacing);
-    crossings.retain(|crossing| {
-        !crossing.thin
-            && body.signed_distance(&crossing.position) < 0.0
-            && !boundary.any_within(&crossing.position, ROOM * crossing.spacing)
-    });
-    // Short ways first: they meet borders almost at right angles.
-    crossings.sort_by(|a, b| a.length.total_cmp(&b.length));
-    let mut added = Vec::new();
-    for crossing in crossings {
-        let Crossing { position, spacing, .. } = crossing;
-        borders.insert(position);
-        if !placed.any_within(&position, APART * spacing) {
+    // By the number of faces that meet: 0, 1, 2 or more.
+    let mut borders = [0; 3].map(|_| PointHash::new(smallest, largest));
+    let mut placed = PointHash::new(smallest, largest);
+    let mut added: Vec<BorderNode> = Vec::new();
+    for node in found {
+        let Crossing { position, spacing, .. } = node.crossing;
+        borders[node.faces.min(2)].insert(position);
+        let mut is_free = true;
+        placed.visit(&position, APART * spacing, |index, _| {
+            is_free &= added[index].normal.dot(&node.normal) < OTHER_SHEET;
+            is_free
+        });
+        if is_free {
             placed.insert(position);
-            added.push((position, spacing));
+            added.push(node);
         }
     }
-    let stays: Vec<bool> = (0..cloud.positions.len())
-        .into_par_iter()
-        .map(|node| {
-            let near = borders.any_within(&cloud.positions[node], ROOM * cloud.spacing[node]);
-            cloud.on_boundary[node] || !near
-        })
-        .collect();
+    let stays = |node: usize| {
+        let (X, room) = (&cloud.positions[node], ROOM * cloud.spacing[node]);
+        let faces = match cloud.on_boundary[node] {
+            true => faces_at(body, X, cloud.spacing[node], stiffness.is_flat()),
+            false => 0,
+        };
+        // Corners of the body stay, and nodes on its edges and faces unless others on these come.
+        faces > 2 || (faces.min(2)..3).all(|others| !borders[others].any_within(X, room))
+    };
+    let stays: Vec<bool> = (0..cloud.positions.len()).into_par_iter().map(stays).collect();
     cloud.retain(&stays);
-    for (position, spacing) in added {
-        cloud.positions.push(position);
-        cloud.spacing.push(spacing);
-        cloud.on_boundary.push(false);
+    for BorderNode { crossing, faces, .. } in added {
+        cloud.positions.push(crossing.position);
+        cloud.spacing.push(crossing.spacing);
+        cloud.on_boundary.push(faces > 0);
     }
+}
+
+/// The node that a crossing asks for; `None` outside of the body, and inside where it is so close to
+/// the boundary that crossings between nodes there stand for it.
+fn border_node(
+    crossing: Crossing,
+    cloud: &NodeCloud,
+    body: &Shape,
+    stiffness: &Stiffness,
+) -> Option<BorderNode> {
+    let depth = -body.signed_distance(&crossing.position);
+    let between = crossing.ends.iter().all(|&node| cloud.on_boundary[node]);
+    let spacing = crossing.spacing;
+    let (crossing, faces) = if between && depth.abs() <= ON_BOUNDARY * spacing {
+        let crossing = stiffness.on_surface(&crossing, &cloud.positions, |X| project(body, X))?;
+        let faces = faces_at(body, &crossing.position, spacing, stiffness.is_flat()).max(1);
+        (crossing, faces)
+    } else {
+        (depth > ROOM * spacing).then_some((crossing, 0))?
+    };
+    let normal = stiffness.normal(&crossing.position, spacing);
+    Some(BorderNode { crossing, normal, faces })
+}
+
+/// How many faces of the body meet at a place on its boundary, as far as normals around it tell.
+fn faces_at(body: &Shape, X: &Vector3, spacing: f64, flat: bool) -> usize {
+    let mut normals: Vec<Vector3> = Vec::new();
+    for corner in 0..8 {
+        let sign = |axis: usize| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
+        // Not along a diagonal, on which two faces are equally near.
+        let across = if flat { 0.0 } else { 0.69 * sign(2) };
+        let way = Vector3::new(sign(0), 0.83 * sign(1), across);
+        let normal = body.gradient(&(X + BESIDE * spacing * way));
+        if normals.iter().all(|known| known.dot(&normal) < SAME_FACE) {
+            normals.push(normal);
+        }
+    }
+    normals.len()
 }
 
 #[cfg(test)]
@@ -78,7 +145,7 @@ mod tests {
             let cloud = Cloud::Jittered { spacing, jitter: 0.3, seed: 4 };
             let mut cloud = node_cloud(&body, &cloud, &Dimension::Three).unwrap();
             let regions = [region(part.clone(), modulus), region(Selector::All, 1.0)];
-            let stiffness = Stiffness::new(&regions).unwrap();
+            let stiffness = Stiffness::new(&regions, false).unwrap();
             let before = cloud.positions.len() as f64;
             place_nodes_on_borders(&mut cloud, &body, &stiffness);
             let distance = |X: &Vector3| ball.signed_distance(X).abs();

@@ -4,6 +4,7 @@
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::quadrature::cell::Cell;
 use crate::discretisation::quadrature::simplex::Simplex;
+use crate::discretisation::quadrature::voxel_cuts::VoxelBox;
 use crate::geometry::{Selector, Shape};
 use crate::problem::Region;
 
@@ -141,6 +142,31 @@ impl<'a> Borders<'a> {
         // What no region holds, but for round-off, is refused where its place is known.
         let left: f64 = rest.iter().map(Simplex::size).sum();
         (left <= ROUND_OFF * cell.edge.powi(components as i32)).then_some(parts)
+    }
+}
+
+impl Borders<'_> {
+    /// The same of a cell that the boundary cuts and that voxels divide into boxes.
+    pub fn split_boxes(
+        &self,
+        cell: &Cell,
+        boxes: &[VoxelBox],
+        smallest: bool,
+    ) -> Option<Vec<Vec<Simplex>>> {
+        let (components, thin) = (self.components, self.thin);
+        let cutter = Cutter { cell, components, thin, smallest };
+        let mut parts = vec![Vec::new(); self.regions.len()];
+        for VoxelBox { centre, edges, .. } in boxes {
+            let all = Simplex::of_box(centre, edges, components);
+            let inside = cutter.by_shape(all, self.body, 0.0)?.low;
+            match owner(self.regions, centre) {
+                Some(region) => parts[region].extend(inside),
+                // What no region holds is refused where its place is known.
+                None if inside.is_empty() => {}
+                None => return None,
+            }
+        }
+        Some(parts)
     }
 }
 

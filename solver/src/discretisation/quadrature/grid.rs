@@ -3,14 +3,15 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::quadrature::borders::{Borders, owner};
-use crate::discretisation::quadrature::cell::{Cell, Cells, in_plane};
-use crate::discretisation::quadrature::cut::{cut, spread};
+use crate::discretisation::quadrature::boundary_cut::BoundaryCut;
+use crate::discretisation::quadrature::cell::{Cell, Cells};
 use crate::discretisation::quadrature::gauss::gauss_legendre;
-use crate::discretisation::quadrature::pieces::{Leaf, Moments, pieces};
+use crate::discretisation::quadrature::pieces::{Leaf, Moments, pieces, pieces_by_sight};
 use crate::discretisation::quadrature::rule::Quadrature;
 use crate::discretisation::quadrature::second_order::{Moves, Piece};
 use crate::discretisation::quadrature::simplex::Simplex;
 use crate::discretisation::quadrature::subdivision::{NodalSpacing, Subdivision};
+use crate::discretisation::quadrature::voxel_cuts::{VoxelBox, VoxelCuts};
 use crate::error::Error;
 use crate::geometry::{POINTS, Shape, indices};
 use crate::problem::{BackgroundGrid, Dimension, InsideRule, Region};
@@ -19,20 +20,14 @@ use rayon::prelude::*;
 /// Halvings below a sub-cell when its inside volume is measured.
 const FRACTION_DEPTH: usize = 4;
 const FRACTION_DEPTH_PLANE: usize = 5;
-/// The boundary is flat in a cell where the signed distance differs by less than this
-/// fraction of its edge from that of a plane \[–\].
-const FLAT: f64 = 1e-9;
-/// The same for a boundary that is cut as a plane of the same mean distance; not round, so that
-/// round-off seldom chooses \[–\].
-const NEARLY_FLAT: f64 = 0.004_131_7;
-/// Components of a normal that differ by less are equal: it comes from differences \[–\].
-const TIE: f64 = 1e-3;
 /// Parts of a cell smaller than this fraction of it are dropped \[–\].
 const SMALLEST_FRACTION: f64 = 1e-4;
 
 struct PointCollector<'a> {
     body: &'a Shape,
     regions: &'a [Region],
+    /// Where voxels alone tell regions apart.
+    voxels: Option<VoxelCuts<'a>>,
     grid: &'a BackgroundGrid,
     subdivision: Subdivision<'a>,
     /// 2 or 3.
@@ -76,10 +71,12 @@ pub fn quadrature_following(
     let cells = Cells::over((min, max), subdivision.largest_edge(), components, z);
     subdivision.refuse_too_many(cells.counts, indices(cells.size()).map(|i| cells.at(i)))?;
     let size = cells.size();
+    let voxels = VoxelCuts::of(regions, components);
     let row_of_cells = |row: usize| {
         let mut collector = PointCollector {
             body,
             regions,
+            voxels,
             grid,
             subdivision,
             components,
@@ -176,22 +173,7 @@ impl PointCollector<'_> {
     fn parts(&mut self, cell: &Cell) -> Result<(), Error> {
         let depth = if self.components == 2 { FRACTION_DEPTH_PLANE } else { FRACTION_DEPTH };
         for part in cell.divide(self.grid.gauss_points, self.components) {
-            let origin = self.pieces.is_some().then_some(part.centre);
-            let mut moments = vec![Moments::default(); self.regions.len()];
-            if (self.subdivision.spacing.beside_gap)(&part.centre) {
-                let mut leaves = Vec::new();
-                self.measure(&part, depth, &mut |leaf| leaves.push(leaf))?;
-                let piece = pieces(self.body, &part, &leaves, 1 << depth, self.components);
-                let count = piece.iter().max().map_or(1, |&last| last + 1);
-                moments.resize(count * self.regions.len(), Moments::default());
-                for (leaf, piece) in leaves.iter().zip(piece) {
-                    let own = piece * self.regions.len() + leaf.region;
-                    moments[own].add(leaf, origin.as_ref());
-                }
-            } else {
-                let add = &mut |leaf: Leaf| moments[leaf.region].add(&leaf, origin.as_ref());
-                self.measure(&part, depth, add)?;
-            }
+            let moments = self.moments(&part, depth)?;
             for (own, Moments { volume, first, second }) in moments.into_iter().enumerate() {
                 if volume > SMALLEST_FRACTION * self.volume(&part) {
                     let centroid = first / volume;
@@ -202,6 +184,35 @@ impl PointCollector<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Of what lies inside, by piece and region.
+    fn moments(&self, part: &Cell, depth: usize) -> Result<Vec<Moments>, Error> {
+        let (origin, count) = (self.pieces.is_some().then_some(part.centre), self.regions.len());
+        let beside_gap = (self.subdivision.spacing.beside_gap)(&part.centre);
+        if !beside_gap {
+            let mut moments = vec![Moments::default(); count];
+            let add = &mut |leaf: Leaf| moments[leaf.region].add(&leaf, origin.as_ref());
+            self.measure(part, depth, add)?;
+            let is_home = |(region, all): (usize, &Moments)| {
+                all.volume == 0.0 || owner(self.regions, &(all.first / all.volume)) == Some(region)
+            };
+            if count == 1 || moments.iter().enumerate().all(is_home) {
+                return Ok(moments);
+            }
+        }
+        let mut leaves = Vec::new();
+        self.measure(part, depth, &mut |leaf| leaves.push(leaf))?;
+        let piece = match beside_gap {
+            true => pieces(self.body, part, &leaves, 1 << depth, self.components),
+            false => pieces_by_sight(self.regions, &leaves),
+        };
+        let last = piece.iter().max().map_or(0, |&last| last);
+        let mut moments = vec![Moments::default(); (last + 1) * count];
+        for (leaf, piece) in leaves.iter().zip(piece) {
+            moments[piece * count + leaf.region].add(leaf, origin.as_ref());
+        }
+        Ok(moments)
     }
 
     /// Visits the inside parts of a cell: halves it where the boundary is not flat; the
@@ -218,10 +229,21 @@ impl PointCollector<'_> {
             self.keep_parts(cell, &parts, keep);
             return Ok(());
         }
+        if let (true, Some(voxels)) = (mixed, &self.voxels)
+            && let Some(boxes) = voxels.boxes(cell)
+        {
+            if !is_cut {
+                return self.keep_boxes(cell, boxes, keep);
+            }
+            if let Some(parts) = self.borders().split_boxes(cell, &boxes, depth == 0) {
+                self.keep_parts(cell, &parts, keep);
+                return Ok(());
+            }
+        }
         let mixed = mixed && depth > 0;
         let one_plane = match (is_cut, mixed) {
             (false, false) => Some((1.0, Vector3::zeros(), cell.spread(self.components))),
-            (true, false) if depth > 0 => self.flat_cut(cell, distance),
+            (true, false) if depth > 0 => self.boundary_cut().flat(cell, distance),
             _ => None,
         };
         let (fraction, shift, spread) = match one_plane {
@@ -231,7 +253,7 @@ impl PointCollector<'_> {
                     .children(self.components)
                     .try_for_each(|child| self.measure(&child, depth - 1, keep));
             }
-            None => self.axis_cut(cell, distance),
+            None => self.boundary_cut().along_axes(cell, distance),
         };
         if fraction > 0.0 {
             let centroid = cell.centre + shift;
@@ -253,80 +275,18 @@ impl PointCollector<'_> {
         }
     }
 
-    /// Inside fraction of a cell, the shift of its centroid and its spread where the
-    /// boundary is nearly flat, judged by the signed distance at centre and corners (method
-    /// book, eq. 7.3).
-    fn flat_cut(&self, cell: &Cell, distance: f64) -> Option<(f64, Vector3, Matrix3)> {
-        let near = |value: f64| value.abs() <= NEARLY_FLAT * cell.edge;
-        let half = 0.5 * cell.edge;
-        let ends: &[[f64; 3]] = match self.components {
-            2 => &[[1.0, 1.0, 0.0], [1.0, -1.0, 0.0]],
-            _ => &[[1.0, 1.0, 1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0], [1.0, -1.0, -1.0]],
-        };
-        let mut rises = [0.0; 4];
-        let (mut slope, mut bend, mut most, mut straight_ways) = (Vector3::zeros(), 0.0, 0.0f64, 0);
-        for (rise, end) in rises.iter_mut().zip(ends) {
-            let end = Vector3::from(*end);
-            let ahead = self.body.signed_distance(&(cell.centre + half * end));
-            let behind = self.body.signed_distance(&(cell.centre - half * end));
-            let curved = ahead + behind - 2.0 * distance;
-            if !near(curved) {
-                return None;
-            }
-            bend += curved / ends.len() as f64;
-            most = most.max(curved.abs());
-            straight_ways += usize::from(curved.abs() <= FLAT * cell.edge);
-            *rise = 0.5 * (ahead - behind);
-            slope += end * *rise;
+    /// Visits the parts of a cell by voxel.
+    fn keep_boxes(
+        &self,
+        cell: &Cell,
+        boxes: Vec<VoxelBox>,
+        keep: &mut impl FnMut(Leaf),
+    ) -> Result<(), Error> {
+        for VoxelBox { centre, size, spread, .. } in boxes {
+            let (region, volume) = (self.region_at(&centre)? as usize, size * self.thickness);
+            keep(Leaf { cell: *cell, region, centroid: centre, volume, spread });
         }
-        // Half the change of the distance along each edge.
-        slope /= ends.len() as f64;
-        // Bent along one diagonal only, the cell lies beside an edge, whose bend is no curvature.
-        let beside_edge = straight_ways + 1 == ends.len();
-        let straight = !beside_edge
-            && rises
-                .iter()
-                .zip(ends)
-                .all(|(rise, end)| near(slope.dot(&Vector3::from(*end)) - rise));
-        straight.then(|| {
-            // The mean distance in the cell is that of a plane.
-            let level = if most > FLAT * cell.edge { distance + bend / 6.0 } else { distance };
-            let (fraction, mut shift) = cut(level, &(2.0 * slope));
-            if self.components == 2 {
-                shift.z = 0.0;
-            }
-            let spread = match self.pieces {
-                Some(_) => spread(level, &(2.0 * slope)) * cell.edge.powi(2),
-                None => Matrix3::zeros(),
-            };
-            (fraction, shift * cell.edge, in_plane(spread, self.components))
-        })
-    }
-
-    /// Inside fraction of a small cell, the shift of its centroid and its spread, as if
-    /// the boundary were a plane whose normal is the nearest axis: exact for
-    /// boundaries along the grid, second order in the cell for others (method
-    /// book, eq. 7.4).
-    fn axis_cut(&self, cell: &Cell, distance: f64) -> (f64, Vector3, Matrix3) {
-        let fraction = (0.5 - distance / cell.edge).clamp(0.0, 1.0);
-        let mut spread = cell.spread(self.components);
-        if fraction == 0.0 || fraction == 1.0 {
-            return (fraction, Vector3::zeros(), spread);
-        }
-        let mut normal = self.body.gradient(&cell.centre);
-        if self.components == 2 {
-            normal.z = 0.0;
-        }
-        // Round-off must not choose among axes that are equally near.
-        let most = normal.amax();
-        let nearest = [0, 1, 2].map(|axis| normal[axis].abs() > (1.0 - TIE) * most);
-        let share = 1.0 / nearest.iter().filter(|&&nearest| nearest).count().max(1) as f64;
-        let mut shift = Vector3::zeros();
-        for axis in (0..3).filter(|&axis| nearest[axis]) {
-            shift[axis] = -share * normal[axis].signum() * 0.5 * (1.0 - fraction) * cell.edge;
-            spread[(axis, axis)] *= 1.0 - share * (1.0 - fraction * fraction);
-        }
-        (fraction, shift, spread)
+        Ok(())
     }
 
     fn add_piece(&mut self, edge: f64, spread: Matrix3) {
@@ -357,6 +317,11 @@ impl PointCollector<'_> {
     /// Whether a border between regions may pass a cell.
     fn may_be_mixed(&self, cell: &Cell) -> bool {
         self.regions.len() > 1 && self.borders().may_pass(cell)
+    }
+
+    fn boundary_cut(&self) -> BoundaryCut<'_> {
+        let (body, components) = (self.body, self.components);
+        BoundaryCut { body, components, has_spread: self.pieces.is_some() }
     }
 
     fn borders(&self) -> Borders<'_> {

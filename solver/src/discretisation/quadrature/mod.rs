@@ -1,6 +1,7 @@
 //! Quadrature points of the volume (method book, section 7).
 
 mod borders;
+mod boundary_cut;
 mod cell;
 mod cut;
 mod gauss;
@@ -10,6 +11,7 @@ mod rule;
 mod second_order;
 mod simplex;
 mod subdivision;
+mod voxel_cuts;
 
 pub use grid::{quadrature, quadrature_following};
 pub use rule::Quadrature;

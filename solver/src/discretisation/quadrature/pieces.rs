@@ -3,8 +3,10 @@
 
 use crate::algebra::sets::Sets;
 use crate::algebra::tensor::{Matrix3, Vector3};
+use crate::discretisation::quadrature::borders::owner;
 use crate::discretisation::quadrature::cell::Cell;
 use crate::geometry::{Place, Shape, indices};
+use crate::problem::Region;
 
 /// A sub-cell, or a part of it that is inside.
 pub(super) struct Leaf {
@@ -77,6 +79,32 @@ pub(super) fn pieces(
         largest[..n].iter().for_each(|&b| join(&mut sets, a, b));
     }
     renumbered(all.map(|leaf| sets.first(leaf) as usize).collect(), leaves.len())
+}
+
+/// Parts of a way between two sub-cells, between which its region is looked at.
+const LOOKS: usize = 8;
+
+/// The piece of each sub-cell where another region lies between parts of one: a sub-cell belongs to the
+/// first piece with a larger one to which the straight way stays in its region.
+pub(super) fn pieces_by_sight(regions: &[Region], leaves: &[Leaf]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..leaves.len()).collect();
+    order.sort_by(|&a, &b| leaves[b].volume.total_cmp(&leaves[a].volume));
+    let sees = |a: &Leaf, b: &Leaf| {
+        let at = |n: usize| a.centroid + (b.centroid - a.centroid) * (n as f64 / LOOKS as f64);
+        a.region == b.region && (1..LOOKS).all(|n| owner(regions, &at(n)) == Some(a.region))
+    };
+    let mut found: Vec<Vec<usize>> = Vec::new();
+    let mut piece = vec![0; leaves.len()];
+    for leaf in order {
+        let seen = |members: &Vec<usize>| members.iter().any(|&m| sees(&leaves[m], &leaves[leaf]));
+        let own = found.iter().position(seen).unwrap_or_else(|| {
+            found.push(Vec::new());
+            found.len() - 1
+        });
+        found[own].push(leaf);
+        piece[leaf] = own;
+    }
+    piece
 }
 
 /// Pairs of parts of sub-cells that share a face or are in the same one, some more than once.

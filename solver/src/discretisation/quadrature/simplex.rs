@@ -20,7 +20,14 @@ const TRIANGLES: [[usize; 4]; 2] = [[0, 1, 3, 3], [0, 3, 2, 2]];
 impl Simplex {
     /// Those that make up a cell.
     pub fn of_cell(cell: &Cell, components: usize) -> Vec<Simplex> {
-        let corners: Vec<Vector3> = cell.corners(components).collect();
+        Simplex::of_box(&cell.centre, &Vector3::repeat(cell.edge), components)
+    }
+
+    /// Those that make up a box.
+    pub fn of_box(centre: &Vector3, edges: &Vector3, components: usize) -> Vec<Simplex> {
+        let unit = Cell { centre: Vector3::zeros(), edge: 1.0 };
+        let corners: Vec<Vector3> =
+            unit.corners(components).map(|corner| centre + corner.component_mul(edges)).collect();
         let numbers: &[[usize; 4]] = if components == 3 { &TETRAHEDRA } else { &TRIANGLES };
         let simplex = |numbers: &[usize; 4]| Simplex {
             corners: numbers.map(|n| corners[n]),

@@ -2,11 +2,12 @@
 
 use super::gauss::gauss_legendre;
 use super::*;
-use crate::algebra::tensor::Vector3;
+use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::error::Error;
-use crate::geometry::{GeometryError, Selector, Shape};
+use crate::geometry::{GeometryError, LabelMap, Selector, Shape};
 use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
 use crate::problem::{BackgroundGrid, Dimension, InsideRule, Refinement, Region};
+use std::sync::Arc;
 
 fn region(name: &str, part: Selector) -> Region {
     let constants = ElasticConstants::from_young_poisson(1e3, 0.3).unwrap();
@@ -121,6 +122,41 @@ fn a_cell_on_a_border_is_divided_among_its_regions() {
     let volume: f64 =
         q.weights.iter().zip(&q.regions).filter(|(_, r)| **r == 0).map(|(w, _)| w).sum();
     assert!((volume / (0.033 * 0.01) - 1.0).abs() < 0.02, "{volume}");
+}
+
+/// A label map over a unit cube whose voxels between two heights along z are 2, the others 1.
+fn voxels_between(low: f64, high: f64, count: usize) -> Selector {
+    let voxel = 1.0 / count as f64;
+    let height = |n: usize| voxel * ((n / (count * count)) as f64 + 0.5);
+    let label = |n: usize| 1 + u32::from(height(n) > low && height(n) < high);
+    let labels = (0..count.pow(3)).map(label).collect();
+    let (origin, directions) = (Vector3::repeat(0.5 * voxel), Matrix3::identity() * voxel);
+    let map = LabelMap::new([count; 3], origin, directions, labels).unwrap();
+    Selector::Label { map: Arc::new(map), label: 2 }
+}
+
+#[test]
+fn layers_have_their_volume_and_every_point_lies_in_its_region_however_thin_they_are() {
+    let body = Shape::Box { min: Vector3::zeros(), max: Vector3::repeat(1.0) };
+    let between = |low: f64, high: f64| {
+        let point = Vector3::new(0.5, 0.5, 0.5 * (low + high));
+        Selector::Plane { point, normal: Vector3::z(), tolerance: 0.5 * (high - low) }
+    };
+    for (low, thickness) in [(0.5, 0.2), (0.46, 0.08), (0.48, 0.02), (0.3, 0.04), (0.02, 0.06)] {
+        let high = low + thickness;
+        for part in [between(low, high), voxels_between(low, high, 50)] {
+            let regions = [region("layer", part), region("rest", Selector::All)];
+            let grid = BackgroundGrid::with_cell(0.13);
+            let q = quadrature(&body, &regions, &grid, &Dimension::Three).unwrap();
+            let own = q.regions.iter().zip(&q.weights).filter(|(region, _)| **region == 0);
+            let volume: f64 = own.map(|(_, weight)| weight).sum();
+            assert!((volume - thickness).abs() < 1e-6, "{low} {high}: {volume}");
+            for (X, &region) in q.positions.iter().zip(&q.regions) {
+                let found = super::borders::owner(&regions, X);
+                assert_eq!(found, Some(usize::from(region)), "{low} {high}: {X}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -178,8 +178,9 @@ choice! {
     MaterialBordersFormat for MaterialBorders {
         /// Supports reach across them, which smooths the kink.
         "straddled" Straddled,
-        /// Nodes are put on them (not into a cloud from a file), and the stiffer side does not
-        /// see the nodes of the softer one, unless one is thinner than a spacing.
+        /// Nodes are put on them (not into a cloud from a file), on both faces of a layer however
+        /// thin, and the stiffer side does not see the nodes of the softer one, nor its own across it.
+        /// For layers thinner than 2.5 spacings and small inclusions.
         "sharp" Sharp,
     }
 }

@@ -1,0 +1,223 @@
+//! Borders between materials of different stiffness, and the layers that two of them bound.
+#![allow(non_snake_case)]
+
+use crate::algebra::tensor::Vector3;
+use crate::discretisation::neighbours::Neighbours;
+use crate::geometry::Selector;
+use crate::problem::{MaterialBorders, Problem, Region};
+use rayon::prelude::*;
+
+/// Borders are sought between nodes that are closer than this \[spacing\]: each has another
+/// across the border.
+const REACH: f64 = 1.6;
+/// Steps along a way, which a thinner layer may escape \[spacing\].
+const STEP: f64 = 0.1;
+/// Where the softer side of a border is looked for around a place on it \[spacing\].
+const LOOKS: [f64; 3] = [0.06, 0.14, 0.27];
+/// Cosine of the normals of two borders that face each other, or away from each other, is smaller
+/// than this; not round, so that round-off does not choose at right angles.
+const FACING: f64 = -0.151_3;
+/// Halvings towards a border.
+const HALVINGS: usize = 40;
+
+/// The shear modulus at rest as a function of the reference position.
+#[derive(Debug, Clone)]
+pub struct Stiffness {
+    /// In the order of the regions \[Pa\].
+    parts: Vec<(Selector, f64)>,
+    flat: bool,
+}
+
+impl Stiffness {
+    /// Where borders between materials are sharp; `None` where none is.
+    pub fn at_sharp_borders(problem: &Problem) -> Option<Stiffness> {
+        match problem.recipe.material_borders {
+            MaterialBorders::Straddled => None,
+            MaterialBorders::Sharp => {
+                Stiffness::new(&problem.regions, problem.dimension.components() == 2)
+            }
+        }
+    }
+
+    /// Of the first region that contains a point; `None` where all are equally stiff.
+    pub(crate) fn new(regions: &[Region], flat: bool) -> Option<Stiffness> {
+        let modulus = |region: &Region| region.material.law.constants().shear_modulus;
+        let parts: Vec<_> = regions.iter().map(|r| (r.part.clone(), modulus(r))).collect();
+        let differ = parts.windows(2).any(|two| two[0].1 != two[1].1);
+        differ.then_some(Stiffness { parts, flat })
+    }
+
+    /// Whether it is that of a plane.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.flat
+    }
+
+    /// \[Pa\]; 0 outside of all regions.
+    pub fn at(&self, X: &Vector3) -> f64 {
+        self.parts.iter().find(|(part, _)| part.contains(X)).map_or(0.0, |(_, modulus)| *modulus)
+    }
+
+    /// Whether a border may be closer than `reach` \[m\] to a place.
+    pub(super) fn may_change(&self, X: &Vector3, reach: f64) -> bool {
+        for (part, _) in &self.parts {
+            match part.holds_around(X, reach) {
+                Some(true) => return false,
+                Some(false) => {}
+                None => return true,
+            }
+        }
+        false
+    }
+
+    /// Where the ways between near nodes pass from one stiffness to another, in the order of the
+    /// nodes.
+    pub(crate) fn crossings(&self, nodes: &[Vector3], spacing: &[f64]) -> Vec<Crossing> {
+        let smallest = spacing.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        let near = Neighbours::new(nodes, REACH * smallest);
+        let of_node = |a: usize| {
+            let mut others = Vec::new();
+            if self.may_change(&nodes[a], REACH * spacing[a]) {
+                near.for_each_within(&nodes[a], REACH * spacing[a], |b, offset| {
+                    // Once for each pair, by the first that is close enough.
+                    let reaches = offset.norm_squared() < (REACH * spacing[b]).powi(2);
+                    if a < b || a > b && !reaches {
+                        others.push(b);
+                    }
+                });
+            }
+            others.sort_unstable();
+            let crossings = |b: usize| {
+                let (way, spacing) = ([nodes[a], nodes[b]], 0.5 * (spacing[a] + spacing[b]));
+                let length = (way[1] - way[0]).norm();
+                let changes = self.changes(&way, spacing).into_iter();
+                changes.map(move |position| Crossing { position, ends: [a, b], spacing, length })
+            };
+            others.into_iter().flat_map(crossings).collect::<Vec<_>>()
+        };
+        let found: Vec<_> = (0..nodes.len()).into_par_iter().map(of_node).collect();
+        found.into_iter().flatten().collect()
+    }
+
+    /// Where a straight way passes from one stiffness to another, on the stiffer side by a round-off.
+    fn changes(&self, way: &[Vector3; 2], spacing: f64) -> Vec<Vector3> {
+        let count = ((way[1] - way[0]).norm() / (STEP * spacing)).ceil().max(1.0) as usize;
+        let at = |n: usize| way[0] + (way[1] - way[0]) * (n as f64 / count as f64);
+        let mut changes = Vec::new();
+        let mut last = (way[0], self.at(&way[0]));
+        for n in 1..=count {
+            let here = (at(n), self.at(&at(n)));
+            if here.1 != last.1 {
+                changes.push(self.change(last, here));
+            }
+            last = here;
+        }
+        changes
+    }
+
+    /// Between two places of different stiffness.
+    fn change(&self, from: (Vector3, f64), to: (Vector3, f64)) -> Vector3 {
+        let (stiff, soft) = if from.1 > to.1 { (from, to) } else { (to, from) };
+        self.last_along(&|t| stiff.0 + t * (soft.0 - stiff.0), |found| found == stiff.1)
+    }
+
+    /// The last place along a path whose stiffness `stays` as it is at 0, and does not at 1.
+    fn last_along(&self, path: &impl Fn(f64) -> Vector3, stays: impl Fn(f64) -> bool) -> Vector3 {
+        let (mut from, mut to) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (from + to);
+            if stays(self.at(&path(middle))) {
+                from = middle;
+            } else {
+                to = middle;
+            }
+        }
+        path(from)
+    }
+
+    /// The crossing on a surface onto which places are projected; `None` where the ends of its way
+    /// are on one side there.
+    pub(crate) fn on_surface(
+        &self,
+        crossing: &Crossing,
+        nodes: &[Vector3],
+        project: impl Fn(&Vector3) -> Vector3,
+    ) -> Option<Crossing> {
+        let reach = STEP * crossing.spacing;
+        let way = (nodes[crossing.ends[1]] - nodes[crossing.ends[0]]).try_normalize(0.0)?;
+        let across = if self.at(&(crossing.position + reach * way)) < self.at(&crossing.position) {
+            way
+        } else {
+            -way
+        };
+        let path = |t: f64| project(&(crossing.position + (2.0 * t - 1.0) * reach * across));
+        let stiffness = self.at(&path(0.0));
+        if stiffness <= self.at(&path(1.0)) {
+            return None;
+        }
+        let position = self.last_along(&path, |found| found == stiffness);
+        Some(Crossing { position, ..*crossing })
+    }
+
+    /// Towards the softer side of the border at X.
+    pub(crate) fn normal(&self, X: &Vector3, spacing: f64) -> Vector3 {
+        let own = self.at(X);
+        let looks = LOOKS.into_iter().flat_map(|look| {
+            directions(self.flat).filter(move |way| self.at(&(X + look * spacing * way)) < own)
+        });
+        looks.sum::<Vector3>().try_normalize(0.0).unwrap_or_default()
+    }
+
+    /// Whether a softer layer lies between two places: the straight way leaves what is as stiff as
+    /// the softer of them and comes back through borders that face each other.
+    pub(super) fn parts(&self, X: &Vector3, Y: &Vector3, spacing: f64) -> bool {
+        let (middle, half) = (0.5 * (X + Y), 0.5 * (Y - X).norm());
+        if !self.may_change(&middle, half) {
+            return false;
+        }
+        let own = self.at(X).min(self.at(Y));
+        let count = (2.0 * half / (STEP * spacing)).ceil().max(1.0) as usize;
+        let at = |n: usize| X + (Y - X) * (n as f64 / count as f64);
+        let leaves = |from: Vector3, to: Vector3| {
+            self.last_along(&|t| from + t * (to - from), |found| found >= own)
+        };
+        let mut left: Option<Vector3> = None;
+        let mut last = (*X, true);
+        for n in 1..=count {
+            let here = (at(n), self.at(&at(n)) >= own);
+            match (last.1, here.1) {
+                (true, false) => left = Some(leaves(last.0, here.0)),
+                (false, true) => {
+                    let back = leaves(here.0, last.0);
+                    let faces = |left: Vector3| {
+                        self.normal(&left, spacing).dot(&self.normal(&back, spacing)) < FACING
+                    };
+                    if left.is_some_and(faces) {
+                        return true;
+                    }
+                }
+                _ => {}
+            }
+            last = here;
+        }
+        false
+    }
+}
+
+/// Unit vectors to the neighbours in a lattice of cubes, or of squares.
+fn directions(flat: bool) -> impl Iterator<Item = Vector3> {
+    let parts = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|k| k as f64 - 1.0));
+    let ways = parts.map(Vector3::from).filter(move |way| !flat || way.z == 0.0);
+    ways.filter_map(|way| way.try_normalize(0.0))
+}
+
+/// Where the way between two nodes passes from one stiffness to another.
+pub(crate) struct Crossing {
+    /// On the stiffer side, by a round-off \[m\].
+    pub position: Vector3,
+    /// The nodes.
+    pub ends: [usize; 2],
+    /// Mean of the nodes' \[m\].
+    pub spacing: f64,
+    /// Between the nodes \[m\].
+    pub length: f64,
+}
