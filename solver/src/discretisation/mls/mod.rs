@@ -14,8 +14,8 @@ mod visibility;
 pub use approximation::{Approximation, LARGEST_ENLARGEMENT};
 pub(crate) use held_sides::ON_BORDER;
 pub(crate) use inverse::inverse;
-pub(crate) use stiffness::Crossing;
 pub use stiffness::Stiffness;
+pub(crate) use stiffness::{Crossing, are_opposite};
 pub(crate) use support::Scratch;
 pub use support::{PoorSupport, Support};
 

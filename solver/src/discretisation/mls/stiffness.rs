@@ -189,7 +189,7 @@ impl Stiffness {
                 (false, true) => {
                     let back = leaves(here.0, last.0);
                     let faces = |left: Vector3| {
-                        self.normal(&left, spacing).dot(&self.normal(&back, spacing)) < FACING
+                        are_opposite(&self.normal(&left, spacing), &self.normal(&back, spacing))
                     };
                     if left.is_some_and(faces) {
                         return true;
@@ -201,6 +201,11 @@ impl Stiffness {
         }
         false
     }
+}
+
+/// Whether borders with these normals face each other or away from each other, as those of a layer do.
+pub(crate) fn are_opposite(one: &Vector3, other: &Vector3) -> bool {
+    one.dot(other) < FACING
 }
 
 /// Unit vectors to the neighbours in a lattice of cubes, or of squares.

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
-use crate::discretisation::mls::{Crossing, Stiffness};
+use crate::discretisation::mls::{Crossing, Stiffness, are_opposite};
 use crate::discretisation::nodes::cloud::NodeCloud;
 use crate::geometry::{PointHash, Shape, project};
 use rayon::prelude::*;
@@ -18,8 +18,6 @@ const ON_BOUNDARY: f64 = 0.1;
 const BESIDE: f64 = 0.05;
 /// Normals of one face have a larger product.
 const SAME_FACE: f64 = 0.7;
-/// Normals of two borders have a smaller product where these lie on the two sides of a layer.
-const OTHER_SHEET: f64 = -0.151_3;
 
 /// A node to be, on a border.
 struct BorderNode {
@@ -56,7 +54,7 @@ pub(crate) fn place_nodes_on_borders(cloud: &mut NodeCloud, body: &Shape, stiffn
         borders[node.faces.min(2)].insert(position);
         let mut is_free = true;
         placed.visit(&position, APART * spacing, |index, _| {
-            is_free &= added[index].normal.dot(&node.normal) < OTHER_SHEET;
+            is_free &= are_opposite(&added[index].normal, &node.normal);
             is_free
         });
         if is_free {

@@ -14,12 +14,13 @@ const FLAT: f64 = 1e-9;
 const NEARLY_FLAT: f64 = 0.004_131_7;
 /// Components of a normal that differ by less are equal: it comes from differences \[–\].
 const TIE: f64 = 1e-3;
+
 /// The part of a cell inside of a body.
 pub(super) struct BoundaryCut<'a> {
     pub body: &'a Shape,
     /// 2 or 3.
     pub components: usize,
-    /// Whether spreads are wanted of cells that are cut.
+    /// Whether the spread of a cut cell is needed, since points are moved afterwards.
     pub has_spread: bool,
 }
 
