@@ -10,6 +10,7 @@ use crate::model::essential::Reaction;
 use crate::model::zero_energy::refuse_zero_energy_modes;
 use crate::motion::energy::{Energies, energies};
 use crate::motion::mass_scaling::raise_masses;
+use crate::motion::nodal_fields::NodalFields;
 use crate::motion::observe::Observer;
 use crate::motion::simulate::simulate;
 use crate::motion::state::State;
@@ -82,6 +83,13 @@ impl Simulation {
         let rows = self.discretisation.rows_at(positions)?;
         let (u, components) = (&self.state.displacement, self.model.components);
         Ok((0..positions.len()).map(|i| rows.interpolate(i, u, components)).collect())
+    }
+
+    /// J, Cauchy stress and strain of the material at the nodes, and with these the pressure.
+    pub fn nodal_fields(&self) -> NodalFields {
+        let (model, u) = (&self.model, &self.state.displacement);
+        let extra = self.state.extra.stresses(model);
+        NodalFields::new(&self.problem, &self.discretisation, model, u, &extra)
     }
 
     /// Force \[N\] and moment about `about` \[m\] that each condition exerts on the body, in

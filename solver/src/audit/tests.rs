@@ -185,6 +185,7 @@ fn soft_layers_that_are_too_thin_for_their_borders_are_doubted_and_others_are_no
         let part = cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, thickness]);
         let part = Selector::Inside { shape: part, tolerance: 0.0 };
         problem.body = cuboid([0.0; 3], [0.08, 0.08, 0.16]);
+        problem.recipe.material_borders = MaterialBorders::Straddled;
         problem.regions.insert(0, Region::new("soft", part, tissue(300.0)));
         problem.loads = Default::default();
         problem.loads.body_forces = block().loads.body_forces;

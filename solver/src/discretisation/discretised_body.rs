@@ -68,7 +68,7 @@ impl Discretisation {
         let on_boundary =
             held.as_ref().map(|held| held.add_nodes(problem, &whole, &mut cloud)).transpose()?;
         let prescribed = prescribed_nodes(problem, &cloud);
-        let mut approximation = approximation_of(&cloud, recipe, stiffness, &dimension);
+        let mut approximation = approximation_of(&cloud, recipe, (stiffness, body), &dimension);
         if let Some(HeldShape { held, .. }) = &held {
             approximation = approximation.with_held(held, recipe.dilation);
         }
@@ -245,7 +245,7 @@ pub(super) fn close(
 fn approximation_of(
     cloud: &NodeCloud,
     recipe: &Recipe,
-    stiffness: Option<Stiffness>,
+    (stiffness, body): (Option<Stiffness>, &Shape),
     dimension: &Dimension,
 ) -> Approximation {
     let radius = cloud.spacing.iter().map(|h| recipe.dilation * h).collect();
@@ -253,7 +253,7 @@ fn approximation_of(
     let nodes = cloud.positions.clone();
     let approximation = Approximation::new(nodes, radius, basis, weight_function, dimension);
     match stiffness {
-        Some(stiffness) => approximation.with_sides(stiffness, recipe.dilation),
+        Some(stiffness) => approximation.with_sides(stiffness, body, recipe.dilation),
         None => approximation,
     }
 }

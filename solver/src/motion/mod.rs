@@ -8,6 +8,7 @@ pub mod internal_force;
 mod kernel;
 pub mod mass_scaling;
 pub mod newton;
+pub mod nodal_fields;
 pub mod observe;
 pub mod relaxation;
 pub mod simulate;

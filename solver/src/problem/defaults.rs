@@ -28,7 +28,7 @@ pub const SINGLE_FROM: usize = 1_000_000;
 /// The recommended treatment of nearly incompressible materials.
 pub const VOLUMETRIC_PROJECTION: VolumetricProjection = VolumetricProjection::Patches;
 /// The recommended treatment of borders between materials.
-pub const MATERIAL_BORDERS: MaterialBorders = MaterialBorders::Straddled;
+pub const MATERIAL_BORDERS: MaterialBorders = MaterialBorders::Sharp;
 /// The recommended treatment of cells that the boundary cuts.
 pub const INSIDE: InsideRule = InsideRule::VolumeFraction;
 /// Two cells per node in three dimensions: 1.26³ = 2.

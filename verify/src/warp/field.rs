@@ -54,16 +54,16 @@ impl DisplacementField {
             recipe.weight_function,
             dimension,
         );
-        if let Some(stiffness) = Stiffness::at_sharp_borders(problem) {
-            approximation = approximation.with_sides(stiffness, recipe.dilation);
-        }
         let body = problem.body.section(dimension)?;
-        approximation = match HeldShape::of(problem, &body) {
-            Some(HeldShape { held, rest }) => {
-                approximation.with_held(&held, recipe.dilation).within(&rest, recipe.dilation)
-            }
-            None => approximation.within(&body, recipe.dilation),
-        };
+        let held = HeldShape::of(problem, &body);
+        let deforming = held.as_ref().map_or(&body, |held| &held.rest);
+        if let Some(stiffness) = Stiffness::at_sharp_borders(problem) {
+            approximation = approximation.with_sides(stiffness, deforming, recipe.dilation);
+        }
+        if let Some(HeldShape { held, .. }) = &held {
+            approximation = approximation.with_held(held, recipe.dilation);
+        }
+        approximation = approximation.within(deforming, recipe.dilation);
         let plane = match dimension {
             Dimension::Three => None,
             Dimension::PlaneStrain { z, .. } => Some(*z),

@@ -94,8 +94,9 @@ impl Approximation {
 
     /// The same where points do not see nodes that are softer than they are.
     /// Radii are `dilation` spacings.
-    pub fn with_sides(self, stiffness: Stiffness, dilation: f64) -> Approximation {
-        let sides = Sides::new(stiffness, &self.nodes, &self.influence_radius, dilation);
+    pub fn with_sides(self, stiffness: Stiffness, body: &Shape, dilation: f64) -> Approximation {
+        let nodes = (&self.nodes[..], &self.influence_radius[..]);
+        let sides = Sides::new(stiffness, body, nodes, dilation);
         let sides = Some(sides);
         Approximation { sides, ..self }
     }

@@ -5,6 +5,7 @@ use crate::algebra::tensor::Vector3;
 use crate::discretisation::mls::stiffness::Stiffness;
 use crate::discretisation::mls::visibility::have_common;
 use crate::discretisation::neighbours::Neighbours;
+use crate::geometry::Shape;
 use rayon::prelude::*;
 
 /// A way around a layer by another node that is no longer than this is as good as the straight
@@ -13,8 +14,8 @@ const AROUND: f64 = 1.25;
 /// Differences of this size do not choose \[–\].
 const ROUND_OFF: f64 = 1e-9;
 /// Layers are sought between nodes that are closer than this \[influence radius\]: a point sees
-/// no farther, and has a node on its side beside it.
-const SOUGHT: f64 = 1.35;
+/// no farther, and has a node on its side beside it; not round.
+const SOUGHT: f64 = 1.351_3;
 
 /// The stiffness around every node: a point sees the nodes that are no softer than itself, so
 /// that the displacement of the stiffer side of a border does not follow that of the softer one,
@@ -32,9 +33,16 @@ pub(super) struct Sides {
 }
 
 impl Sides {
-    pub fn new(stiffness: Stiffness, nodes: &[Vector3], radii: &[f64], dilation: f64) -> Sides {
+    /// Of nodes of a body, with their influence radii \[m\], which are `dilation` spacings.
+    pub fn new(
+        stiffness: Stiffness,
+        body: &Shape,
+        (nodes, radii): (&[Vector3], &[f64]),
+        dilation: f64,
+    ) -> Sides {
         let spacing: Vec<f64> = radii.iter().map(|radius| radius / dilation).collect();
-        let of_node: Vec<f64> = nodes.par_iter().map(|X| stiffness.at(X)).collect();
+        let at_node = |(X, spacing): (&Vector3, &f64)| stiffness.at_node(X, *spacing, body);
+        let of_node = (nodes, &spacing).into_par_iter().map(at_node).collect();
         let smallest = radii.iter().fold(f64::INFINITY, |a, &b| a.min(b));
         let near = Neighbours::new(nodes, SOUGHT * smallest);
         let found = |a: usize| {

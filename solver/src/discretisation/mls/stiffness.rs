@@ -3,13 +3,13 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::neighbours::Neighbours;
-use crate::geometry::Selector;
+use crate::geometry::{Selector, Shape};
 use crate::problem::{MaterialBorders, Problem, Region};
 use rayon::prelude::*;
 
 /// Borders are sought between nodes that are closer than this \[spacing\]: each has another
-/// across the border.
-const REACH: f64 = 1.6;
+/// across the border; not round, since round-off would choose on lattices.
+const REACH: f64 = 1.603_1;
 /// Steps along a way, which a thinner layer may escape \[spacing\].
 const STEP: f64 = 0.1;
 /// Where the softer side of a border is looked for around a place on it \[spacing\].
@@ -17,6 +17,10 @@ const LOOKS: [f64; 3] = [0.06, 0.14, 0.27];
 /// Cosine of the normals of two borders that face each other, or away from each other, is smaller
 /// than this; not round, so that round-off does not choose at right angles.
 const FACING: f64 = -0.151_3;
+/// Places that are closer to a border are on it, and of its stiffer side \[spacing\].
+const ON_BORDER: f64 = 1e-6;
+/// Places that are outside by less than this part of such a distance are inside \[–\].
+const BOUNDARY: f64 = 1e-3;
 /// Halvings towards a border.
 const HALVINGS: usize = 40;
 
@@ -55,6 +59,18 @@ impl Stiffness {
     /// \[Pa\]; 0 outside of all regions.
     pub fn at(&self, X: &Vector3) -> f64 {
         self.parts.iter().find(|(part, _)| part.contains(X)).map_or(0.0, |(_, modulus)| *modulus)
+    }
+
+    /// At a node, of the stiffer side where it is on a border \[Pa\].
+    pub(super) fn at_node(&self, X: &Vector3, spacing: f64, body: &Shape) -> f64 {
+        let reach = ON_BORDER * spacing;
+        if !self.may_change(X, reach) {
+            return self.at(X);
+        }
+        // Regions that end at the boundary of the body have another one beyond.
+        let around = directions(self.flat).map(|way| X + reach * way);
+        let inside = around.filter(|Y| body.signed_distance(Y) < BOUNDARY * reach);
+        inside.map(|Y| self.at(&Y)).fold(self.at(X), f64::max)
     }
 
     /// Whether a border may be closer than `reach` \[m\] to a place.

@@ -228,7 +228,9 @@ fn points_of_the_stiffer_side_see_their_own_nodes_and_reproduce_linear_fields_as
         Region::new("half", part, Material { density: 1.0, law })
     };
     let regions = [region(half(1.0), 10.0), region(half(-1.0), 1.0)];
-    let sided = plain.clone().with_sides(Stiffness::new(&regions, false).unwrap(), 1.9);
+    let stiffness = Stiffness::new(&regions, false).unwrap();
+    let all = Shape::Box { min: Vector3::repeat(-1.0), max: Vector3::repeat(2.0) };
+    let sided = plain.clone().with_sides(stiffness, &all, 1.9);
     let field = |X: &Vector3| 0.3 + X.x - 2.0 * X.y + 0.5 * X.z;
     for x in [0.12, 0.2, 0.25, 0.27, 0.33, 0.4] {
         let X = Vector3::new(x, 0.24, 0.27);

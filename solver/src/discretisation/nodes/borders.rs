@@ -7,11 +7,17 @@ use crate::discretisation::nodes::cloud::NodeCloud;
 use crate::geometry::{PointHash, Shape, project};
 use rayon::prelude::*;
 
-/// Nodes on borders are at least this far apart \[spacing\].
-const APART: f64 = 0.75;
-/// Nodes make room for those on borders that are closer; not round, since round-off would choose
-/// among the nodes in the middle of a layer of one spacing \[spacing\].
+/// Nodes on borders are at least this far apart; not round, as what follows, since round-off would
+/// choose among nodes on lattices \[spacing\].
+const APART: f64 = 0.603_1;
+/// Nodes make room for those on borders that are closer, which those in the middle of a layer of one
+/// spacing are not; moved nodes keep as much from the boundary of the body \[spacing\].
 const ROOM: f64 = 0.491_7;
+/// Nodes beside a border are moved away from it: those closer than the second come to lie between
+/// the first and the second \[spacing\].
+const CLEAR: (f64, f64) = (1.0, 1.6);
+/// Lengths that differ by less are the same \[spacing\].
+const SAME: f64 = 1e-6;
 /// Places between two nodes of the boundary that are closer to it are on it \[spacing\].
 const ON_BOUNDARY: f64 = 0.1;
 /// Where the normals of the boundary around a node are looked at \[spacing\].
@@ -28,9 +34,9 @@ struct BorderNode {
     faces: usize,
 }
 
-/// Puts nodes about a spacing apart on the borders between materials, on the stiffer side by a
-/// round-off, in place of the nodes that are close to them: on both borders of a layer, however
-/// thin, and where a border meets the boundary on both.
+/// Puts nodes on the borders between materials, on the stiffer side by a round-off, in place of the
+/// nodes that are close to them: on both borders of a layer, however thin, and where a border meets
+/// the boundary on both. Nodes beside them move away, so that spacings across a border are even.
 pub(crate) fn place_nodes_on_borders(cloud: &mut NodeCloud, body: &Shape, stiffness: &Stiffness) {
     let (nodes, spacing) = (&cloud.positions, &cloud.spacing);
     let crossings = stiffness.crossings(nodes, spacing);
@@ -40,14 +46,14 @@ pub(crate) fn place_nodes_on_borders(cloud: &mut NodeCloud, body: &Shape, stiffn
         .collect();
     // On edges first, then on faces; short ways first, since they meet borders almost at right
     // angles.
-    found.sort_by(|a, b| {
-        b.faces.cmp(&a.faces).then(a.crossing.length.total_cmp(&b.crossing.length))
-    });
+    let steps = |of: &Crossing| (of.length / (SAME * of.spacing)).round() as u64;
+    found.sort_by_key(|node| (std::cmp::Reverse(node.faces), steps(&node.crossing)));
     let smallest = ROOM * cloud.smallest_spacing();
     let largest = cloud.spacing.iter().fold(0.0f64, |a, &b| a.max(b));
     // By the number of faces that meet: 0, 1, 2 or more.
     let mut borders = [0; 3].map(|_| PointHash::new(smallest, largest));
     let mut placed = PointHash::new(smallest, largest);
+    let beside = Sheets::new(&found, smallest, largest);
     let mut added: Vec<BorderNode> = Vec::new();
     for node in found {
         let Crossing { position, spacing, .. } = node.crossing;
@@ -71,12 +77,79 @@ pub(crate) fn place_nodes_on_borders(cloud: &mut NodeCloud, body: &Shape, stiffn
         // Corners of the body stay, and nodes on its edges and faces unless others on these come.
         faces > 2 || (faces.min(2)..3).all(|others| !borders[others].any_within(X, room))
     };
-    let stays: Vec<bool> = (0..cloud.positions.len()).into_par_iter().map(stays).collect();
+    let nodes = 0..cloud.positions.len();
+    let stays: Vec<bool> = nodes.clone().into_par_iter().map(stays).collect();
+    let moved = |node| match cloud.on_boundary[node] {
+        true => cloud.positions[node],
+        false => beside.clear_of(&cloud.positions[node], cloud.spacing[node], body),
+    };
+    cloud.positions = nodes.into_par_iter().map(moved).collect();
     cloud.retain(&stays);
     for BorderNode { crossing, faces, .. } in added {
         cloud.positions.push(crossing.position);
         cloud.spacing.push(crossing.spacing);
         cloud.on_boundary.push(faces > 0);
+    }
+}
+
+/// Borders as places on them, with their normals.
+struct Sheets {
+    places: PointHash,
+    normals: Vec<Vector3>,
+    positions: Vec<Vector3>,
+}
+
+impl Sheets {
+    fn new(nodes: &[BorderNode], smallest: f64, largest: f64) -> Sheets {
+        let mut places = PointHash::new(smallest, largest);
+        nodes.iter().for_each(|node| places.insert(node.crossing.position));
+        let positions = nodes.iter().map(|node| node.crossing.position).collect();
+        Sheets { places, positions, normals: nodes.iter().map(|node| node.normal).collect() }
+    }
+
+    /// Where a node goes that is as far from the closest border as [`CLEAR`] asks, but not beyond
+    /// the middle between the two borders of a layer, nor towards the boundary of the body.
+    fn clear_of(&self, X: &Vector3, spacing: f64, body: &Shape) -> Vector3 {
+        let same = SAME * spacing;
+        let mut closest: Vec<(f64, usize)> = Vec::new();
+        self.places.visit(X, CLEAR.1 * spacing, |index, distance| {
+            let least = closest.first().map_or(f64::INFINITY, |first| first.0);
+            if distance < least - same {
+                closest.clear();
+            }
+            if distance < least + same {
+                closest.push((distance, index));
+            }
+            true
+        });
+        // Of borders that are equally close all count.
+        let moves = closest.iter().map(|(_, index)| self.away(X, *index, spacing));
+        let moved = X + moves.sum::<Vector3>() / closest.len().max(1) as f64;
+        let depth = |X: &Vector3| -body.signed_distance(X);
+        match depth(&moved) {
+            shallow if shallow < ROOM * spacing && shallow < depth(X) - same => *X,
+            _ => moved,
+        }
+    }
+
+    /// What takes a node away from the border at a place.
+    fn away(&self, X: &Vector3, index: usize, spacing: f64) -> Vector3 {
+        let (normal, place) = (self.normals[index], self.positions[index]);
+        let away = (X - place).dot(&normal).signum() * normal;
+        let distance = (X - place).dot(&away);
+        let (room, least, most) = (ROOM * spacing, CLEAR.0 * spacing, CLEAR.1 * spacing);
+        let mut middle = f64::INFINITY;
+        self.places.visit(X, 2.0 * most, |other, _| {
+            let offset = self.positions[other] - X;
+            let (beyond, across) = (offset.dot(&away), offset - offset.dot(&away) * away);
+            let faces = are_opposite(&normal, &self.normals[other]) && beyond > 0.0;
+            if faces && across.norm() < spacing {
+                middle = f64::min(middle, 0.5 * (distance + beyond));
+            }
+            true
+        });
+        let clear = least + (distance - room) * (most - least) / (most - room);
+        (clear.min(middle) - distance).max(0.0) * away
     }
 }
 

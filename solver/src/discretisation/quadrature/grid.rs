@@ -22,6 +22,8 @@ const FRACTION_DEPTH: usize = 4;
 const FRACTION_DEPTH_PLANE: usize = 5;
 /// Parts of a cell smaller than this fraction of it are dropped \[–\].
 const SMALLEST_FRACTION: f64 = 1e-4;
+/// Halvings of a sub-box in which a point would lie in another region than its own.
+const HALVINGS: usize = 2;
 
 struct PointCollector<'a> {
     body: &'a Shape,
@@ -173,17 +175,43 @@ impl PointCollector<'_> {
     fn parts(&mut self, cell: &Cell) -> Result<(), Error> {
         let depth = if self.components == 2 { FRACTION_DEPTH_PLANE } else { FRACTION_DEPTH };
         for part in cell.divide(self.grid.gauss_points, self.components) {
-            let moments = self.moments(&part, depth)?;
-            for (own, Moments { volume, first, second }) in moments.into_iter().enumerate() {
-                if volume > SMALLEST_FRACTION * self.volume(&part) {
-                    let centroid = first / volume;
-                    self.push(centroid, volume, (own % self.regions.len()) as u16);
-                    let offset = centroid - part.centre;
-                    self.add_piece(part.edge, second / volume - offset * offset.transpose());
-                }
+            self.part(&part, depth, HALVINGS)?;
+        }
+        Ok(())
+    }
+
+    /// Halves a sub-box where a point would lie in a region other than its own.
+    fn part(&mut self, part: &Cell, depth: usize, halvings: usize) -> Result<(), Error> {
+        let moments = self.moments(part, depth)?;
+        if halvings > 0 && !self.are_home(&moments, part) {
+            return part
+                .children(self.components)
+                .try_for_each(|child| self.part(&child, depth - 1, halvings - 1));
+        }
+        for (own, Moments { volume, first, second }) in moments.into_iter().enumerate() {
+            if volume > self.least(part) {
+                let centroid = first / volume;
+                self.push(centroid, volume, (own % self.regions.len()) as u16);
+                let offset = centroid - part.centre;
+                self.add_piece(part.edge, second / volume - offset * offset.transpose());
             }
         }
         Ok(())
+    }
+
+    /// Volume of a part of a cell that counts \[m³\].
+    fn least(&self, cell: &Cell) -> f64 {
+        SMALLEST_FRACTION * self.volume(cell)
+    }
+
+    /// Whether the centroids of parts by piece and region lie in their regions.
+    fn are_home(&self, moments: &[Moments], part: &Cell) -> bool {
+        let (count, least) = (self.regions.len(), self.least(part));
+        let is_home = |(own, all): (usize, &Moments)| {
+            let region = Some(own % count);
+            all.volume <= least || owner(self.regions, &(all.first / all.volume)) == region
+        };
+        count == 1 || moments.iter().enumerate().all(is_home)
     }
 
     /// Of what lies inside, by piece and region.
@@ -194,10 +222,7 @@ impl PointCollector<'_> {
             let mut moments = vec![Moments::default(); count];
             let add = &mut |leaf: Leaf| moments[leaf.region].add(&leaf, origin.as_ref());
             self.measure(part, depth, add)?;
-            let is_home = |(region, all): (usize, &Moments)| {
-                all.volume == 0.0 || owner(self.regions, &(all.first / all.volume)) == Some(region)
-            };
-            if count == 1 || moments.iter().enumerate().all(is_home) {
+            if self.are_home(&moments, part) {
                 return Ok(moments);
             }
         }

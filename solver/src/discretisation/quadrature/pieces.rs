@@ -85,7 +85,7 @@ pub(super) fn pieces(
 const LOOKS: usize = 8;
 
 /// The piece of each sub-cell where another region lies between parts of one: a sub-cell belongs to the
-/// first piece with a larger one to which the straight way stays in its region.
+/// first piece to whose largest one the straight way stays in its region.
 pub(super) fn pieces_by_sight(regions: &[Region], leaves: &[Leaf]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..leaves.len()).collect();
     order.sort_by(|&a, &b| leaves[b].volume.total_cmp(&leaves[a].volume));
@@ -93,16 +93,14 @@ pub(super) fn pieces_by_sight(regions: &[Region], leaves: &[Leaf]) -> Vec<usize>
         let at = |n: usize| a.centroid + (b.centroid - a.centroid) * (n as f64 / LOOKS as f64);
         a.region == b.region && (1..LOOKS).all(|n| owner(regions, &at(n)) == Some(a.region))
     };
-    let mut found: Vec<Vec<usize>> = Vec::new();
+    let mut largest: Vec<usize> = Vec::new();
     let mut piece = vec![0; leaves.len()];
     for leaf in order {
-        let seen = |members: &Vec<usize>| members.iter().any(|&m| sees(&leaves[m], &leaves[leaf]));
-        let own = found.iter().position(seen).unwrap_or_else(|| {
-            found.push(Vec::new());
-            found.len() - 1
+        let seen = |&first: &usize| sees(&leaves[first], &leaves[leaf]);
+        piece[leaf] = largest.iter().position(seen).unwrap_or_else(|| {
+            largest.push(leaf);
+            largest.len() - 1
         });
-        found[own].push(leaf);
-        piece[leaf] = own;
     }
     piece
 }

@@ -81,13 +81,13 @@ impl BodyFrames {
         let DisplayMesh { mesh, on_boundary, edge } = &self.display;
         let components = prepared.model.components;
         let displacement = vectors(&self.rows, &frame.displacement, components);
-        let stress = interpolated(&self.rows, &fields.stress, 9);
+        let stress = interpolated(&self.rows, &fields.material.stress, 9);
         let single = |name: &str, components: usize, values: Vec<f64>| {
             PointArray::new(name, components, values).stored(Stored::Single)
         };
         let mut point_data = vec![
             PointArray::new("displacement", 3, displacement),
-            single("J", 1, interpolated(&self.rows, &fields.jacobian, 1)),
+            single("J", 1, interpolated(&self.rows, &fields.material.jacobian, 1)),
             single("von_mises_stress", 1, stress.chunks(9).map(von_mises).collect()),
             single("pressure", 1, stress.chunks(9).map(|s| -(s[0] + s[4] + s[8]) / 3.0).collect()),
             single("principal_green_lagrange_strain", 3, self.principal_strains(fields)),
@@ -178,7 +178,7 @@ impl BodyFrames {
 
     /// Principal values, the largest first, of the Green–Lagrange strain.
     fn principal_strains(&self, fields: &NodeFields) -> Vec<f64> {
-        let strain = interpolated(&self.rows, &fields.strain, 6);
+        let strain = interpolated(&self.rows, &fields.material.strain, 6);
         let principal = |e: &[f64]| -> [f64; 3] {
             let E = Matrix3::new(e[0], e[3], e[5], e[3], e[1], e[4], e[5], e[4], e[2]);
             let mut values: [f64; 3] = E.symmetric_eigenvalues().into();

@@ -163,15 +163,15 @@ fn node_frame<'a>(
     mode: Option<&Vec<f64>>,
     numbers: Vec<(&'static str, f64)>,
 ) -> Result<VtuFrame<'a>> {
-    let pressure = fields.pressure();
+    let pressure = fields.material.pressure();
     let gaps = fields.contact_pressure.as_ref().map(|_| {
         let positions = &prepared.discretisation.cloud.positions;
         contact_gaps((&prepared.model.contact, fields.time), positions, &fields.displacement)
     });
     let mut point_data = vec![
         PointArray::new("displacement", 3, fields.displacement),
-        PointArray::new("J", 1, fields.jacobian),
-        PointArray::new("cauchy_stress", 9, fields.stress),
+        PointArray::new("J", 1, fields.material.jacobian),
+        PointArray::new("cauchy_stress", 9, fields.material.stress),
         PointArray::new("pressure", 1, pressure),
     ];
     if let (Some(gaps), Some(pressures)) = (gaps, fields.contact_pressure) {

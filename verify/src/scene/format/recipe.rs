@@ -55,7 +55,7 @@ pub struct DiscretisationFormat {
     pub gradient_storage: Option<GradientStorageFormat>,
     /// Projection of the change of volume in the bulk energy; "patches" if left out.
     pub volumetric_projection: Option<VolumetricProjectionFormat>,
-    /// Borders between materials of different stiffness; "straddled" if left out.
+    /// Borders between materials of different stiffness; "sharp" if left out.
     pub material_borders: Option<MaterialBordersFormat>,
     /// The background grid that quadrature points come from; as below if left out.
     #[serde(default)]
@@ -176,12 +176,11 @@ choice! {
 choice! {
     /// Borders between materials of different stiffness, where displacements have a kink.
     MaterialBordersFormat for MaterialBorders {
-        /// Supports reach across them, which smooths the kink.
-        "straddled" Straddled,
         /// Nodes are put on them (not into a cloud from a file), on both faces of a layer however
         /// thin, and the stiffer side does not see the nodes of the softer one, nor its own across it.
-        /// For layers thinner than 2.5 spacings and small inclusions.
         "sharp" Sharp,
+        /// Supports reach across them, which smooths the kink: layers want 2.5 spacings.
+        "straddled" Straddled,
     }
 }
 

@@ -11,8 +11,9 @@ use crate::studies::workbench::Workbench;
 use anyhow::Result;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Discretisation;
-use mtled::material::ElasticConstants;
+use mtled::material::{ElasticConstants, Law};
 use mtled::motion::internal_force::projected_mean_stress;
+use mtled::motion::nodal_fields::NodalFields;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::Problem;
 
@@ -57,6 +58,8 @@ pub struct Errors {
     pub pressure: f64,
     /// Of the pressure less its mean over the body, which the incompressible limit determines.
     pub pressure_deviation: f64,
+    /// Of −tr σ/3 at the nodes, weighted by Σ w φ.
+    pub nodal_pressure: f64,
     /// Σ w (det F_h − det F)/V: the gain of volume where the boundary data are known at the nodes only.
     pub volume: f64,
     pub points: usize,
@@ -225,7 +228,7 @@ fn errors_at_points(solution: &Oriented, problem: &Problem, solved: &Solved) -> 
     let discretisation = &solved.prepared.discretisation;
     let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
     let law = problem.regions[0].material.law;
-    let pressure = |F: &Matrix3| -law.cauchy(F).trace() / 3.0;
+    let pressure = pressure_of(&law);
     let projected = projected_mean_stress(&solved.prepared.model, &solved.state.displacement);
     let (mut error, mut size, mut pressure_error, mut pressure_size) = (0.0, 0.0, 0.0, 0.0);
     let (mut surplus, mut gain, mut volume) = (0.0, 0.0, 0.0);
@@ -248,7 +251,35 @@ fn errors_at_points(solution: &Oriented, problem: &Problem, solved: &Solved) -> 
         gradient: f64::sqrt(error / size),
         pressure: f64::sqrt(pressure_error / pressure_size),
         pressure_deviation: f64::sqrt(deviation.max(0.0) / pressure_size),
+        nodal_pressure: nodal_pressure_error(solution, problem, solved),
         volume: gain / volume,
         points: quadrature.weights.len(),
     }
+}
+
+/// −tr σ/3 \[Pa\] of a deformation gradient.
+fn pressure_of(law: &Law) -> impl Fn(&Matrix3) -> f64 {
+    |F| -law.cauchy(F).trace() / 3.0
+}
+
+/// ‖p_h − p‖/‖p‖ over the nodes, each with the volume Σ w φ.
+fn nodal_pressure_error(solution: &Oriented, problem: &Problem, solved: &Solved) -> f64 {
+    let (prepared, u) = (&solved.prepared, &solved.state.displacement);
+    let discretisation = &prepared.discretisation;
+    let (rows, positions) = (&discretisation.supports, &discretisation.cloud.positions);
+    let mut volumes = vec![0.0; positions.len()];
+    for (point, weight) in discretisation.quadrature.weights.iter().enumerate() {
+        for entry in rows.row(point) {
+            volumes[rows.nodes[entry] as usize] += weight * rows.phi[entry];
+        }
+    }
+    let pressure = pressure_of(&problem.regions[0].material.law);
+    let found = NodalFields::new(problem, discretisation, &prepared.model, u, &[]).pressure();
+    let (mut error, mut size) = (0.0, 0.0);
+    for ((X, volume), found) in positions.iter().zip(volumes).zip(found) {
+        let exact = pressure(&solution.deformation_gradient(X));
+        error += volume * (found - exact).powi(2);
+        size += volume * exact.powi(2);
+    }
+    f64::sqrt(error / size)
 }
