@@ -85,7 +85,7 @@ impl Simulation {
         Ok((0..positions.len()).map(|i| rows.interpolate(i, u, components)).collect())
     }
 
-    /// J, Cauchy stress and strain of the material at the nodes, and with these the pressure.
+    /// J, Cauchy stress, pressure and strain of the material at the nodes and between them.
     pub fn nodal_fields(&self) -> NodalFields {
         let (model, u) = (&self.model, &self.state.displacement);
         let extra = self.state.extra.stresses(model);

@@ -205,7 +205,7 @@ fn tilted_layers_take_the_energy_of_a_laminate() {
         for (spacings, ratio) in LAYERS {
             let found = laminate(cloud.clone(), normal, spacings * SPACING, ratio);
             assert!(
-                (found - 1.0).abs() < 0.03,
+                (found - 1.0).abs() < 0.035,
                 "{cloud:?}, {normal:?}, {spacings} spacings, ratio {ratio}: {found}"
             );
         }

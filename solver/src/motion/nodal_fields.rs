@@ -1,4 +1,4 @@
-//! What is known at quadrature points, at the nodes (method book, eq. 10.6).
+//! What is known at quadrature points, at nodes and between them (method book, eqs. 10.6, 10.7).
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::{Matrix3, Vector3};
@@ -7,17 +7,28 @@ use crate::material::Law;
 use crate::model::Model;
 use crate::motion::internal_force::projected_mean_stress;
 use crate::problem::Problem;
+use rayon::prelude::*;
 
-/// J, Cauchy stress and strain of the material at the nodes.
-#[derive(Debug, Clone, PartialEq)]
+/// J, Cauchy stress and strain of the material, as linear functions around the nodes, one for each
+/// region in which a node supports points.
+#[derive(Debug, Clone)]
 pub struct NodalFields {
-    /// J \[node\] \[–\]; 1 within what is held as a volume, where nothing deforms.
-    pub jacobian: Vec<f64>,
-    /// Cauchy stress \[node\]\[by rows\] \[Pa\], the pressure of patches and the stress of fibres and
-    /// viscosity included.
-    pub stress: Vec<f64>,
-    /// Green–Lagrange strain \[node\]\[xx, yy, zz, xy, yz, zx\] \[–\].
-    pub strain: Vec<f64>,
+    /// \[node\], its own region first.
+    around: Vec<Vec<Linear>>,
+    /// \[node\] \[m\]
+    nodes: Vec<Vector3>,
+}
+
+/// What deforms and loads the material at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LocalFields {
+    /// J \[–\]; 1 within what is held as a volume, where nothing deforms.
+    pub jacobian: f64,
+    /// Cauchy stress by rows \[Pa\], the pressure of patches and the stress of fibres and viscosity
+    /// included.
+    pub stress: [f64; 9],
+    /// Green–Lagrange strain \[xx, yy, zz, xy, yz, zx\] \[–\].
+    pub strain: [f64; 6],
 }
 
 /// J, nine components of the stress by rows, and six of the strain.
@@ -30,7 +41,7 @@ const FLAT: f64 = 0.01;
 
 impl NodalFields {
     /// At nodal parameters `u` \[m\]: linear functions are fitted to the values at the quadrature points
-    /// that a node supports in its region, weighted by volume times φ, so that values on the boundary
+    /// that a node supports in a region, weighted by volume times φ, so that values on the boundary
     /// are those there and not half a support inside. `extra_stress` are second Piola–Kirchhoff
     /// stresses \[point\]\[xx, yy, zz, xy, yz, zx\] \[Pa\] beside those of the laws, if there are any.
     pub fn new(
@@ -40,11 +51,10 @@ impl NodalFields {
         u: &[f64],
         extra_stress: &[[f64; 6]],
     ) -> NodalFields {
-        let homes = homes(problem, discretisation);
         let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
-        let cloud = &discretisation.cloud;
+        let nodes = &discretisation.cloud.positions;
         let frames = model.fibre_frames();
-        let mut fits = vec![Fit::default(); cloud.positions.len()];
+        let mut fits: Vec<Vec<(u16, Fit)>> = vec![Vec::new(); nodes.len()];
         for (point, mean_stress) in projected_mean_stress(model, u).into_iter().enumerate() {
             let F = rows.deformation_gradient(point, u, model.components);
             let (X, region) = (quadrature.positions[point], quadrature.regions[point]);
@@ -53,48 +63,94 @@ impl NodalFields {
             let values = at_point(&F, law, frames[point].as_ref(), mean_stress, extra);
             for entry in rows.row(point) {
                 let node = rows.nodes[entry] as usize;
-                if homes[node].is_none_or(|home| home == region) {
-                    let weight = quadrature.weights[point] * rows.phi[entry].max(LEAST_SHARE);
-                    let offset = (X - cloud.positions[node]) / cloud.spacing[node];
-                    fits[node].add(weight, &offset, &values);
-                }
+                let weight = quadrature.weights[point] * rows.phi[entry].max(LEAST_SHARE);
+                let own = fits[node].iter().position(|(known, _)| *known == region);
+                let own = own.unwrap_or_else(|| {
+                    fits[node].push((region, Fit::default()));
+                    fits[node].len() - 1
+                });
+                fits[node][own].1.add(weight, &(X - nodes[node]), &values);
             }
         }
-        let mut fields =
-            NodalFields { jacobian: Vec::new(), stress: Vec::new(), strain: Vec::new() };
-        for fit in fits {
-            let values = fit.at_node();
-            fields.jacobian.push(values[0]);
-            fields.stress.extend(&values[1..10]);
-            fields.strain.extend(&values[10..]);
-        }
-        fields
+        let home = |X: &Vector3| problem.regions.iter().position(|region| region.part.contains(X));
+        let around = fits.into_par_iter().zip(nodes).map(|(fits, X)| {
+            let home = if fits.len() > 1 { home(X) } else { None };
+            let mut all: Vec<Linear> = fits.iter().map(|(r, fit)| fit.linear(*r)).collect();
+            all.sort_by_key(|linear| (Some(linear.region as usize) != home, linear.region));
+            all
+        });
+        NodalFields { around: around.collect(), nodes: nodes.clone() }
     }
 
-    /// −tr σ/3 \[node\] \[Pa\].
-    pub fn pressure(&self) -> Vec<f64> {
-        self.stress.chunks(9).map(|s| -(s[0] + s[4] + s[8]) / 3.0).collect()
+    /// At the nodes, each of its own region.
+    pub fn at_nodes(&self) -> Vec<LocalFields> {
+        let all = self.around.par_iter();
+        all.map(|around| {
+            around.first().map_or(LocalFields::AT_REST, |own| own.at(&Vector3::zeros()))
+        })
+        .collect()
+    }
+
+    /// At a place in a region, from the nodes around with φ there: the mean of what their linear
+    /// functions are there, weighted by φ and by what they know of the region.
+    pub fn at(&self, X: &Vector3, region: u16, nodes: &[u32], phi: &[f64]) -> LocalFields {
+        let known = nodes
+            .iter()
+            .any(|&node| self.around[node as usize].iter().any(|linear| linear.region == region));
+        let (mut total, mut sums) = (0.0, [0.0; FIELDS]);
+        for (&node, phi) in nodes.iter().zip(phi) {
+            for linear in &self.around[node as usize] {
+                if known && linear.region != region {
+                    continue;
+                }
+                let weight = phi.max(LEAST_SHARE) * linear.weight;
+                total += weight;
+                let values = linear.values_at(&(X - self.nodes[node as usize]));
+                sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+            }
+        }
+        if total == 0.0 { LocalFields::AT_REST } else { LocalFields::of(&sums.map(|v| v / total)) }
     }
 }
 
-/// The region of each node, if it supports points there; `None` where points of all count.
-fn homes(problem: &Problem, discretisation: &Discretisation) -> Vec<Option<u16>> {
-    let positions = &discretisation.cloud.positions;
-    if problem.regions.len() == 1 {
-        return vec![None; positions.len()];
+impl LocalFields {
+    const AT_REST: LocalFields = LocalFields { jacobian: 1.0, stress: [0.0; 9], strain: [0.0; 6] };
+
+    fn of(values: &[f64; FIELDS]) -> LocalFields {
+        let stress = std::array::from_fn(|k| values[1 + k]);
+        let strain = std::array::from_fn(|k| values[10 + k]);
+        LocalFields { jacobian: values[0], stress, strain }
     }
-    let owner = |X: &Vector3| problem.regions.iter().position(|region| region.part.contains(X));
-    let owners: Vec<_> = positions.iter().map(|X| owner(X).map(|region| region as u16)).collect();
-    let mut homes = vec![None; positions.len()];
-    let rows = &discretisation.supports;
-    for (point, region) in discretisation.quadrature.regions.iter().enumerate() {
-        for &node in &rows.nodes[rows.row(point)] {
-            if owners[node as usize] == Some(*region) {
-                homes[node as usize] = Some(*region);
-            }
-        }
+
+    /// −tr σ/3 \[Pa\].
+    pub fn pressure(&self) -> f64 {
+        -(self.stress[0] + self.stress[4] + self.stress[8]) / 3.0
     }
-    homes
+}
+
+/// Fields of a region as linear functions around a node.
+#[derive(Debug, Clone)]
+struct Linear {
+    region: u16,
+    /// Σ w φ of the points \[m³\].
+    weight: f64,
+    /// Of the points, from the node \[m\].
+    middle: Vector3,
+    /// There.
+    values: [f64; FIELDS],
+    /// Per length.
+    slopes: [Vector3; FIELDS],
+}
+
+impl Linear {
+    fn values_at(&self, offset: &Vector3) -> [f64; FIELDS] {
+        let way = offset - self.middle;
+        std::array::from_fn(|k| self.values[k] + self.slopes[k].dot(&way))
+    }
+
+    fn at(&self, offset: &Vector3) -> LocalFields {
+        LocalFields::of(&self.values_at(offset))
+    }
 }
 
 fn at_point(
@@ -119,7 +175,7 @@ fn at_point(
     values
 }
 
-/// Sums over the points around a node, with offsets x from it.
+/// Sums over the points of a region around a node, with offsets x from it.
 #[derive(Clone, Default)]
 struct Fit {
     /// Σ w.
@@ -145,24 +201,20 @@ impl Fit {
         }
     }
 
-    /// v̄ − x̄ · M⁺ (Σ w v x/W − v̄ x̄), with means over W = Σ w and M the spread of the offsets.
-    fn at_node(&self) -> [f64; FIELDS] {
-        if self.weight == 0.0 {
-            return std::array::from_fn(|k| f64::from(k == 0));
-        }
+    /// The mean v̄ at the mean place x̄, and slopes M⁺ (⟨v x⟩ − v̄ x̄), M the spread of the offsets.
+    fn linear(&self, region: u16) -> Linear {
         let middle = self.first / self.weight;
         let spread = (self.second / self.weight - middle * middle.transpose()).symmetric_eigen();
         let largest = spread.eigenvalues.max();
-        let mut reach = Vector3::zeros();
+        let mut inverse = Matrix3::zeros();
         for (axis, own) in spread.eigenvectors.column_iter().zip(&spread.eigenvalues) {
             if *own > FLAT * largest {
-                reach += axis * (axis.dot(&middle) / own);
+                inverse += axis * axis.transpose() / *own;
             }
         }
-        std::array::from_fn(|k| {
-            let mean = self.values[k] / self.weight;
-            mean - reach.dot(&(self.slopes[k] / self.weight - mean * middle))
-        })
+        let values = self.values.map(|sum| sum / self.weight);
+        let slope = |k: usize| inverse * (self.slopes[k] / self.weight - values[k] * middle);
+        Linear { region, weight: self.weight, middle, values, slopes: std::array::from_fn(slope) }
     }
 }
 
@@ -175,7 +227,7 @@ mod tests {
         for (n, X) in points.iter().enumerate() {
             fit.add(1.0 + 0.1 * n as f64, X, &[value(X); FIELDS]);
         }
-        fit.at_node()[FIELDS - 1]
+        fit.linear(0).at(&Vector3::zeros()).strain[5]
     }
 
     #[test]

@@ -12,6 +12,7 @@ use anyhow::Result;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Rows;
 use mtled::discretisation::mls::{Approximation, Support};
+use mtled::motion::nodal_fields::{LocalFields, NodalFields};
 use mtled::problem::{Dimension, Fibres, Problem};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -25,6 +26,8 @@ pub struct BodyFrames {
     points: Vec<[f64; 3]>,
     /// φ of the nodes at the vertices.
     rows: Rows,
+    /// Region of each vertex, on borders the first.
+    owners: Vec<u16>,
     /// Distance between nodes at the vertices \[m\].
     spacing: Vec<f64>,
     /// Unit vectors along the fibres at the vertices \[–\], 0 in regions without; nothing where the
@@ -65,11 +68,12 @@ impl BodyFrames {
         let spacing = interpolated(&rows, &discretisation.cloud.spacing, 1);
         let points = display.mesh.vertices.iter().map(|X| (*X).into()).collect();
         let fibres = fibres(problem, &display.mesh);
-        Ok(Some(BodyFrames { display, points, rows, spacing, fibres }))
+        let owners = owners(&display.mesh);
+        Ok(Some(BodyFrames { display, points, rows, owners, spacing, fibres }))
     }
 
-    /// The fields of a frame: displacement of the approximation at the vertices, all others
-    /// interpolated from those at the nodes by its shape functions.
+    /// The fields of a frame at the vertices: displacement of the approximation, what is known of the
+    /// material of their regions, and others interpolated from those at the nodes.
     pub fn frame(
         &self,
         prepared: &Prepared,
@@ -81,16 +85,17 @@ impl BodyFrames {
         let DisplayMesh { mesh, on_boundary, edge } = &self.display;
         let components = prepared.model.components;
         let displacement = vectors(&self.rows, &frame.displacement, components);
-        let stress = interpolated(&self.rows, &fields.material.stress, 9);
+        let local = self.material(&fields.material);
+        let stresses = || local.iter().map(|local| &local.stress);
         let single = |name: &str, components: usize, values: Vec<f64>| {
             PointArray::new(name, components, values).stored(Stored::Single)
         };
         let mut point_data = vec![
             PointArray::new("displacement", 3, displacement),
-            single("J", 1, interpolated(&self.rows, &fields.material.jacobian, 1)),
-            single("von_mises_stress", 1, stress.chunks(9).map(von_mises).collect()),
-            single("pressure", 1, stress.chunks(9).map(|s| -(s[0] + s[4] + s[8]) / 3.0).collect()),
-            single("principal_green_lagrange_strain", 3, self.principal_strains(fields)),
+            single("J", 1, local.iter().map(|local| local.jacobian).collect()),
+            single("von_mises_stress", 1, stresses().map(von_mises).collect()),
+            single("pressure", 1, local.iter().map(LocalFields::pressure).collect()),
+            single("principal_green_lagrange_strain", 3, principal_strains(&local)),
             single("nodal_spacing", 1, self.spacing.clone()),
         ];
         if let Some(pressures) = &fields.contact_pressure {
@@ -109,7 +114,7 @@ impl BodyFrames {
         if let Some(bars) = &fields.error_bar {
             point_data.push(single("displacement_error_bar", 1, self.not_negative(bars)));
         }
-        point_data.push(single("cauchy_stress", 9, stress));
+        point_data.push(single("cauchy_stress", 9, stresses().flatten().copied().collect()));
         let boundary = on_boundary.iter().map(|on| f64::from(*on)).collect();
         point_data.push(PointArray::new("on_boundary", 1, boundary).stored(Stored::Integer));
         let regions = mesh.regions.iter().map(|region| f64::from(*region)).collect();
@@ -176,21 +181,43 @@ impl BodyFrames {
         interpolated(&self.rows, values, 1).into_iter().map(|value| value.max(0.0)).collect()
     }
 
-    /// Principal values, the largest first, of the Green–Lagrange strain.
-    fn principal_strains(&self, fields: &NodeFields) -> Vec<f64> {
-        let strain = interpolated(&self.rows, &fields.material.strain, 6);
-        let principal = |e: &[f64]| -> [f64; 3] {
-            let E = Matrix3::new(e[0], e[3], e[5], e[3], e[1], e[4], e[5], e[4], e[2]);
-            let mut values: [f64; 3] = E.symmetric_eigenvalues().into();
-            values.sort_by(|a, b| b.total_cmp(a));
-            values
+    /// J, stress and strain at the vertices, each of its region.
+    fn material(&self, fields: &NodalFields) -> Vec<LocalFields> {
+        let vertices = self.display.mesh.vertices.par_iter().zip(&self.owners).enumerate();
+        let at = |(vertex, (X, region)): (usize, (&Vector3, &u16))| {
+            let row = self.rows.row(vertex);
+            fields.at(X, *region, &self.rows.nodes[row.clone()], &self.rows.phi[row])
         };
-        strain.par_chunks(6).flat_map_iter(principal).collect()
+        vertices.map(at).collect()
     }
 }
 
+/// The region of each vertex of a mesh, on borders the first.
+fn owners(mesh: &Mesh) -> Vec<u16> {
+    let mut owners = vec![u16::MAX; mesh.vertices.len()];
+    for (cell, region) in mesh.iter().zip(&mesh.regions) {
+        for &vertex in cell {
+            let owner = &mut owners[vertex as usize];
+            *owner = (*owner).min(*region);
+        }
+    }
+    owners
+}
+
+/// Principal values, the largest first, of the Green–Lagrange strain.
+fn principal_strains(local: &[LocalFields]) -> Vec<f64> {
+    let principal = |local: &LocalFields| -> [f64; 3] {
+        let e = &local.strain;
+        let E = Matrix3::new(e[0], e[3], e[5], e[3], e[1], e[4], e[5], e[4], e[2]);
+        let mut values: [f64; 3] = E.symmetric_eigenvalues().into();
+        values.sort_by(|a, b| b.total_cmp(a));
+        values
+    };
+    local.par_iter().flat_map_iter(principal).collect()
+}
+
 /// √(3/2 s : s) with the deviator s of a Cauchy stress by rows \[Pa\].
-fn von_mises(stress: &[f64]) -> f64 {
+fn von_mises(stress: &[f64; 9]) -> f64 {
     let mean = (stress[0] + stress[4] + stress[8]) / 3.0;
     let part = |k: usize| stress[k] - if k.is_multiple_of(4) { mean } else { 0.0 };
     (1.5 * (0..9).map(|k| part(k).powi(2)).sum::<f64>()).sqrt()

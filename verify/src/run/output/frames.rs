@@ -12,6 +12,7 @@ use crate::run::prepare::Prepared;
 use crate::run::record::{Frame, Recording};
 use crate::scene::Case;
 use anyhow::Result;
+use mtled::motion::nodal_fields::LocalFields;
 use mtled::problem::{Motion, Problem};
 use mtled_checks::escape::file_name;
 use std::path::{Path, PathBuf};
@@ -163,16 +164,16 @@ fn node_frame<'a>(
     mode: Option<&Vec<f64>>,
     numbers: Vec<(&'static str, f64)>,
 ) -> Result<VtuFrame<'a>> {
-    let pressure = fields.material.pressure();
+    let local = fields.material.at_nodes();
     let gaps = fields.contact_pressure.as_ref().map(|_| {
         let positions = &prepared.discretisation.cloud.positions;
         contact_gaps((&prepared.model.contact, fields.time), positions, &fields.displacement)
     });
     let mut point_data = vec![
         PointArray::new("displacement", 3, fields.displacement),
-        PointArray::new("J", 1, fields.material.jacobian),
-        PointArray::new("cauchy_stress", 9, fields.material.stress),
-        PointArray::new("pressure", 1, pressure),
+        PointArray::new("J", 1, local.iter().map(|local| local.jacobian).collect()),
+        PointArray::new("cauchy_stress", 9, local.iter().flat_map(|local| local.stress).collect()),
+        PointArray::new("pressure", 1, local.iter().map(LocalFields::pressure).collect()),
     ];
     if let (Some(gaps), Some(pressures)) = (gaps, fields.contact_pressure) {
         point_data.push(PointArray::new("contact_gap", 1, gaps));

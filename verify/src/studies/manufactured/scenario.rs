@@ -274,11 +274,11 @@ fn nodal_pressure_error(solution: &Oriented, problem: &Problem, solved: &Solved)
         }
     }
     let pressure = pressure_of(&problem.regions[0].material.law);
-    let found = NodalFields::new(problem, discretisation, &prepared.model, u, &[]).pressure();
+    let fields = NodalFields::new(problem, discretisation, &prepared.model, u, &[]);
     let (mut error, mut size) = (0.0, 0.0);
-    for ((X, volume), found) in positions.iter().zip(volumes).zip(found) {
+    for ((X, volume), found) in positions.iter().zip(volumes).zip(fields.at_nodes()) {
         let exact = pressure(&solution.deformation_gradient(X));
-        error += volume * (found - exact).powi(2);
+        error += volume * (found.pressure() - exact).powi(2);
         size += volume * exact.powi(2);
     }
     f64::sqrt(error / size)
