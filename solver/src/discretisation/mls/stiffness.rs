@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::Vector3;
+use crate::discretisation::mls::held_sides::ON_BORDER;
 use crate::discretisation::neighbours::Neighbours;
 use crate::geometry::{Selector, Shape};
 use crate::problem::{MaterialBorders, Problem, Region};
@@ -17,9 +18,7 @@ const LOOKS: [f64; 3] = [0.06, 0.14, 0.27];
 /// Cosine of the normals of two borders that face each other, or away from each other, is smaller
 /// than this; not round, so that round-off does not choose at right angles.
 const FACING: f64 = -0.151_3;
-/// Places that are closer to a border are on it, and of its stiffer side \[spacing\].
-const ON_BORDER: f64 = 1e-6;
-/// Places that are outside by less than this part of such a distance are inside \[–\].
+/// Places that are outside by less than this part of a distance to look at are inside \[–\].
 const BOUNDARY: f64 = 1e-3;
 /// Halvings towards a border.
 const HALVINGS: usize = 40;
