@@ -45,20 +45,32 @@ impl Sides {
         let of_node = (nodes, &spacing).into_par_iter().map(at_node).collect();
         let smallest = radii.iter().fold(f64::INFINITY, |a, &b| a.min(b));
         let near = Neighbours::new(nodes, SOUGHT * smallest);
+        let reach = |node: usize| SOUGHT * radii[node];
+        // Once for each pair, by the first that is close enough.
         let found = |a: usize| {
             let mut parted = Vec::new();
-            if stiffness.may_change(&nodes[a], SOUGHT * radii[a]) {
-                near.for_each_within(&nodes[a], SOUGHT * radii[a], |b, _| {
+            if stiffness.may_change(&nodes[a], reach(a)) {
+                near.for_each_within(&nodes[a], reach(a), |b, offset| {
+                    let both = offset.norm_squared() < reach(b) * reach(b);
                     let spacing = spacing[a].min(spacing[b]);
-                    if a != b && stiffness.parts(&nodes[a], &nodes[b], spacing) {
-                        parted.push(b as u32);
+                    if (a < b || a > b && !both) && stiffness.parts(&nodes[a], &nodes[b], spacing) {
+                        parted.push((b as u32, both));
                     }
                 });
             }
-            parted.sort_unstable();
             parted
         };
-        let parted = (0..nodes.len()).into_par_iter().map(found).collect();
+        let found: Vec<_> = (0..nodes.len()).into_par_iter().map(found).collect();
+        let mut parted = vec![Vec::new(); nodes.len()];
+        for (a, others) in found.into_iter().enumerate() {
+            for (b, both) in others {
+                parted[a].push(b);
+                if both {
+                    parted[b as usize].push(a as u32);
+                }
+            }
+        }
+        parted.iter_mut().for_each(|others| others.sort_unstable());
         Sides { stiffness, nodes: nodes.to_vec(), spacing, of_node, parted }
     }
 

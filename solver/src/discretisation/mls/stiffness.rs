@@ -4,9 +4,10 @@
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::mls::held_sides::ON_BORDER;
 use crate::discretisation::neighbours::Neighbours;
-use crate::geometry::{Selector, Shape};
+use crate::geometry::{LabelMap, Selector, Shape};
 use crate::problem::{MaterialBorders, Problem, Region};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Borders are sought between nodes that are closer than this \[spacing\]: each has another
 /// across the border; not round, since round-off would choose on lattices.
@@ -28,7 +29,13 @@ const HALVINGS: usize = 40;
 pub struct Stiffness {
     /// In the order of the regions \[Pa\].
     parts: Vec<(Selector, f64)>,
+    /// The same where one look at a label map tells it.
+    by_label: Option<ByLabel>,
+    /// The least of all \[Pa\].
+    softest: f64,
     flat: bool,
+    /// Unit vectors to the neighbours in a lattice of cubes, or of squares.
+    ways: Vec<Vector3>,
 }
 
 impl Stiffness {
@@ -47,7 +54,11 @@ impl Stiffness {
         let modulus = |region: &Region| region.material.law.constants().shear_modulus;
         let parts: Vec<_> = regions.iter().map(|r| (r.part.clone(), modulus(r))).collect();
         let differ = parts.windows(2).any(|two| two[0].1 != two[1].1);
-        differ.then_some(Stiffness { parts, flat })
+        differ.then(|| {
+            let by_label = ByLabel::of(&parts);
+            let softest = parts.iter().fold(f64::INFINITY, |least, part| least.min(part.1));
+            Stiffness { parts, by_label, softest, flat, ways: ways(flat) }
+        })
     }
 
     /// Whether it is that of a plane.
@@ -57,6 +68,9 @@ impl Stiffness {
 
     /// \[Pa\]; 0 outside of all regions.
     pub fn at(&self, X: &Vector3) -> f64 {
+        if let Some(by_label) = &self.by_label {
+            return by_label.at(X);
+        }
         self.parts.iter().find(|(part, _)| part.contains(X)).map_or(0.0, |(_, modulus)| *modulus)
     }
 
@@ -67,7 +81,7 @@ impl Stiffness {
             return self.at(X);
         }
         // Regions that end at the boundary of the body have another one beyond.
-        let around = directions(self.flat).map(|way| X + reach * way);
+        let around = self.ways.iter().map(|way| X + reach * way);
         let inside = around.filter(|Y| body.signed_distance(Y) < BOUNDARY * reach);
         inside.map(|Y| self.at(&Y)).fold(self.at(X), f64::max)
     }
@@ -177,7 +191,7 @@ impl Stiffness {
     pub(crate) fn normal(&self, X: &Vector3, spacing: f64) -> Vector3 {
         let own = self.at(X);
         let looks = LOOKS.into_iter().flat_map(|look| {
-            directions(self.flat).filter(move |way| self.at(&(X + look * spacing * way)) < own)
+            self.ways.iter().filter(move |way| self.at(&(X + look * spacing * *way)) < own)
         });
         looks.sum::<Vector3>().try_normalize(0.0).unwrap_or_default()
     }
@@ -190,6 +204,9 @@ impl Stiffness {
             return false;
         }
         let own = self.at(X).min(self.at(Y));
+        if own <= self.softest {
+            return false;
+        }
         let count = (2.0 * half / (STEP * spacing)).ceil().max(1.0) as usize;
         let at = |n: usize| X + (Y - X) * (n as f64 / count as f64);
         let leaves = |from: Vector3, to: Vector3| {
@@ -224,10 +241,46 @@ pub(crate) fn are_opposite(one: &Vector3, other: &Vector3) -> bool {
 }
 
 /// Unit vectors to the neighbours in a lattice of cubes, or of squares.
-fn directions(flat: bool) -> impl Iterator<Item = Vector3> {
+fn ways(flat: bool) -> Vec<Vector3> {
     let parts = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|k| k as f64 - 1.0));
-    let ways = parts.map(Vector3::from).filter(move |way| !flat || way.z == 0.0);
-    ways.filter_map(|way| way.try_normalize(0.0))
+    let ways = parts.map(Vector3::from).filter(|way| !flat || way.z == 0.0);
+    ways.filter_map(|way| way.try_normalize(0.0)).collect()
+}
+
+/// The shear modulus at rest of each label of one map, where regions are labels of it.
+#[derive(Debug, Clone)]
+struct ByLabel {
+    map: Arc<LabelMap>,
+    /// The first of a label counts \[Pa\].
+    moduli: Vec<(u32, f64)>,
+    /// Of all other labels, and outside of the map \[Pa\].
+    rest: f64,
+}
+
+impl ByLabel {
+    fn of(parts: &[(Selector, f64)]) -> Option<ByLabel> {
+        let Selector::Label { map, .. } = &parts.first()?.0 else { return None };
+        let (mut moduli, mut rest) = (Vec::new(), 0.0);
+        for (part, modulus) in parts {
+            match part {
+                Selector::Label { map: own, label } if Arc::ptr_eq(own, map) => {
+                    moduli.push((*label, *modulus));
+                }
+                Selector::All => {
+                    rest = *modulus;
+                    break;
+                }
+                _ => return None,
+            }
+        }
+        Some(ByLabel { map: map.clone(), moduli, rest })
+    }
+
+    fn at(&self, X: &Vector3) -> f64 {
+        let label = self.map.label_at(X);
+        let own = self.moduli.iter().find(|(known, _)| *known == label);
+        own.map_or(self.rest, |(_, modulus)| *modulus)
+    }
 }
 
 /// Where the way between two nodes passes from one stiffness to another.

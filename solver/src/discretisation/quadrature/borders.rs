@@ -10,7 +10,7 @@ use crate::problem::Region;
 
 /// Levels that differ by less than this fraction of the edge of a cell from linear ones are cut
 /// as if they were linear; not round, so that round-off seldom chooses \[–\].
-const NEARLY_LINEAR: f64 = 0.004_131_7;
+const NEARLY_LINEAR: f64 = 0.030_7;
 
 /// In the smallest cells levels that differ by less than this are smooth, others have a kink.
 const SMOOTH: f64 = 0.1;

@@ -229,7 +229,7 @@ impl PointCollector<'_> {
         let mut leaves = Vec::new();
         self.measure(part, depth, &mut |leaf| leaves.push(leaf))?;
         let piece = match beside_gap {
-            true => pieces(self.body, part, &leaves, 1 << depth, self.components),
+            true => pieces(self.body, part, &leaves, self.components),
             false => pieces_by_sight(self.regions, &leaves),
         };
         let last = piece.iter().max().map_or(0, |&last| last);

@@ -45,14 +45,8 @@ impl Moments {
 
 /// The piece of each sub-cell of a cell, numbered by their first members: those that touch
 /// without a gap between their centroids belong together, and so do pieces whose largest
-/// sub-cells see each other. The smallest sub-cells are 1/`finest` of the cell.
-pub(super) fn pieces(
-    body: &Shape,
-    cell: &Cell,
-    leaves: &[Leaf],
-    finest: usize,
-    components: usize,
-) -> Vec<usize> {
+/// sub-cells see each other.
+pub(super) fn pieces(body: &Shape, cell: &Cell, leaves: &[Leaf], components: usize) -> Vec<usize> {
     let places: Vec<Place> = leaves.iter().map(|leaf| body.place(&leaf.centroid)).collect();
     let mut sets = Sets::new(leaves.len());
     let join = |sets: &mut Sets, a: u32, b: u32| {
@@ -61,7 +55,7 @@ pub(super) fn pieces(
             sets.join(a, b);
         }
     };
-    for (a, b) in touching(cell, leaves, finest, components) {
+    for (a, b) in touching(cell, leaves, components) {
         join(&mut sets, a, b);
     }
     let all = 0..leaves.len() as u32;
@@ -106,8 +100,11 @@ pub(super) fn pieces_by_sight(regions: &[Region], leaves: &[Leaf]) -> Vec<usize>
 }
 
 /// Pairs of parts of sub-cells that share a face or are in the same one, some more than once.
-fn touching(cell: &Cell, leaves: &[Leaf], finest: usize, components: usize) -> Vec<(u32, u32)> {
+fn touching(cell: &Cell, leaves: &[Leaf], components: usize) -> Vec<(u32, u32)> {
     const NONE: u32 = u32::MAX;
+    // The smallest sub-cells are that part of the cell.
+    let smallest = leaves.iter().map(|leaf| leaf.cell.edge).fold(cell.edge, f64::min);
+    let finest = (cell.edge / smallest).round() as usize;
     let size = [finest, finest, if components == 3 { finest } else { 1 }];
     let step = cell.edge / finest as f64;
     let mut owner = vec![NONE; size.iter().product()];
@@ -185,13 +182,13 @@ mod tests {
         for width in [1e-3, 0.01, 0.1, 0.3] {
             let body = Shape::Union(vec![block(-3.0, 0.01), block(0.01 + width, 3.0)]);
             let leaves = leaves(&body, cell);
-            let found = pieces(&body, &cell, &leaves, FINEST, 3);
+            let found = pieces(&body, &cell, &leaves, 3);
             for (leaf, piece) in leaves.iter().zip(found) {
                 assert_eq!(piece, (leaf.centroid.z > 0.01) as usize, "width {width}");
             }
             // Without the slit there is one.
             let whole = Shape::Union(vec![block(-3.0, 0.01), block(0.01, 3.0)]);
-            let found = pieces(&whole, &cell, &leaves, FINEST, 3);
+            let found = pieces(&whole, &cell, &leaves, 3);
             assert!(width > 0.05 || found.iter().all(|&piece| piece == 0), "width {width}");
         }
     }

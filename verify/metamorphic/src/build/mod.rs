@@ -75,8 +75,8 @@ fn motion(scene: &Scene) -> Motion {
 fn regions(scene: &Scene, frame: &Frame) -> Result<Vec<Region>> {
     let mut regions = Vec::new();
     if let Some(inclusion) = scene.inclusion {
-        let part = shape::half(frame, inclusion.axis);
-        regions.push(material::region(scene, frame, "half", part, inclusion.stiffness)?);
+        let part = shape::piece(frame, &inclusion);
+        regions.push(material::region(scene, frame, "piece", part, inclusion.stiffness)?);
     }
     regions.push(material::region(scene, frame, "rest", Selector::All, 1.0)?);
     Ok(regions)

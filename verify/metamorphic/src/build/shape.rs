@@ -1,7 +1,7 @@
 //! Solids and parts of space.
 
 use super::frame::Frame;
-use crate::scene::{Form, Part, Scene};
+use crate::scene::{Form, Inclusion, Part, Piece, Scene};
 use anyhow::Result;
 use mtled::Vector3;
 use mtled::algebra::tensor::Matrix3;
@@ -239,11 +239,28 @@ fn side(frame: &Frame, point: &Vector3, normal: &Vector3) -> Selector {
     Selector::Inside { shape, tolerance: frame.tolerance }
 }
 
-/// What lies below the middle of the box along an axis.
-pub fn half(frame: &Frame, axis: u8) -> Selector {
+/// What is of another material.
+pub fn piece(frame: &Frame, inclusion: &Inclusion) -> Selector {
     // Not in the middle of cells or nodes, where round-off would choose.
     let at = 0.513 * frame.edges;
-    side(frame, &at, &Vector3::ith(usize::from(axis), 1.0))
+    let axis = usize::from(inclusion.axis);
+    let along = Vector3::ith(axis, 1.0);
+    let layer = |normal: Vector3, thickness: f64| Selector::Plane {
+        point: frame.point(&at),
+        normal: frame.direction(&normal),
+        tolerance: 0.5 * thickness * frame.edges[axis] * frame.size,
+    };
+    match inclusion.piece {
+        Piece::Half => side(frame, &at, &along),
+        Piece::Layer(thickness) => layer(along, thickness),
+        Piece::Askew(thickness) => {
+            let (sine, cosine) = (std::f64::consts::FRAC_PI_6).sin_cos();
+            // In a plane the layer stays across it.
+            let aside = Vector3::ith(if axis == 1 { 0 } else { 1 }, 1.0);
+            layer(cosine * along + sine * aside, thickness)
+        }
+        Piece::Ball(radius) => ball(frame, &at, radius * frame.edges.min()),
+    }
 }
 
 /// A part of the body of a scene.

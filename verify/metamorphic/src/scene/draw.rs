@@ -1,7 +1,8 @@
 //! Scenes at random.
 
 use super::{
-    Basis, Cloud, Form, Gradients, Hold, Inclusion, Law, Part, Place, Push, Rubs, Scene, Wall, Way,
+    Basis, Cloud, Form, Gradients, Hold, Inclusion, Law, Part, Piece, Place, Push, Rubs, Scene,
+    Wall, Way,
 };
 use fastrand::Rng;
 
@@ -99,7 +100,11 @@ impl Scene {
         let d = self.components();
         if chance(rng, 4) {
             let axis = rng.u8(..d as u8);
-            self.inclusion = Some(Inclusion { axis, stiffness: one(rng, &[0.3, 3.0, 10.0]) });
+            self.inclusion = Some(Inclusion {
+                axis,
+                stiffness: one(rng, &[0.3, 3.0, 10.0]),
+                piece: Piece::Half,
+            });
         }
         let motion = !self.is_static();
         let along = rng.u8(..d as u8);

@@ -1,7 +1,7 @@
 //! What a scene has besides, at random.
 
 use super::draw::{between, chance, one, vector};
-use super::{Bed, Drift, Filling, Form, Memory, Part, Rubs, Scene};
+use super::{Bed, Drift, Filling, Form, Memory, Part, Piece, Rubs, Scene};
 use fastrand::Rng;
 
 impl Scene {
@@ -22,6 +22,12 @@ impl Scene {
             self.tension = Some(between(rng, 0.01, 0.1));
         }
         self.draw_way_of_obstacle(rng);
+        if let Some(inclusion) = &mut self.inclusion {
+            let thickness = one(rng, &[0.071, 0.13, 0.29]);
+            let (layer, askew) = (Piece::Layer(thickness), Piece::Askew(thickness));
+            let ball = Piece::Ball(one(rng, &[0.23, 0.37, 0.46]));
+            inclusion.piece = one(rng, &[Piece::Half, layer, askew, ball, ball]);
+        }
     }
 
     /// A hole with walls of more than a spacing.

@@ -6,7 +6,7 @@ mod more;
 mod part;
 mod smaller;
 
-pub use more::{Bed, Drift, Filling, Memory, Rubs, Wall};
+pub use more::{Bed, Drift, Filling, Memory, Piece, Rubs, Wall};
 pub use part::Part;
 
 use serde::{Deserialize, Serialize};
@@ -50,7 +50,7 @@ pub struct Scene {
     pub projected: bool,
     /// How it comes to its end.
     pub way: Way,
-    /// Another material in a half of the body.
+    /// Another material in a part of the body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inclusion: Option<Inclusion>,
     /// What it comes to rest on.
@@ -196,13 +196,16 @@ pub enum Way {
     },
 }
 
-/// The half of the body behind the middle along an axis.
+/// Another material in a part of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Inclusion {
     /// 0, 1, 2 for x, y, z.
     pub axis: u8,
     /// Its stiffness over that of the rest \[–\].
     pub stiffness: f64,
+    /// Which part.
+    #[serde(default)]
+    pub piece: Piece,
 }
 
 /// A prescribed displacement.

@@ -15,6 +15,21 @@ pub struct Bed {
     pub tangential: f64,
 }
 
+/// Which part of a body is of another material.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Piece {
+    /// What lies behind the middle along the axis.
+    #[default]
+    Half,
+    /// A layer across the axis, this thick, over the edge of the box \[–\].
+    Layer(f64),
+    /// The same, a third of a right angle askew.
+    Askew(f64),
+    /// A ball about the middle, of this radius over the shortest edge of the box \[–\].
+    Ball(f64),
+}
+
 /// A fluid that fills the hole of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Filling {

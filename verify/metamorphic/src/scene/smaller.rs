@@ -1,6 +1,8 @@
 //! Smaller scenes: with one thing less, or one thing plainer.
 
-use super::{Basis, Cloud, Form, Gradients, Hold, Law, Part, Place, Rubs, Scene, Wall, Way};
+use super::{
+    Basis, Cloud, Form, Gradients, Hold, Inclusion, Law, Part, Piece, Place, Rubs, Scene, Wall, Way,
+};
 
 impl Scene {
     /// Scenes that are a little plainer than this one, the largest cuts first.
@@ -25,6 +27,8 @@ impl Scene {
         }
         add(&|scene| scene.obstacle = None);
         add(&|scene| scene.inclusion = None);
+        let half = |inclusion| Inclusion { piece: Piece::Half, ..inclusion };
+        add(&|scene| scene.inclusion = scene.inclusion.map(half));
         add(&|scene| scene.bed = None);
         add(&|scene| scene.filling = None);
         add(&|scene| scene.memory = None);
