@@ -117,3 +117,38 @@ fn the_wall_of_a_cavity_of_a_few_spacings_moves_evenly_as_lame_says() {
         assert!(u.max() < 1.04 * u.min(), "{u} at {spacing}");
     }
 }
+
+#[test]
+fn a_hole_that_ends_in_a_face_of_its_body_is_as_open_as_one_that_reaches_beyond() {
+    let (edge, height) = (0.1, 0.05);
+    let plate = Shape::Box { min: Vector3::zeros(), max: Vector3::new(edge, edge, height) };
+    let bore = |beyond: f64| Shape::Cylinder {
+        base: Vector3::new(0.05, 0.05, -beyond),
+        axis: Vector3::z(),
+        radius: 0.02,
+        height: height + 2.0 * beyond,
+    };
+    let notch = |beyond: f64| Shape::Box {
+        min: Vector3::new(0.052, 0.047, -beyond),
+        max: Vector3::new(edge + beyond, edge + beyond, height + beyond),
+    };
+    let laws = ElasticConstants::from_young_poisson(3000.0, 0.3).unwrap();
+    let law = Law::NeoHookeanLogJ(mtled::material::NeoHookeanLogJ::new(laws));
+    let discretised = |hole: Shape| {
+        let material = Material { density: 1000.0, law };
+        let body = plate.clone().without(hole);
+        let problem = Problem::new(body, material, Recipe::with_spacing(0.01));
+        mtled::discretisation::Discretisation::new(&problem).unwrap()
+    };
+    for [ends, reaches] in [[bore(0.0), bore(0.02)], [notch(0.0), notch(0.02)]] {
+        let [one, other] = [discretised(ends), discretised(reaches)];
+        assert_eq!(one.cloud.positions.len(), other.cloud.positions.len());
+        assert_eq!(one.quadrature.positions.len(), other.quadrature.positions.len());
+        let volume = |of: &mtled::discretisation::Discretisation| of.volume();
+        assert!((volume(&one) / volume(&other) - 1.0).abs() < 1e-4);
+        for X in &one.quadrature.positions {
+            let near = |Y: &Vector3| (X - Y).norm() < 1e-5;
+            assert!(other.quadrature.positions.iter().any(near), "{X}");
+        }
+    }
+}

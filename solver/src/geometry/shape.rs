@@ -9,6 +9,13 @@ use crate::geometry::surface::Surface;
 use crate::geometry::voxels::LabelField;
 use std::sync::Arc;
 
+/// How far faces of a hole that lie in faces of its body are moved beyond them \[size of the hole\].
+const BEYOND: f64 = 1e-3;
+/// Places closer to a face lie in it \[size of the body\].
+const SAME_FACE: f64 = 1e-9;
+/// Cosine of the largest angle between normals of one face.
+const ALONG: f64 = 1.0 - 1e-6;
+
 /// A solid in space.
 #[derive(Debug, Clone)]
 pub enum Shape {
@@ -137,6 +144,63 @@ impl Shape {
             }
             Shape::Labels(field) => self.gradient_by_differences(X, 0.25 * field.voxel()),
             _ => self.gradient_by_differences(X, 1e-6 * self.size()),
+        }
+    }
+
+    /// This solid without a hole. Where a flat end or face of the hole lies in a face of the solid,
+    /// it is moved a little beyond: [`Shape::Difference`] as such has a boundary there, the mouth
+    /// of the hole, on both sides of which it is empty.
+    pub fn without(self, hole: Shape) -> Shape {
+        let hole = hole.through_faces_of(&self);
+        Shape::Difference(Box::new(self), Box::new(hole))
+    }
+
+    /// With flat faces that lie in those of a `body` moved beyond them.
+    fn through_faces_of(self, body: &Shape) -> Shape {
+        let beyond = BEYOND * self.size();
+        let lies_in_face = |X: &Vector3, normal: &Vector3| {
+            body.signed_distance(X).abs() < SAME_FACE * body.size()
+                && body.gradient(X).dot(normal) > ALONG
+                && body.signed_distance(&(X + beyond * normal)) > 0.5 * beyond
+        };
+        let all = |members: Vec<Shape>| {
+            members.into_iter().map(|member| member.through_faces_of(body)).collect()
+        };
+        match self {
+            Shape::Box { min, max } => {
+                let (mut ends, half) = ([min, max], 0.5 * (max - min));
+                for axis in 0..3 {
+                    let others = [(axis + 1) % 3, (axis + 2) % 3];
+                    for (end, side) in [(0, -1.0), (1, 1.0)] {
+                        let middle = min + half + Vector3::ith(axis, side * half[axis]);
+                        let normal = Vector3::ith(axis, side);
+                        let lies = |X: Vector3| lies_in_face(&X, &normal);
+                        let aside = |k: usize, part: f64| Vector3::ith(k, part * half[k]);
+                        let around =
+                            others.iter().flat_map(|&k| [-0.6, 0.6].map(|part| aside(k, part)));
+                        if lies(middle) || around.into_iter().any(|aside| lies(middle + aside)) {
+                            ends[end][axis] += side * beyond;
+                        }
+                    }
+                }
+                Shape::Box { min: ends[0], max: ends[1] }
+            }
+            Shape::Cylinder { mut base, axis, radius, mut height } => {
+                let across = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
+                let ways = [across, axis.cross(&across), -across, -axis.cross(&across)];
+                let lies = |end: Vector3, normal: Vector3| {
+                    lies_in_face(&end, &normal)
+                        || ways.iter().any(|w| lies_in_face(&(end + 0.6 * radius * w), &normal))
+                };
+                let top = lies(base + height * axis, axis);
+                if lies(base, -axis) {
+                    (base, height) = (base - beyond * axis, height + beyond);
+                }
+                Shape::Cylinder { base, axis, radius, height: height + f64::from(top) * beyond }
+            }
+            Shape::Union(members) => Shape::Union(all(members)),
+            Shape::Intersection(members) => Shape::Intersection(all(members)),
+            other => other,
         }
     }
 

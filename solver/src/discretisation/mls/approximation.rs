@@ -214,7 +214,7 @@ impl Approximation {
             let seen = |node: u32| sides.is_seen(node, softest) && self.deforms(node);
             let through_material = |nodes: &mut Vec<u32>| {
                 through_body(nodes);
-                sides.keep_seen(X, nodes);
+                sides.keep_seen(X, softest, nodes);
             };
             if self.evaluate_seeing(X, seen, through_material, scratch, support).is_ok() {
                 return Ok(());

@@ -23,9 +23,12 @@ const SOUGHT: f64 = 1.351_3;
 #[derive(Debug, Clone)]
 pub(super) struct Sides {
     stiffness: Stiffness,
+    body: Shape,
     nodes: Vec<Vector3>,
     /// \[node\] \[m\]
     spacing: Vec<f64>,
+    /// The least of them \[m\].
+    smallest_spacing: f64,
     /// \[node\] \[Pa\]
     of_node: Vec<f64>,
     /// For each node those near it from which a softer layer parts it, ascending.
@@ -41,8 +44,8 @@ impl Sides {
         dilation: f64,
     ) -> Sides {
         let spacing: Vec<f64> = radii.iter().map(|radius| radius / dilation).collect();
-        let at_node = |(X, spacing): (&Vector3, &f64)| stiffness.at_node(X, *spacing, body);
-        let of_node = (nodes, &spacing).into_par_iter().map(at_node).collect();
+        let at_node = |(X, spacing): (&Vector3, &f64)| stiffness.at_place(X, *spacing, body);
+        let of_node: Vec<f64> = (nodes, &spacing).into_par_iter().map(at_node).collect();
         let smallest = radii.iter().fold(f64::INFINITY, |a, &b| a.min(b));
         let near = Neighbours::new(nodes, SOUGHT * smallest);
         let reach = |node: usize| SOUGHT * radii[node];
@@ -53,7 +56,10 @@ impl Sides {
                 near.for_each_within(&nodes[a], reach(a), |b, offset| {
                     let both = offset.norm_squared() < reach(b) * reach(b);
                     let spacing = spacing[a].min(spacing[b]);
-                    if (a < b || a > b && !both) && stiffness.parts(&nodes[a], &nodes[b], spacing) {
+                    let own = of_node[a].min(of_node[b]);
+                    if (a < b || a > b && !both)
+                        && stiffness.parts(&nodes[a], &nodes[b], own, spacing)
+                    {
                         parted.push((b as u32, both));
                     }
                 });
@@ -71,12 +77,13 @@ impl Sides {
             }
         }
         parted.iter_mut().for_each(|others| others.sort_unstable());
-        Sides { stiffness, nodes: nodes.to_vec(), spacing, of_node, parted }
+        let (body, nodes, smallest_spacing) = (body.clone(), nodes.to_vec(), smallest / dilation);
+        Sides { stiffness, body, nodes, spacing, smallest_spacing, of_node, parted }
     }
 
     /// The softest nodes that a point sees \[Pa\].
     pub fn softest_seen(&self, X: &Vector3) -> f64 {
-        self.stiffness.at(X)
+        self.stiffness.at_place(X, self.smallest_spacing, &self.body)
     }
 
     /// Whether a node is at least as stiff \[Pa\].
@@ -84,14 +91,15 @@ impl Sides {
         self.of_node[node as usize] >= softest
     }
 
-    /// Drops the nodes of an ascending list, those around a point that are at least as stiff, that
-    /// a softer layer parts from it. Only nodes are looked at that one parts from others of the list.
-    pub fn keep_seen(&self, X: &Vector3, around: &mut Vec<u32>) {
+    /// Drops the nodes of an ascending list, those around a point that are at least as stiff as the
+    /// `softest`, that a softer layer parts from it. Only nodes are looked at that one parts from
+    /// others of the list.
+    pub fn keep_seen(&self, X: &Vector3, softest: f64, around: &mut Vec<u32>) {
         let others = |node: u32| &self.parted[node as usize];
         let is_hidden = |&node: &u32| {
             let spacing = self.spacing[node as usize];
             have_common(others(node), around)
-                && self.stiffness.parts(X, &self.nodes[node as usize], spacing)
+                && self.stiffness.parts(X, &self.nodes[node as usize], softest, spacing)
         };
         let hidden: Vec<u32> = around.iter().copied().filter(is_hidden).collect();
         if hidden.is_empty() {

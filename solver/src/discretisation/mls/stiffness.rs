@@ -74,8 +74,9 @@ impl Stiffness {
         self.parts.iter().find(|(part, _)| part.contains(X)).map_or(0.0, |(_, modulus)| *modulus)
     }
 
-    /// At a node, of the stiffer side where it is on a border \[Pa\].
-    pub(super) fn at_node(&self, X: &Vector3, spacing: f64, body: &Shape) -> f64 {
+    /// In a body, of the stiffer side where X is on a border: on which side of it round-off would
+    /// choose \[Pa\].
+    pub(super) fn at_place(&self, X: &Vector3, spacing: f64, body: &Shape) -> f64 {
         let reach = ON_BORDER * spacing;
         if !self.may_change(X, reach) {
             return self.at(X);
@@ -189,7 +190,11 @@ impl Stiffness {
 
     /// Towards the softer side of the border at X.
     pub(crate) fn normal(&self, X: &Vector3, spacing: f64) -> Vector3 {
-        let own = self.at(X);
+        self.normal_of(X, self.at(X), spacing)
+    }
+
+    /// The same where the stiffer side is known \[Pa\].
+    fn normal_of(&self, X: &Vector3, own: f64, spacing: f64) -> Vector3 {
         let looks = LOOKS.into_iter().flat_map(|look| {
             self.ways.iter().filter(move |way| self.at(&(X + look * spacing * *way)) < own)
         });
@@ -197,14 +202,13 @@ impl Stiffness {
     }
 
     /// Whether a softer layer lies between two places: the straight way leaves what is as stiff as
-    /// the softer of them and comes back through borders that face each other.
-    pub(super) fn parts(&self, X: &Vector3, Y: &Vector3, spacing: f64) -> bool {
-        let (middle, half) = (0.5 * (X + Y), 0.5 * (Y - X).norm());
-        if !self.may_change(&middle, half) {
+    /// the softer of them, `own` \[Pa\], and comes back through borders that face each other.
+    pub(super) fn parts(&self, X: &Vector3, Y: &Vector3, own: f64, spacing: f64) -> bool {
+        if own <= self.softest {
             return false;
         }
-        let own = self.at(X).min(self.at(Y));
-        if own <= self.softest {
+        let (middle, half) = (0.5 * (X + Y), 0.5 * (Y - X).norm());
+        if !self.may_change(&middle, half) {
             return false;
         }
         let count = (2.0 * half / (STEP * spacing)).ceil().max(1.0) as usize;
@@ -215,13 +219,15 @@ impl Stiffness {
         let mut left: Option<Vector3> = None;
         let mut last = (*X, true);
         for n in 1..=count {
-            let here = (at(n), self.at(&at(n)) >= own);
+            // On a border, the end is of its stiffer side.
+            let here = (at(n), n == count || self.at(&at(n)) >= own);
             match (last.1, here.1) {
                 (true, false) => left = Some(leaves(last.0, here.0)),
                 (false, true) => {
                     let back = leaves(here.0, last.0);
                     let faces = |left: Vector3| {
-                        are_opposite(&self.normal(&left, spacing), &self.normal(&back, spacing))
+                        let normal = |X: &Vector3| self.normal_of(X, own, spacing);
+                        are_opposite(&normal(&left), &normal(&back))
                     };
                     if left.is_some_and(faces) {
                         return true;

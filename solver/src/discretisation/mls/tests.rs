@@ -208,8 +208,8 @@ fn the_quadratic_error_of_the_regularised_basis_is_proportional_to_it() {
     }
 }
 
-#[test]
-fn points_of_the_stiffer_side_see_their_own_nodes_and_reproduce_linear_fields_as_all_do() {
+/// A lattice that sees all, and one whose half below `border` is ten times stiffer.
+fn of_two_halves(border: f64) -> [Approximation; 2] {
     let plain = approximation(
         Dimension::Three,
         Basis::Linear,
@@ -217,7 +217,6 @@ fn points_of_the_stiffer_side_see_their_own_nodes_and_reproduce_linear_fields_as
         &[0.1, -0.2, 0.15, 0.05, -0.1],
         Vector3::zeros(),
     );
-    let border = 0.26;
     let half = |side: f64| Selector::Inside {
         shape: Shape::HalfSpace { point: Vector3::x() * border, normal: Vector3::x() * side },
         tolerance: 0.0,
@@ -231,6 +230,13 @@ fn points_of_the_stiffer_side_see_their_own_nodes_and_reproduce_linear_fields_as
     let stiffness = Stiffness::new(&regions, false).unwrap();
     let all = Shape::Box { min: Vector3::repeat(-1.0), max: Vector3::repeat(2.0) };
     let sided = plain.clone().with_sides(stiffness, &all, 1.9);
+    [plain, sided]
+}
+
+#[test]
+fn points_of_the_stiffer_side_see_their_own_nodes_and_reproduce_linear_fields_as_all_do() {
+    let border = 0.26;
+    let [plain, sided] = of_two_halves(border);
     let field = |X: &Vector3| 0.3 + X.x - 2.0 * X.y + 0.5 * X.z;
     for x in [0.12, 0.2, 0.25, 0.27, 0.33, 0.4] {
         let X = Vector3::new(x, 0.24, 0.27);
@@ -244,4 +250,14 @@ fn points_of_the_stiffer_side_see_their_own_nodes_and_reproduce_linear_fields_as
         let value: f64 = values.zip(&support.phi).map(|(value, phi)| value * phi).sum();
         assert!((value - field(&X)).abs() < 1e-12, "{value} at {X}");
     }
+}
+
+#[test]
+fn a_place_on_a_border_is_of_the_stiffer_side_whatever_round_off_says() {
+    let border = 0.26;
+    let [_, sided] = of_two_halves(border);
+    let at = |x: f64| sided.evaluate(&Vector3::new(x, 0.24, 0.27)).unwrap();
+    let [stiff, soft] = [at(border - 1e-15), at(border + 1e-15)];
+    assert_eq!(stiff.nodes, soft.nodes);
+    assert!(stiff.nodes.len() < at(border + 1e-4).nodes.len());
 }

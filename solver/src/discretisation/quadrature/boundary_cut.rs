@@ -15,6 +15,10 @@ const NEARLY_FLAT: f64 = 0.004_131_7;
 /// Components of a normal that differ by less are equal: it comes from differences \[–\].
 const TIE: f64 = 1e-3;
 
+/// The middle of what lies behind a plane is half its depth inside; behind a face without an inside
+/// it is as much outside, and counts as that from here on \[depth\].
+const MIRRORED: f64 = 0.25;
+
 /// The part of a cell inside of a body.
 pub(super) struct BoundaryCut<'a> {
     pub body: &'a Shape,
@@ -97,6 +101,11 @@ impl BoundaryCut<'_> {
         for axis in (0..3).filter(|&axis| nearest[axis]) {
             shift[axis] = -share * normal[axis].signum() * 0.5 * (1.0 - fraction) * cell.edge;
             spread[(axis, axis)] *= 1.0 - share * (1.0 - fraction * fraction);
+        }
+        // Where a hole ends in a face of its body, neither side of the face is inside.
+        let beyond = self.body.signed_distance(&(cell.centre + shift));
+        if beyond > MIRRORED * fraction * cell.edge {
+            return (0.0, Vector3::zeros(), spread);
         }
         (fraction, shift, spread)
     }

@@ -33,7 +33,7 @@ pub fn body(scene: &Scene, frame: &Frame) -> Result<Shape> {
         Form::Dome => Shape::Union(vec![lower_half(frame), ball_on_it(frame)]),
         Form::Bored => {
             let bore = upright(frame, 0.4 * middle.xy().min());
-            Shape::Difference(Box::new(box_of(frame, &Vector3::zeros(), &edges)), Box::new(bore))
+            box_of(frame, &Vector3::zeros(), &edges).without(bore)
         }
         Form::Rounded => Shape::Intersection(vec![
             box_of(frame, &Vector3::zeros(), &edges),
@@ -45,7 +45,7 @@ pub fn body(scene: &Scene, frame: &Frame) -> Result<Shape> {
         Form::Wedge => surface(wedge(frame))?,
         Form::Hollow | Form::Chamber => {
             let whole = box_of(frame, &Vector3::zeros(), &edges);
-            Shape::Difference(Box::new(whole), Box::new(hole(scene, frame, 1.0)))
+            whole.without(hole(scene, frame, 1.0))
         }
         Form::Voxels => as_voxels(scene, frame)?,
     })
@@ -139,7 +139,7 @@ fn corner(frame: &Frame) -> Result<Shape> {
             &Vector3::new(BEYOND, BEYOND, BEYOND),
         );
         let whole = box_of(frame, &Vector3::zeros(), &edges);
-        return Ok(Shape::Difference(Box::new(whole), Box::new(quarter)));
+        return Ok(whole.without(quarter));
     }
     let corners = [
         (0.0, 0.0),

@@ -76,7 +76,7 @@ impl Builder<'_> {
             ShapeFormat::Difference(first, second) => {
                 let first = self.shape(&format!("{key}.difference[0]"), first);
                 let second = self.shape(&format!("{key}.difference[1]"), second);
-                Some(Shape::Difference(Box::new(first?), Box::new(second?)))
+                Some(first?.without(second?))
             }
             ShapeFormat::Stl { file, unit } => self.surface(&format!("{key}.stl"), file, *unit),
             ShapeFormat::LabelMap { file, labels, unit, layer, smoothing } => {
