@@ -1,8 +1,6 @@
 //! Smaller scenes: with one thing less, or one thing plainer.
 
-use super::{
-    Basis, Cloud, Form, Gradients, Hold, Inclusion, Law, Part, Piece, Place, Rubs, Scene, Wall, Way,
-};
+use super::{Basis, Cloud, Form, Gradients, Hold, Law, Part, Piece, Place, Rubs, Scene, Wall, Way};
 
 impl Scene {
     /// Scenes that are a little plainer than this one, the largest cuts first.
@@ -27,8 +25,7 @@ impl Scene {
         }
         add(&|scene| scene.obstacle = None);
         add(&|scene| scene.inclusion = None);
-        let half = |inclusion| Inclusion { piece: Piece::Half, ..inclusion };
-        add(&|scene| scene.inclusion = scene.inclusion.map(half));
+        add(&of_halves);
         add(&|scene| scene.bed = None);
         add(&|scene| scene.filling = None);
         add(&|scene| scene.memory = None);
@@ -62,11 +59,22 @@ impl Scene {
         for wall in self.obstacle.iter().flat_map(plainer_wall) {
             add(&|scene| scene.obstacle = Some(wall));
         }
-        if let Some(bed) = self.bed {
-            let part = Part::End { axis: 1, upper: false, depth: 0.15 };
-            add(&|scene| scene.bed = Some(super::Bed { part, ..bed }));
-        }
+        add(&on_a_lower_end);
         all
+    }
+}
+
+/// With a half of the other material, if there is one.
+fn of_halves(scene: &mut Scene) {
+    if let Some(inclusion) = &mut scene.inclusion {
+        inclusion.piece = Piece::Half;
+    }
+}
+
+/// With springs below, if there are any.
+fn on_a_lower_end(scene: &mut Scene) {
+    if let Some(bed) = &mut scene.bed {
+        bed.part = Part::End { axis: 1, upper: false, depth: 0.15 };
     }
 }
 
