@@ -163,40 +163,34 @@ impl Shape {
                 && body.gradient(X).dot(normal) > ALONG
                 && body.signed_distance(&(X + beyond * normal)) > 0.5 * beyond
         };
+        // How far a flat face moves, by its middle and two ways from there to its rim.
+        let by = |middle: Vector3, normal: Vector3, rim: [Vector3; 2]| {
+            let aside = rim.into_iter().flat_map(|way| [0.6 * way, -0.6 * way]);
+            let mut places = aside.map(|way| middle + way).chain([middle]);
+            if places.any(|X| lies_in_face(&X, &normal)) { beyond } else { 0.0 }
+        };
         let all = |members: Vec<Shape>| {
             members.into_iter().map(|member| member.through_faces_of(body)).collect()
         };
         match self {
             Shape::Box { min, max } => {
-                let (mut ends, half) = ([min, max], 0.5 * (max - min));
-                for axis in 0..3 {
-                    let others = [(axis + 1) % 3, (axis + 2) % 3];
-                    for (end, side) in [(0, -1.0), (1, 1.0)] {
-                        let middle = min + half + Vector3::ith(axis, side * half[axis]);
-                        let normal = Vector3::ith(axis, side);
-                        let lies = |X: Vector3| lies_in_face(&X, &normal);
-                        let aside = |k: usize, part: f64| Vector3::ith(k, part * half[k]);
-                        let around =
-                            others.iter().flat_map(|&k| [-0.6, 0.6].map(|part| aside(k, part)));
-                        if lies(middle) || around.into_iter().any(|aside| lies(middle + aside)) {
-                            ends[end][axis] += side * beyond;
-                        }
-                    }
-                }
-                Shape::Box { min: ends[0], max: ends[1] }
-            }
-            Shape::Cylinder { mut base, axis, radius, mut height } => {
-                let across = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
-                let ways = [across, axis.cross(&across), -across, -axis.cross(&across)];
-                let lies = |end: Vector3, normal: Vector3| {
-                    lies_in_face(&end, &normal)
-                        || ways.iter().any(|w| lies_in_face(&(end + 0.6 * radius * w), &normal))
+                let (centre, half) = (0.5 * (min + max), 0.5 * (max - min));
+                let along = |axis: usize| Vector3::ith(axis, half[axis]);
+                let moved = |axis: usize, side: f64| {
+                    let rim = [along((axis + 1) % 3), along((axis + 2) % 3)];
+                    by(centre + side * along(axis), Vector3::ith(axis, side), rim)
                 };
-                let top = lies(base + height * axis, axis);
-                if lies(base, -axis) {
-                    (base, height) = (base - beyond * axis, height + beyond);
+                Shape::Box {
+                    min: min - Vector3::from_fn(|axis, _| moved(axis, -1.0)),
+                    max: max + Vector3::from_fn(|axis, _| moved(axis, 1.0)),
                 }
-                Shape::Cylinder { base, axis, radius, height: height + f64::from(top) * beyond }
+            }
+            Shape::Cylinder { base, axis, radius, height } => {
+                let across = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
+                let rim = [radius * across, radius * axis.cross(&across)];
+                let [below, above] = [by(base, -axis, rim), by(base + height * axis, axis, rim)];
+                let (base, height) = (base - below * axis, height + below + above);
+                Shape::Cylinder { base, axis, radius, height }
             }
             Shape::Union(members) => Shape::Union(all(members)),
             Shape::Intersection(members) => Shape::Intersection(all(members)),
