@@ -132,6 +132,11 @@ fn a_hole_that_ends_in_a_face_of_its_body_is_as_open_as_one_that_reaches_beyond(
         min: Vector3::new(0.052, 0.047, -beyond),
         max: Vector3::new(edge + beyond, edge + beyond, height + beyond),
     };
+    let corners = [[0.03, 0.03], [0.07, 0.03], [0.05, 0.072]];
+    let prism = |beyond: f64| Shape::Polygon {
+        points: corners.to_vec().into(),
+        z: (-beyond, height + beyond),
+    };
     let laws = ElasticConstants::from_young_poisson(3000.0, 0.3).unwrap();
     let law = Law::NeoHookeanLogJ(mtled::material::NeoHookeanLogJ::new(laws));
     let discretised = |hole: Shape| {
@@ -140,14 +145,16 @@ fn a_hole_that_ends_in_a_face_of_its_body_is_as_open_as_one_that_reaches_beyond(
         let problem = Problem::new(body, material, Recipe::with_spacing(0.01));
         mtled::discretisation::Discretisation::new(&problem).unwrap()
     };
-    for [ends, reaches] in [[bore(0.0), bore(0.02)], [notch(0.0), notch(0.02)]] {
+    for hole in [&bore as &dyn Fn(f64) -> Shape, &notch, &prism] {
+        let [ends, reaches] = [hole(0.0), hole(0.02)];
         let [one, other] = [discretised(ends), discretised(reaches)];
         assert_eq!(one.cloud.positions.len(), other.cloud.positions.len());
         assert_eq!(one.quadrature.positions.len(), other.quadrature.positions.len());
         let volume = |of: &mtled::discretisation::Discretisation| of.volume();
-        assert!((volume(&one) / volume(&other) - 1.0).abs() < 1e-4);
+        assert!((volume(&one) / volume(&other) - 1.0).abs() < 1e-6);
+        // At the rim a part of a cell may be cut along another of two axes.
         for X in &one.quadrature.positions {
-            let near = |Y: &Vector3| (X - Y).norm() < 1e-5;
+            let near = |Y: &Vector3| (X - Y).norm() < 2e-4;
             assert!(other.quadrature.positions.iter().any(near), "{X}");
         }
     }

@@ -11,6 +11,8 @@ use std::sync::Arc;
 
 /// How far faces of a hole that lie in faces of its body are moved beyond them \[size of the hole\].
 const BEYOND: f64 = 1e-3;
+/// Places across a face of a hole where it is looked for those of its body.
+const ACROSS: usize = 6;
 /// Places closer to a face lie in it \[size of the body\].
 const SAME_FACE: f64 = 1e-9;
 /// Cosine of the largest angle between normals of one face.
@@ -157,45 +159,61 @@ impl Shape {
 
     /// With flat faces that lie in those of a `body` moved beyond them.
     fn through_faces_of(self, body: &Shape) -> Shape {
-        let beyond = BEYOND * self.size();
-        let lies_in_face = |X: &Vector3, normal: &Vector3| {
-            body.signed_distance(X).abs() < SAME_FACE * body.size()
-                && body.gradient(X).dot(normal) > ALONG
-                && body.signed_distance(&(X + beyond * normal)) > 0.5 * beyond
-        };
-        // How far a flat face moves, by its middle and two ways from there to its rim.
-        let by = |middle: Vector3, normal: Vector3, rim: [Vector3; 2]| {
-            let aside = rim.into_iter().flat_map(|way| [0.6 * way, -0.6 * way]);
-            let mut places = aside.map(|way| middle + way).chain([middle]);
-            if places.any(|X| lies_in_face(&X, &normal)) { beyond } else { 0.0 }
-        };
         let all = |members: Vec<Shape>| {
             members.into_iter().map(|member| member.through_faces_of(body)).collect()
         };
+        // Of what has faces across an axis.
+        let moved = |axis: usize, side: f64| {
+            let Some((min, max)) = self.bounding_box() else { return 0.0 };
+            let half = 0.5 * (max - min);
+            let along = |axis: usize| Vector3::ith(axis % 3, half[axis % 3]);
+            let middle = 0.5 * (min + max) + side * along(axis);
+            let ways = [along(axis + 1), along(axis + 2)];
+            self.step_beyond(body, middle, Vector3::ith(axis, side), ways)
+        };
         match self {
-            Shape::Box { min, max } => {
-                let (centre, half) = (0.5 * (min + max), 0.5 * (max - min));
-                let along = |axis: usize| Vector3::ith(axis, half[axis]);
-                let moved = |axis: usize, side: f64| {
-                    let rim = [along((axis + 1) % 3), along((axis + 2) % 3)];
-                    by(centre + side * along(axis), Vector3::ith(axis, side), rim)
-                };
-                Shape::Box {
-                    min: min - Vector3::from_fn(|axis, _| moved(axis, -1.0)),
-                    max: max + Vector3::from_fn(|axis, _| moved(axis, 1.0)),
-                }
-            }
+            Shape::Box { min, max } => Shape::Box {
+                min: min - Vector3::from_fn(|axis, _| moved(axis, -1.0)),
+                max: max + Vector3::from_fn(|axis, _| moved(axis, 1.0)),
+            },
             Shape::Cylinder { base, axis, radius, height } => {
                 let across = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
-                let rim = [radius * across, radius * axis.cross(&across)];
-                let [below, above] = [by(base, -axis, rim), by(base + height * axis, axis, rim)];
+                let ways = [radius * across, radius * axis.cross(&across)];
+                let below = self.step_beyond(body, base, -axis, ways);
+                let above = self.step_beyond(body, base + height * axis, axis, ways);
                 let (base, height) = (base - below * axis, height + below + above);
                 Shape::Cylinder { base, axis, radius, height }
+            }
+            Shape::Polygon { ref points, z: (lower, upper) } => {
+                let z = (lower - moved(2, -1.0), upper + moved(2, 1.0));
+                Shape::Polygon { points: points.clone(), z }
             }
             Shape::Union(members) => Shape::Union(all(members)),
             Shape::Intersection(members) => Shape::Intersection(all(members)),
             other => other,
         }
+    }
+
+    /// How far a flat face of this hole moves beyond the face of a `body` that it lies in, 0 where
+    /// it lies in none; by its middle, its normal and two ways from there to its rim.
+    fn step_beyond(
+        &self,
+        body: &Shape,
+        middle: Vector3,
+        normal: Vector3,
+        ways: [Vector3; 2],
+    ) -> f64 {
+        let beyond = BEYOND * self.size();
+        let share = |i: usize| (2 * i + 1) as f64 / ACROSS as f64 - 1.0;
+        let mut places = (0..ACROSS * ACROSS)
+            .map(|i| middle + share(i % ACROSS) * ways[0] + share(i / ACROSS) * ways[1])
+            .filter(|X| self.signed_distance(X) < SAME_FACE * self.size());
+        let lies_in_face = |X: Vector3| {
+            body.signed_distance(&X).abs() < SAME_FACE * body.size()
+                && body.gradient(&X).dot(&normal) > ALONG
+                && body.signed_distance(&(X + beyond * normal)) > 0.5 * beyond
+        };
+        if places.any(lies_in_face) { beyond } else { 0.0 }
     }
 
     /// The most that the signed distance changes over a length \[–\].

@@ -104,9 +104,39 @@ impl BoundaryCut<'_> {
         }
         // Where a hole ends in a face of its body, neither side of the face is inside.
         let beyond = self.body.signed_distance(&(cell.centre + shift));
-        if beyond > MIRRORED * fraction * cell.edge {
+        if beyond > MIRRORED * fraction * cell.edge && self.is_outside(cell) {
             return (0.0, Vector3::zeros(), spread);
         }
         (fraction, shift, spread)
+    }
+
+    /// Whether all corners of a cell are: at an edge of the body one is not.
+    fn is_outside(&self, cell: &Cell) -> bool {
+        let mut corners = cell.corners(self.components);
+        corners.all(|X| self.body.signed_distance(&X) > 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_at_an_edge_counts_and_one_in_the_mouth_of_a_hole_does_not() {
+        let box_of = |min: [f64; 3], max: [f64; 3]| Shape::Box { min: min.into(), max: max.into() };
+        let plate = box_of([-9.0, -9.0, -2.0], [9.0, 9.0, 0.0]);
+        let hole = box_of([-5.0, -5.0, -2.0], [5.0, 5.0, 0.0]);
+        let bored = Shape::Difference(Box::new(plate.clone()), Box::new(hole));
+        let fraction = |body: &Shape, centre: [f64; 3]| {
+            let cell = Cell { centre: centre.into(), edge: 1.0 };
+            let cut = BoundaryCut { body, components: 3, has_spread: false };
+            cut.along_axes(&cell, body.signed_distance(&cell.centre)).0
+        };
+        let at_edge = fraction(&plate, [9.2, 3.0, 0.19]);
+        assert!((at_edge - (0.5 - 0.2f64.hypot(0.19))).abs() < 1e-12, "{at_edge}");
+        assert_eq!(fraction(&bored, [9.2, 3.0, 0.19]), at_edge);
+        for z in [-0.3, -0.1, 0.1, 0.3] {
+            assert_eq!(fraction(&bored, [1.0, -2.0, z]), 0.0, "{z}");
+        }
     }
 }
