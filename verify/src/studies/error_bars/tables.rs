@@ -78,7 +78,7 @@ pub const SETS: [Row; 4] = [
         id: "known_bodies",
         label: "made-up bodies (the factors were set on them)",
         quick: [0.9, 0.25],
-        full: [0.87, 0.46],
+        full: [0.87, 0.42],
     },
     Row {
         set: Set::Manufactured,
@@ -92,7 +92,7 @@ pub const SETS: [Row; 4] = [
         id: "new_bodies",
         label: "other made-up bodies",
         quick: [0.8, 0.1],
-        full: [0.8, 0.38],
+        full: [0.9, 0.4],
     },
 ];
 

@@ -6,7 +6,9 @@ use crate::run::prepare::{Prepared, prepare};
 use crate::run::record::Frame;
 use crate::specimens::simple::{free_body, recipe, sphere_shape, tissue};
 use mtled::algebra::tensor::{Matrix3, Vector3};
-use mtled::problem::{Dimension, Problem};
+use mtled::geometry::{Selector, Shape};
+use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
+use mtled::problem::{Dimension, Problem, Region};
 
 const H: [[f64; 3]; 3] = [[0.1, 0.05, 0.0], [-0.02, -0.1, 0.0], [0.0, 0.0, 0.2]];
 
@@ -18,10 +20,12 @@ fn gradient(dimension: &Dimension) -> Matrix3 {
     gradient
 }
 
-/// A ball or a disc with the nodal parameters of an affine displacement.
-fn stretched(dimension: Dimension) -> (Problem, Prepared, Frame) {
+/// A ball or a disc with the nodal parameters of an affine displacement, with parts of other
+/// materials first.
+fn stretched(dimension: Dimension, parts: Vec<Region>) -> (Problem, Prepared, Frame) {
     let recipe = recipe(0.02, 0.2, 7);
-    let problem = free_body(dimension, sphere_shape(), tissue(0.3).unwrap(), recipe);
+    let mut problem = free_body(dimension, sphere_shape(), tissue(0.3).unwrap(), recipe);
+    problem.regions.splice(0..0, parts);
     let prepared = prepare(&problem).unwrap();
     let components = dimension.components();
     let moved = |X: &Vector3| <[f64; 3]>::from(gradient(&dimension) * X);
@@ -36,7 +40,7 @@ fn stretched(dimension: Dimension) -> (Problem, Prepared, Frame) {
 #[test]
 fn an_affine_displacement_and_its_strains_are_exact_at_the_vertices() {
     for dimension in [Dimension::Three, Dimension::PlaneStrain { thickness: 1.0, z: 0.05 }] {
-        let (problem, prepared, frame) = stretched(dimension);
+        let (problem, prepared, frame) = stretched(dimension, Vec::new());
         let fields = NodeFields::new(&problem, &prepared, &frame, None).unwrap();
         let body = BodyFrames::new(&problem, &prepared).unwrap().unwrap();
         let written = body.frame(&prepared, &frame, &fields, None, Vec::new());
@@ -59,5 +63,34 @@ fn an_affine_displacement_and_its_strains_are_exact_at_the_vertices() {
         }
         let stresses = of("von_mises_stress");
         assert!(stresses.iter().all(|s| (s / stresses[0] - 1.0).abs() < 1e-9 && *s > 0.0));
+    }
+}
+
+#[test]
+fn stress_at_each_vertex_is_that_of_the_region_that_it_is_written_for() {
+    let gradient = gradient(&Dimension::Three);
+    let core = |young_modulus: f64, radius: f64| {
+        let constants = ElasticConstants::from_young_poisson(young_modulus, 0.3).unwrap();
+        let law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
+        let Shape::Sphere { centre, .. } = sphere_shape() else { panic!("no ball") };
+        let part = Selector::Inside { shape: Shape::Sphere { centre, radius }, tolerance: 0.0 };
+        Region::new("core", part, Material { density: 1000.0, law })
+    };
+    for young_modulus in [10.0, 3.0e6] {
+        let parts = vec![core(young_modulus, 0.025)];
+        let (problem, prepared, frame) = stretched(Dimension::Three, parts);
+        let fields = NodeFields::new(&problem, &prepared, &frame, None).unwrap();
+        let body = BodyFrames::new(&problem, &prepared).unwrap().unwrap();
+        let written = body.frame(&prepared, &frame, &fields, None, Vec::new());
+        let stress = written.point_data.iter().find(|array| array.name == "cauchy_stress").unwrap();
+        let mut counts = [0; 2];
+        for (values, &owner) in stress.values.chunks(9).zip(&body.owners) {
+            let law = problem.regions[owner as usize].material.law;
+            let exact = law.cauchy(&(gradient + Matrix3::identity()));
+            let off = exact.iter().zip(values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-9 * exact.norm(), "region {owner}: {off} of {}", exact.norm());
+            counts[owner as usize] += 1;
+        }
+        assert!(counts.iter().all(|&count| count > 50), "{counts:?}");
     }
 }
