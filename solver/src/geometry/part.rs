@@ -45,7 +45,9 @@ impl Shape {
         let mut halvings = HALVINGS;
         loop {
             let cover = |(index, patch): (usize, &Patch)| {
-                let at = |X: &Vector3, normal: &Vector3| part.level(X, Some(normal), THIN * size);
+                let at = |X: &Vector3, normal: &dyn Fn() -> Vector3| {
+                    part.level(X, Some(&normal()), THIN * size)
+                };
                 let level = Level { at: &at, steepness: part.steepness(patch.is_flat()) };
                 let (piece, fraction) = patch.cut(&level, halvings, NOTHING)?;
                 let panel = piece.exact().panel;

@@ -33,9 +33,16 @@ const DEEPEST: usize = 6;
 impl Keep {
     /// At most 0 where a place on one member, with its normal there, remains in view of the
     /// other \[m\].
-    fn level(self, X: &Vector3, normal: &Vector3, other: &Shape, tolerance: f64) -> f64 {
+    fn level(
+        self,
+        X: &Vector3,
+        normal: &dyn Fn() -> Vector3,
+        other: &Shape,
+        tolerance: f64,
+    ) -> f64 {
         let distance = other.signed_distance(X);
         if distance.abs() <= tolerance {
+            let normal = normal();
             let beside = |way: f64| other.signed_distance(&(X + way * normal));
             let step = 10.0 * tolerance;
             let along = (beside(step) - beside(-step)) / (2.0 * step);
@@ -62,7 +69,7 @@ pub(super) fn composite_patches(shape: &Shape, of: PatchesOf) -> Result<Vec<Patc
     let mut kept = Vec::new();
     let cut = |patches: Vec<Patch>, others: &[(&Shape, Keep)]| -> Vec<Patch> {
         let steepness = others.iter().map(|(other, _)| other.steepness()).fold(1.0, f64::max);
-        let at = |X: &Vector3, normal: &Vector3| {
+        let at = |X: &Vector3, normal: &dyn Fn() -> Vector3| {
             let levels = others.iter().map(|(other, keep)| keep.level(X, normal, other, tolerance));
             levels.fold(f64::NEG_INFINITY, f64::max)
         };

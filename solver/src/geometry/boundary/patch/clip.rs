@@ -4,10 +4,10 @@
 use crate::algebra::tensor::Vector3;
 use crate::geometry::boundary::patch::chart::{Chart, Place};
 
-/// What remains of a surface: where `at`, of a position and the outward normal there, is at
-/// most 0.
+/// What remains of a surface: where `at`, of a position and what finds the outward normal there,
+/// is at most 0.
 pub struct Level<'a> {
-    pub at: &'a (dyn Fn(&Vector3, &Vector3) -> f64 + Sync),
+    pub at: &'a (dyn Fn(&Vector3, &dyn Fn() -> Vector3) -> f64 + Sync),
     /// The most that it changes over a length; infinite if that is not known \[–\].
     pub steepness: f64,
 }
@@ -18,6 +18,9 @@ const LINEAR: f64 = 1e-4;
 /// A border that bends by less than this fraction of the height of the corner that it cuts off
 /// is straight \[–\].
 const STRAIGHT: f64 = 5e-3;
+/// A level whose samples have one sign, and are larger than this many times what they differ from
+/// linear ones, does not change its sign: that of a kink between them is not \[–\].
+const CLEAR: f64 = 2.0;
 /// Halvings before something is believed of a level whose steepness is not known.
 const LEAST: usize = 3;
 /// Steps to where a level changes its sign.
@@ -34,6 +37,14 @@ fn weighted(a: Place, b: Place, s: f64) -> Place {
     [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]
 }
 
+/// A place with its position \[m\] and the level there.
+#[derive(Clone, Copy)]
+struct Sample {
+    place: Place,
+    X: Vector3,
+    value: f64,
+}
+
 /// Cells of a chart as they are cut.
 pub struct Clip<'a> {
     pub chart: &'a Chart,
@@ -48,48 +59,54 @@ pub struct Clip<'a> {
 impl Clip<'_> {
     /// Adds what remains of a cell.
     pub fn cut(&mut self, cell: Cell) {
+        let corners = cell.map(|place| self.sample(place));
         if self.chart.is_curve() {
-            let ends = [self.value(cell[0]), self.value(cell[1])];
-            self.interval([cell[0], cell[1]], ends, 0);
+            self.interval([corners[0], corners[1]], 0);
         } else {
-            let corners = cell.map(|place| self.value(place));
-            self.triangle(cell, corners, 0);
+            self.triangle(corners, 0);
         }
+    }
+
+    fn sample(&self, place: Place) -> Sample {
+        let X = self.chart.at(place);
+        let value = (self.level.at)(&X, &|| self.side * self.chart.normal(place));
+        Sample { place, X, value }
     }
 
     fn value(&self, place: Place) -> f64 {
-        (self.level.at)(&self.chart.at(place), &(self.side * self.chart.normal(place)))
+        self.sample(place).value
     }
 
     /// Largest distance of the corners of a cell from a place \[m\], a little more on a curve.
-    fn reach(&self, corners: &[Place], from: Place) -> f64 {
-        let X = self.chart.at(from);
-        let most = corners.iter().map(|c| (self.chart.at(*c) - X).norm()).fold(0.0, f64::max);
+    fn reach(&self, corners: &[Sample], from: &Sample) -> f64 {
+        let most = corners.iter().map(|c| (c.X - from.X).norm()).fold(0.0, f64::max);
         if self.chart.is_flat() { most } else { 1.05 * most }
     }
 
-    fn interval(&mut self, ends: [Place; 2], values: [f64; 2], depth: usize) {
-        let half = middle(ends[0], ends[1]);
-        let (value, reach) = (self.value(half), self.reach(&ends, half));
+    fn interval(&mut self, ends: [Sample; 2], depth: usize) {
+        let places = ends.map(|end| end.place);
+        let half = self.sample(middle(places[0], places[1]));
+        let (value, reach) = (half.value, self.reach(&ends, &half));
         if value.abs() > self.level.steepness * reach {
             if value <= 0.0 {
-                self.kept.push([ends[0], ends[1], ends[1]]);
+                self.kept.push([places[0], places[1], places[1]]);
             }
             return;
         }
+        let values = ends.map(|end| end.value);
         let bend = (value - 0.5 * (values[0] + values[1])).abs();
         let linear = depth >= self.least() && bend <= LINEAR * reach;
         if !linear && depth < self.deepest {
-            self.interval([ends[0], half], [values[0], value], depth + 1);
-            self.interval([half, ends[1]], [value, values[1]], depth + 1);
+            self.interval([ends[0], half], depth + 1);
+            self.interval([half, ends[1]], depth + 1);
             return;
         }
-        let [mut from, mut to] = ends;
+        let [mut from, mut to] = places;
         match values.map(|value| value <= 0.0) {
             [false, false] => return,
             [true, true] => {}
-            [true, false] => to = self.crossing(ends, values),
-            [false, true] => from = self.crossing(ends, values),
+            [true, false] => to = self.crossing(places, values),
+            [false, true] => from = self.crossing(places, values),
         }
         self.kept.push([from, to, to]);
     }
@@ -100,34 +117,37 @@ impl Clip<'_> {
         if is_fine || self.level.steepness.is_finite() { 0 } else { LEAST }
     }
 
-    fn triangle(&mut self, cell: Cell, values: [f64; 3], depth: usize) {
+    fn triangle(&mut self, corners: [Sample; 3], depth: usize) {
+        let cell = corners.map(|corner| corner.place);
         let third = |k: usize| (cell[0][k] + cell[1][k] + cell[2][k]) / 3.0;
-        let centre = [third(0), third(1)];
-        let (value, reach) = (self.value(centre), self.reach(&cell, centre));
+        let centre = self.sample([third(0), third(1)]);
+        let (value, reach) = (centre.value, self.reach(&corners, &centre));
         if value.abs() > self.level.steepness * reach {
             if value <= 0.0 {
                 self.kept.push(cell);
             }
             return;
         }
-        let middles = [0, 1, 2].map(|k| middle(cell[k], cell[(k + 1) % 3]));
-        let halves = middles.map(|place| self.value(place));
+        let middles = [0, 1, 2].map(|k| self.sample(middle(cell[k], cell[(k + 1) % 3])));
         if depth >= self.least() {
+            let (values, halves) = (corners.map(|c| c.value), middles.map(|c| c.value));
             let off = |k: usize| halves[k] - 0.5 * (values[k] + values[(k + 1) % 3]);
             let bend = (value - values.iter().sum::<f64>() / 3.0).abs();
             let bend = (0..3).map(|k| off(k).abs()).fold(bend, f64::max);
+            let mut others = values.iter().chain(&halves);
+            let is_clear = |other: &f64| other * value > 0.0 && other.abs() > CLEAR * bend;
+            let one_side = value.abs() > CLEAR * bend && others.all(is_clear);
             let straight = bend <= LINEAR * reach || self.is_straight(cell, values, halves);
-            if straight || depth >= self.deepest {
+            if one_side || straight || depth >= self.deepest {
                 self.split(cell, values, value);
                 return;
             }
         }
         for k in 0..3 {
             let before = (k + 2) % 3;
-            let corner = [cell[k], middles[k], middles[before]];
-            self.triangle(corner, [values[k], halves[k], halves[before]], depth + 1);
+            self.triangle([corners[k], middles[k], middles[before]], depth + 1);
         }
-        self.triangle(middles, halves, depth + 1);
+        self.triangle(middles, depth + 1);
     }
 
     /// The corner on one side of the border, if the others are on the other.

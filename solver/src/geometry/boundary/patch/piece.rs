@@ -90,7 +90,7 @@ impl Patch {
     /// What remains of it by a level, with at most `deepest` halvings, and its fraction of the
     /// places; fractions less than `nothing` off 0 or 1 are 0 or 1.
     pub fn cut(&self, level: &Level, deepest: usize, nothing: f64) -> Option<(Patch, f64)> {
-        let value = (level.at)(&self.panel.centre, &self.panel.normal);
+        let value = (level.at)(&self.panel.centre, &|| self.panel.normal);
         if level.steepness.is_finite() && value.abs() > level.steepness * self.reach() {
             return (value <= 0.0).then(|| (self.clone(), 1.0));
         }
