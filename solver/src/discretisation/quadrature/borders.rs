@@ -3,14 +3,11 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::quadrature::cell::Cell;
+use crate::discretisation::quadrature::cut::NEARLY_FLAT;
 use crate::discretisation::quadrature::simplex::Simplex;
 use crate::discretisation::quadrature::voxel_cuts::VoxelBox;
 use crate::geometry::{Selector, Shape};
 use crate::problem::Region;
-
-/// Levels that differ by less than this fraction of the edge of a cell from linear ones are cut
-/// as if they were linear; not round, so that round-off seldom chooses \[–\].
-const NEARLY_LINEAR: f64 = 0.030_7;
 
 /// In the smallest cells levels that differ by less than this are smooth, others have a kink.
 const SMOOTH: f64 = 0.1;
@@ -61,7 +58,7 @@ impl Fit {
     }
 
     fn is_linear(&self) -> bool {
-        self.bend <= NEARLY_LINEAR
+        self.bend <= NEARLY_FLAT
     }
 
     fn is_smooth(&self) -> bool {

@@ -3,15 +3,12 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::quadrature::cell::{Cell, in_plane};
-use crate::discretisation::quadrature::cut::{cut, spread};
+use crate::discretisation::quadrature::cut::{NEARLY_FLAT, cut, spread};
 use crate::geometry::Shape;
 
 /// The boundary is flat in a cell where the signed distance differs by less than this
 /// fraction of its edge from that of a plane \[–\].
 const FLAT: f64 = 1e-9;
-/// The same for a boundary that is cut as a plane of the same mean distance; not round, so that
-/// round-off seldom chooses \[–\].
-const NEARLY_FLAT: f64 = 0.004_131_7;
 /// Components of a normal that differ by less are equal: it comes from differences \[–\].
 const TIE: f64 = 1e-3;
 

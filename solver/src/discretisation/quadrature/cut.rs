@@ -3,6 +3,10 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 
+/// A level that differs by less than this fraction of the edge of a cell from a linear one is cut
+/// as a linear one of the same mean; not round, so that round-off seldom chooses \[–\].
+pub(super) const NEARLY_FLAT: f64 = 0.030_7;
+
 /// Volume of {x in [−½, ½]³ with level + slope·x ≤ 0} and its centroid, exact but
 /// for round-off; the centre where the volume is 0. A square has no slope along z
 /// (method book, eq. 7.3).

@@ -45,6 +45,14 @@ struct Sample {
     value: f64,
 }
 
+/// A straight border that parts one corner of a triangle from the others.
+struct Border {
+    corner: usize,
+    keeps_corner: bool,
+    /// On the sides to the next corner and to the one after it.
+    ends: [Place; 2],
+}
+
 /// Cells of a chart as they are cut.
 pub struct Clip<'a> {
     pub chart: &'a Chart,
@@ -137,9 +145,14 @@ impl Clip<'_> {
             let mut others = values.iter().chain(&halves);
             let is_clear = |other: &f64| other * value > 0.0 && other.abs() > CLEAR * bend;
             let one_side = value.abs() > CLEAR * bend && others.all(is_clear);
-            let straight = bend <= LINEAR * reach || self.is_straight(cell, values, halves);
-            if one_side || straight || depth >= self.deepest {
-                self.split(cell, values, value);
+            if one_side || bend <= LINEAR * reach || depth >= self.deepest {
+                let border = self.border(cell, values);
+                self.split(cell, border, value);
+                return;
+            }
+            let border = self.straight_border(cell, values, halves);
+            if border.is_some() {
+                self.split(cell, border, value);
                 return;
             }
         }
@@ -160,37 +173,44 @@ impl Clip<'_> {
         (0..3).find(apart)
     }
 
-    /// Whether one straight border passes a triangle with values at the middles of its sides.
-    fn is_straight(&self, cell: Cell, values: [f64; 3], halves: [f64; 3]) -> bool {
-        let Some(k) = Self::apart(values) else { return false };
-        let (b, c) = ((k + 1) % 3, (k + 2) % 3);
+    /// Where a border passes a triangle, if one corner lies on one side of it.
+    fn border(&self, cell: Cell, values: [f64; 3]) -> Option<Border> {
+        let corner = Self::apart(values)?;
+        let from = |k: usize| self.crossing([cell[corner], cell[k]], [values[corner], values[k]]);
+        let ends = [from((corner + 1) % 3), from((corner + 2) % 3)];
+        Some(Border { corner, keeps_corner: values[corner] <= 0.0, ends })
+    }
+
+    /// The same if the border is straight, by values at the middles of the sides too.
+    fn straight_border(&self, cell: Cell, values: [f64; 3], halves: [f64; 3]) -> Option<Border> {
         let keeps = |value: f64| value <= 0.0;
+        let k = Self::apart(values)?;
+        let (b, apex) = ((k + 1) % 3, cell[k]);
         if keeps(halves[b]) != keeps(values[b]) {
-            return false;
+            return None;
         }
-        let P = self.crossing([cell[k], cell[b]], [values[k], values[b]]);
-        let Q = self.crossing([cell[k], cell[c]], [values[k], values[c]]);
-        [0.25, 0.5, 0.75].into_iter().all(|s| {
+        let border = self.border(cell, values)?;
+        let [P, Q] = border.ends;
+        let straight = [0.25, 0.5, 0.75].into_iter().all(|s| {
             let on = weighted(P, Q, s);
-            let at = |e: f64| self.value(weighted(cell[k], on, 1.0 + e));
+            let at = |e: f64| self.value(weighted(apex, on, 1.0 + e));
             keeps(at(-STRAIGHT)) == keeps(values[k]) && keeps(at(STRAIGHT)) == keeps(values[b])
-        })
+        });
+        straight.then_some(border)
     }
 
     /// Adds what remains of a triangle, with a value in its middle, that a straight border passes.
-    fn split(&mut self, cell: Cell, values: [f64; 3], middle: f64) {
-        let Some(k) = Self::apart(values) else {
+    fn split(&mut self, cell: Cell, border: Option<Border>, middle: f64) {
+        let Some(Border { corner, keeps_corner, ends: [P, Q] }) = border else {
             // Corners may lie on edges, of either side.
             if middle <= 0.0 {
                 self.kept.push(cell);
             }
             return;
         };
-        let (b, c) = ((k + 1) % 3, (k + 2) % 3);
-        let P = self.crossing([cell[k], cell[b]], [values[k], values[b]]);
-        let Q = self.crossing([cell[k], cell[c]], [values[k], values[c]]);
-        if values[k] <= 0.0 {
-            self.kept.push([cell[k], P, Q]);
+        let (b, c) = ((corner + 1) % 3, (corner + 2) % 3);
+        if keeps_corner {
+            self.kept.push([cell[corner], P, Q]);
         } else {
             self.kept.push([P, cell[b], cell[c]]);
             self.kept.push([P, cell[c], Q]);
