@@ -137,6 +137,12 @@ fn a_hole_that_ends_in_a_face_of_its_body_is_as_open_as_one_that_reaches_beyond(
         points: corners.to_vec().into(),
         z: (-beyond, height + beyond),
     };
+    let side = |beyond: f64| {
+        let end = edge + beyond;
+        let aslant = 0.052 + 0.5 * (end - 0.047);
+        let corners = vec![[0.052, 0.047], [end, 0.047], [end, end], [aslant, end]];
+        Shape::Polygon { points: corners.into(), z: (-beyond, height + beyond) }
+    };
     let laws = ElasticConstants::from_young_poisson(3000.0, 0.3).unwrap();
     let law = Law::NeoHookeanLogJ(mtled::material::NeoHookeanLogJ::new(laws));
     let discretised = |hole: Shape| {
@@ -145,7 +151,7 @@ fn a_hole_that_ends_in_a_face_of_its_body_is_as_open_as_one_that_reaches_beyond(
         let problem = Problem::new(body, material, Recipe::with_spacing(0.01));
         mtled::discretisation::Discretisation::new(&problem).unwrap()
     };
-    for hole in [&bore as &dyn Fn(f64) -> Shape, &notch, &prism] {
+    for hole in [&bore as &dyn Fn(f64) -> Shape, &notch, &prism, &side] {
         let [ends, reaches] = [hole(0.0), hole(0.02)];
         let [one, other] = [discretised(ends), discretised(reaches)];
         assert_eq!(one.cloud.positions.len(), other.cloud.positions.len());

@@ -149,7 +149,7 @@ impl Shape {
         }
     }
 
-    /// This solid without a hole. Where a flat end or face of the hole lies in a face of the solid,
+    /// This solid without a hole. Where a flat end, face or side of the hole lies in a face of the solid,
     /// it is moved a little beyond: [`Shape::Difference`] as such has a boundary there, the mouth
     /// of the hole, on both sides of which it is empty.
     pub fn without(self, hole: Shape) -> Shape {
@@ -186,7 +186,17 @@ impl Shape {
             }
             Shape::Polygon { ref points, z: (lower, upper) } => {
                 let z = (lower - moved(2, -1.0), upper + moved(2, 1.0));
-                Shape::Polygon { points: points.clone(), z }
+                // Places in the plane where it has no ends.
+                let (middle, half) = match (upper - lower).is_finite() {
+                    true => (0.5 * (lower + upper), 0.5 * (upper - lower)),
+                    false => (0.0, 0.0),
+                };
+                let points = points.with_edges_moved(|[x, y], normal, way| {
+                    let ways = [Vector3::new(way[0], way[1], 0.0), half * Vector3::z()];
+                    let normal = Vector3::new(normal[0], normal[1], 0.0);
+                    self.step_beyond(body, Vector3::new(x, y, middle), normal, ways)
+                });
+                Shape::Polygon { points, z }
             }
             Shape::Union(members) => Shape::Union(all(members)),
             Shape::Intersection(members) => Shape::Intersection(all(members)),

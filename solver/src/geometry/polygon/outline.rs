@@ -1,5 +1,6 @@
 //! Simple polygons of many corners.
 
+use crate::geometry::polygon::polygon_area;
 use std::ops::Deref;
 
 /// Corners of a simple polygon \[m\], with boxes around runs of its edges, so that the
@@ -26,6 +27,8 @@ struct Run {
 
 /// Boxes are larger than their edges by this fraction of the polygon \[–\].
 const MARGIN: f64 = 1e-9;
+/// Sine of the angle between edges that are all but parallel \[–\].
+const BLUNT: f64 = 0.1;
 
 impl From<Vec<[f64; 2]>> for Outline {
     fn from(corners: Vec<[f64; 2]>) -> Outline {
@@ -71,6 +74,36 @@ impl Outline {
         };
         let turns = || (0..self.corners.len()).map(turn);
         turns().all(|turn| turn >= 0.0) || turns().all(|turn| turn <= 0.0)
+    }
+
+    /// With each edge moved outwards by a small distance \[m\] of its middle, its outward normal and
+    /// half of its way.
+    pub(crate) fn with_edges_moved(
+        &self,
+        distance: impl Fn([f64; 2], [f64; 2], [f64; 2]) -> f64,
+    ) -> Outline {
+        let sense = polygon_area(&self.corners).signum();
+        let moves = (0..self.corners.len()).map(|n| {
+            let (a, b) = self.edge(n);
+            let half = [0.5 * (b[0] - a[0]), 0.5 * (b[1] - a[1])];
+            let length = half[0].hypot(half[1]);
+            let normal = [sense * half[1] / length, -sense * half[0] / length];
+            (normal, distance([a[0] + half[0], a[1] + half[1]], normal, half))
+        });
+        let moves: Vec<_> = moves.collect();
+        let corner = |n: usize| {
+            let (u, a) = moves[(n + moves.len() - 1) % moves.len()];
+            let (v, b) = moves[n];
+            let [x, y] = self.corners[n];
+            // On both moved edges, and beside them where they are all but parallel.
+            let sine = u[0] * v[1] - u[1] * v[0];
+            if sine.abs() < BLUNT {
+                let by = |k: usize| if a > b { a * u[k] } else { b * v[k] };
+                return [x + by(0), y + by(1)];
+            }
+            [x + (a * v[1] - b * u[1]) / sine, y + (b * u[0] - a * v[0]) / sine]
+        };
+        (0..moves.len()).map(corner).collect::<Vec<_>>().into()
     }
 
     fn edge(&self, n: usize) -> ([f64; 2], [f64; 2]) {
