@@ -65,10 +65,10 @@ const NOTES: [&str; 6] = [
      by Newton's method; a closer cloud of 1.4 times the spacing where it is affordable; words where \
      clouds change an answer to different sides (7 of ten of the bars left are useful, but a third of \
      the answers is left).",
-    "Four rules beside each other, each with factors for displacements and others, set without the body that they \
+    "Five rules beside each other, each with factors for displacements and others, set without the body that they \
      judge, on 36 made-up bodies and two clouds of each (473 answers): coarser clouds as here 90 % within and 42 % within a factor of 3, for a \
-     fifth of the run; a cloud of 0.8 times the spacing 89 and 43 %, for twice the run; of 0.71 times 89 and 42 %, for three \
-     times; another jittered cloud of the same spacing 91 and 17 %; it and the finer one together 89 and 46 %. One \
+     quarter of the run; a cloud of 0.8 times the spacing, with twice the nodes, 89 and 43 %; of 0.71 times, with three times the nodes, 89 and 42 %; \
+     another jittered cloud of the same spacing 91 and 17 %; it and the finer one together 89 and 46 %. One \
      linear correction on a finer cloud tells at best what that cloud does.",
     "Bars are too long where a cloud fits a body by chance, as 8 spacings in a cube, or where errors fall \
      faster than with order 2, as in slender bending; they are too short for reactions at bonded \
