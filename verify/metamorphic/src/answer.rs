@@ -190,3 +190,65 @@ pub fn force_scale(answer: &Answer) -> f64 {
     let loads = model.loads.iter().flat_map(|load| &load.force).fold(0.0, |a, b| b.abs().max(a));
     f64::max(0.1 * stiffness * answer.largest(), loads)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::build::problem;
+    use crate::scene::{
+        Basis, Cloud, Drift, Form, Gradients, Hold, Inclusion, Law, Part, Piece, Place, Rubs,
+        Scene, Wall, Way,
+    };
+    use mtled::problem::Newton;
+
+    /// A cylinder whose stiff core and upper end a moving wall pushes aside until it buckles: contacts of
+    /// the unstable state are left with the forces of others once its way to a stable one fails.
+    fn pushed_cylinder() -> Scene {
+        let end = |upper, depth| Part::End { axis: 2, upper, depth };
+        let hold = |part, to| Hold { part, inner: false, to, release: None };
+        Scene {
+            size: 1300.0,
+            young_modulus: 1e7,
+            poisson_ratio: 0.499,
+            density: 1.0,
+            law: Law::StVenantKirchhoff,
+            form: Form::Cylinder,
+            edges: [1.0, 0.8, 0.8],
+            thickness: None,
+            spacings: 3,
+            cloud: Cloud::Lattice,
+            seed: 168,
+            basis: Basis::Linear,
+            gradients: Gradients::Plain,
+            direct: false,
+            even_mass: false,
+            projected: true,
+            way: Way::Newton,
+            inclusion: Some(Inclusion { axis: 1, stiffness: 3.0, piece: Piece::Ball(0.23) }),
+            obstacle: Some(Wall {
+                round: true,
+                gap: 0.05,
+                drift: Some(Drift { by: [0.038, 0.063, 0.0], turn: 0.0 }),
+                rubs: Rubs::Free,
+            }),
+            holds: vec![
+                hold(end(false, 0.348), Place::Still),
+                hold(end(true, 0.19), Place::Roller(1)),
+            ],
+            pushes: Vec::new(),
+            bed: None,
+            filling: None,
+            memory: None,
+            tension: None,
+        }
+    }
+
+    #[test]
+    fn a_body_that_buckles_under_a_moving_wall_ends_in_words() {
+        let mut problem = problem(&pushed_cylinder()).unwrap();
+        let load_end = problem.motion.end();
+        problem.motion = Motion::Newton(Newton { load_end, ..Newton::default() });
+        let why = answer(problem).unwrap_err().to_string();
+        assert!(why.contains("no equilibrium beyond"), "{why}");
+    }
+}

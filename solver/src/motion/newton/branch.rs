@@ -150,7 +150,7 @@ impl Solver<'_> {
         let led = self.led(from, motion, load, buffers, observer);
         self.guide = None;
         if led.is_none() {
-            (self.contacts, self.own) = kept;
+            self.put_back(kept, from);
         }
         led
     }

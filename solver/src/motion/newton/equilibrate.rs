@@ -139,12 +139,12 @@ impl Loading<'_, '_> {
     /// Goes on from an equilibrium, or from a stable one that it leads to; without either, from
     /// the contacts and pressures that were `kept`, with a smaller part of the load.
     fn settle(&mut self, equilibrium: Equilibrium, load: Load, kept: (ActiveContacts, Unknowns)) {
-        let Loading { solver, branch, buffers, observer, .. } = self;
+        let Loading { solver, state, branch, buffers, observer, .. } = self;
         let equilibrium = match branch.stable(solver, equilibrium, load, buffers, *observer) {
             Ok(stable) => stable,
             Err(_) if load.fraction - self.reached > LARGEST_UNSTABLE => {
                 // Nearer to where it lost its stability it has fewer ways to go.
-                (solver.contacts, solver.own) = kept;
+                solver.put_back(kept, &state.displacement);
                 self.increment = 0.5 * (load.fraction - self.reached);
                 return;
             }

@@ -134,7 +134,7 @@ impl Solver<'_> {
         buffers: &mut Buffers,
         observer: &mut dyn Observer,
     ) -> Result<Equilibrium, Unsolved> {
-        let (contacts, unknowns) = (self.contacts.clone(), self.own.clone());
+        let kept = (self.contacts.clone(), self.own.clone());
         let fraction = load.fraction;
         let asked = largest(&self.jump(start, fraction));
         let solved = self.iterate(start, load, buffers, observer);
@@ -150,7 +150,7 @@ impl Solver<'_> {
             }
         });
         if matches!(solved, Err(Unsolved::Failed { .. })) {
-            (self.contacts, self.own) = (contacts, unknowns);
+            self.put_back(kept, start);
         }
         solved
     }

@@ -163,6 +163,13 @@ impl Solver<'_> {
         Equilibrium { exact, ..next }
     }
 
+    /// Contacts and pressures as they were at displacements `u` \[m\], with the rows of those contacts:
+    /// forces are told from rows by the number of their contact.
+    pub(super) fn put_back(&mut self, kept: (ActiveContacts, Unknowns), u: &[f64]) {
+        (self.contacts, self.own) = kept;
+        self.free.close(self.contacts.rows(self.model, u), &[]);
+    }
+
     /// Takes notice of what the displacements of the last evaluation make of the patches.
     pub(super) fn see_pressures(&mut self, buffers: &Buffers) {
         if let Some(pressures) = &mut self.own.patches {

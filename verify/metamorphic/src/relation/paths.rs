@@ -131,13 +131,15 @@ fn is_smooth(scene: &Scene) -> bool {
     scene.is_static() && !scene.depends_on_way() && !scene.holds.iter().any(|hold| wound(&hold.to))
 }
 
-/// With another method, which may say that it has not converged, or that the cloud hardly resists
-/// some motions: whether those are a twentieth of what they should be hangs on the masses.
+/// With another method, which may say that it has not converged, that a lumped mass is not positive,
+/// of which Newton's method needs none, or that the cloud hardly resists some motions: whether those are
+/// a twentieth of what they should be hangs on the masses.
 fn relaxed(subject: &Subject, motion: Motion) -> Option<Compared> {
     let mut other = subject.problem();
     other.motion = motion;
+    let proves_nothing = ["not converged", "hourglassing", "lumped mass"];
     Some(match subject.with(other, &View::default())? {
-        Compared::Refused(why) if why.contains("not converged") || why.contains("hourglassing") => {
+        Compared::Refused(why) if proves_nothing.iter().any(|part| why.contains(part)) => {
             Compared::Undecided(why)
         }
         compared => compared,
