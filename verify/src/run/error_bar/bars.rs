@@ -42,7 +42,7 @@ pub struct ErrorBars {
     pub bars: Vec<ErrorBar>,
     /// What they were estimated with, the finest first.
     pub clouds: Vec<CoarserCloud>,
-    /// The displacement of the finest of them, if frames are written.
+    /// The displacement of the first of them that was solved, if frames are written.
     pub indicator: Option<Indicator>,
     /// CPU time of the runs on the coarser clouds, all threads \[s\].
     pub cpu_seconds: f64,

@@ -20,6 +20,9 @@ pub enum NoErrorBar {
         "both sides of a gap move as one where there are too few nodes, on coarser clouds even more so"
     )]
     BridgedGap,
+    /// One spacing lies along an edge, and no fewer can.
+    #[error("there are too few spacings along the body for a coarser cloud")]
+    NotCoarser,
     /// Too few coarser clouds could be solved; the last reason.
     #[error("coarser clouds cannot be solved: {0}")]
     Coarser(String),
