@@ -90,3 +90,52 @@ fn a_voxel_apart_from_the_body_is_refused_with_its_place() {
     let message = prepare(&case.problem).unwrap_err().to_string();
     assert!(message.contains("support") && message.contains("m)"), "{message}");
 }
+
+/// The force \[N\] that stretches a bar of 20 × 8 × 8 voxels of 1 mm by 0.1 mm, four layers of them a
+/// thousand times as soft; one of the two materials is that of a label, the other of all that is left.
+fn force_on_layered_bar(label: u32, own: &str, rest: &str) -> f64 {
+    let folder = tempfile::tempdir().unwrap();
+    let header = "NRRD0005\ntype: unsigned char\ndimension: 3\nspace: right-anterior-superior\n\
+                  sizes: 20 8 8\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n\
+                  space origin: (0.5,0.5,0.5)\nencoding: raw\n\n";
+    let mut bytes = header.as_bytes().to_vec();
+    bytes.extend((0..20 * 64).map(|at| if (8..12).contains(&(at % 20)) { 2 } else { 1 }));
+    std::fs::write(folder.path().join("map.nrrd"), bytes).unwrap();
+    let material = |name: &str, young_modulus: f64| {
+        format!(
+            "[material.{name}]\nlaw = \"neo_hookean_log_j\"\ndensity = 1000.0\n\
+             young_modulus = {young_modulus}\npoisson_ratio = 0.0\n"
+        )
+    };
+    let hold = |name: &str, from: f64, side: f64, by: f64| {
+        format!(
+            "[[prescribe]]\nname = \"{name}\"\nof = \"surface\"\nwhere = {{ half_space = {{ point = [{from}, 0.0, 0.0], \
+             normal = [{side}, 0.0, 0.0] }} }}\ndisplacement = {{ x = {by}, y = 0.0, z = 0.0 }}\n"
+        )
+    };
+    let case = format!(
+        "title = \"A bar with a soft layer\"\n[geometry]\nshape = {{ label_map = {{ file = \"map.nrrd\", labels = [1, 2] }} }}\n\
+         [[region]]\nname = \"own\"\nwhere = {{ label = {{ value = {label} }} }}\nmaterial = \"{own}\"\n\
+         [[region]]\nname = \"rest\"\nwhere = \"all\"\nmaterial = \"{rest}\"\n{}{}\
+         [discretisation]\ncloud = \"regular\"\nspacing = 0.002\n{}{}[time]\nmethod = \"static\"\n",
+        material("hard", 3000.0),
+        material("soft", 3.0),
+        hold("left", 0.0005, 1.0, 0.0),
+        hold("right", 0.0195, -1.0, 1e-4)
+    );
+    let path = folder.path().join("case.toml");
+    std::fs::write(&path, case).unwrap();
+    let (_, record) = solve_case(&read_case(&path).unwrap()).unwrap();
+    let last = record.samples.last().unwrap();
+    last.reactions[1].force.x
+}
+
+#[test]
+fn the_material_that_is_left_over_makes_no_skin_around_a_soft_layer() {
+    // Without a change of width two of hard and one of soft are springs in a row.
+    let exact = 3000.0 * 64e-6 * 1e-4 / (0.016 + 4.0);
+    for (label, own, rest) in [(2, "soft", "hard"), (1, "hard", "soft")] {
+        let force = force_on_layered_bar(label, own, rest);
+        assert!((force / exact - 1.0).abs() < 0.05, "{own} by its label: {force} N, not {exact}");
+    }
+}

@@ -67,7 +67,8 @@ pub enum Selector {
     },
     /// In a voxel of one label.
     Label {
-        /// The image.
+        /// The image; of a body made of labels the one that is [filled](LabelMap::filled) with them, or a skin
+        /// of its smooth surface has no label.
         map: Arc<LabelMap>,
         /// The label in it.
         label: u32,

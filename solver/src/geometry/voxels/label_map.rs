@@ -5,6 +5,7 @@ use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::error::GeometryError;
 use crate::geometry::voxels::grid::indices;
 use crate::geometry::voxels::label_blocks::LabelBlocks;
+use std::collections::HashMap;
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
@@ -110,6 +111,63 @@ impl LabelMap {
         LabelMap { size, origin: self.centre(i, j, k), labels, blocks, ..*self }
     }
 
+    /// The map in which voxels beside a body made of some `labels` have that of its nearest voxel: its smooth
+    /// surface passes up to half a voxel beyond its own, and what lies there is as what it covers. It has
+    /// another voxel on all sides where the body reaches the edge of the image.
+    pub fn filled(&self, labels: &[u32]) -> LabelMap {
+        let of_body = |label: u32| labels.contains(&label);
+        let at_edge = indices(self.size).any(|at| {
+            let is_last = |k: usize| at[k] == 0 || at[k] + 1 == self.size[k];
+            (0..3).any(is_last) && of_body(self.label(at))
+        });
+        let mut filled = if at_edge { self.framed() } else { self.clone() };
+        // Distance and label of the nearest voxel; of several as near the smallest label.
+        let mut beside: HashMap<usize, (f64, u32)> = HashMap::new();
+        let size = filled.size;
+        let is_open =
+            |at: [usize; 3]| (0..3).all(|k| at[k] < size[k]) && !of_body(filled.label(at));
+        let by =
+            |at: [usize; 3], way: [usize; 3]| [0, 1, 2].map(|k| (at[k] + way[k]).wrapping_sub(1));
+        let faces = [[0, 1, 1], [2, 1, 1], [1, 0, 1], [1, 2, 1], [1, 1, 0], [1, 1, 2]];
+        for at in indices(size) {
+            let label = filled.label(at);
+            if !of_body(label) || !faces.iter().any(|way| is_open(by(at, *way))) {
+                continue;
+            }
+            for way in indices([3; 3]) {
+                let next = by(at, way);
+                if !is_open(next) {
+                    continue;
+                }
+                let steps = Vector3::from(way.map(|n| n as f64 - 1.0));
+                let distance = (self.directions * steps).norm();
+                let nearest = beside.entry(filled.number(next)).or_insert((distance, label));
+                let as_near = distance < (1.0 + ROUND_OFF) * nearest.0;
+                if distance < (1.0 - ROUND_OFF) * nearest.0 || as_near && label < nearest.1 {
+                    *nearest = (distance, label);
+                }
+            }
+        }
+        for (voxel, (_, label)) in beside {
+            filled.labels[voxel] = label;
+        }
+        filled.blocks = OnceLock::new();
+        filled
+    }
+
+    /// With a voxel of label 0 more on all sides.
+    fn framed(&self) -> LabelMap {
+        let size = self.size.map(|n| n + 2);
+        let origin = self.origin - self.directions * Vector3::repeat(1.0);
+        let (labels, blocks) = (vec![0; size.iter().product()], OnceLock::new());
+        let mut framed = LabelMap { size, origin, labels, blocks, ..*self };
+        for at in indices(self.size) {
+            let voxel = framed.number(at.map(|n| n + 1));
+            framed.labels[voxel] = self.label(at);
+        }
+        framed
+    }
+
     /// Position in units of voxels; (0, 0, 0) is the centre of the first one.
     pub(super) fn index_of(&self, X: &Vector3) -> Vector3 {
         self.to_index * (X - self.origin)
@@ -133,8 +191,12 @@ impl LabelMap {
         self.label(voxel)
     }
 
-    fn label(&self, [i, j, k]: [usize; 3]) -> u32 {
-        self.labels[i + self.size[0] * (j + self.size[1] * k)]
+    fn label(&self, at: [usize; 3]) -> u32 {
+        self.labels[self.number(at)]
+    }
+
+    fn number(&self, [i, j, k]: [usize; 3]) -> usize {
+        i + self.size[0] * (j + self.size[1] * k)
     }
 
     /// No label within `reach` \[m\] of a place is smaller or larger than these; 0 is outside.

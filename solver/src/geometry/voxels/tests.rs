@@ -236,3 +236,40 @@ fn the_part_of_an_image_about_a_label_holds_it_at_the_same_place() {
     assert_eq!((all(&near), all(&map)), (18, 18));
     assert_eq!(map.about(&[7], 2).size, size);
 }
+
+#[test]
+fn voxels_beside_a_body_have_the_label_of_its_nearest_voxel_and_no_others_change() {
+    let size = [4, 3, 1];
+    // The body reaches the edge of the image in the last row.
+    let labels = vec![5, 0, 0, 0, 0, 1, 2, 0, 5, 1, 2, 2];
+    let map = LabelMap::new(size, Vector3::zeros(), Matrix3::identity(), labels).unwrap();
+    let filled = map.filled(&[1, 2]);
+    assert_eq!(filled.size, [6, 5, 3]);
+    let at = |i: f64, j: f64, k: f64| filled.label_at(&Vector3::new(i, j, k));
+    for (i, j, k, label) in [
+        (1.0, 1.0, 0.0, 1),
+        (2.0, 2.0, 0.0, 2),
+        (0.6, 0.6, 0.0, 1),
+        (0.0, 1.0, 0.0, 1),
+        // Of a voxel of 1 and one of 2 across an edge each the smaller label.
+        (1.0, 0.0, 0.0, 1),
+        (2.0, 0.0, 0.0, 2),
+        (3.0, 1.0, 0.0, 2),
+        (3.0, 0.0, 0.0, 2),
+        (0.0, 0.0, 0.0, 1),
+        // Not of the body, though labelled.
+        (0.0, 2.0, 0.0, 1),
+        (4.4, 2.0, 0.0, 2),
+        (1.0, 1.0, -1.0, 1),
+        (-1.4, -1.4, 0.0, 0),
+    ] {
+        assert_eq!(at(i, j, k), label, "{i} {j} {k}");
+    }
+    let within = LabelMap::new([3, 3, 3], Vector3::zeros(), Matrix3::identity(), {
+        let mut labels = vec![0; 27];
+        labels[13] = 7;
+        labels
+    });
+    let filled = within.unwrap().filled(&[7]);
+    assert_eq!((filled.size, filled.labels), ([3, 3, 3], vec![7; 27]));
+}

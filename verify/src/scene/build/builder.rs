@@ -27,8 +27,10 @@ pub struct Builder<'a> {
     pub body: Option<Shape>,
     /// The body, or its cross-section in plane strain.
     pub section: Option<Shape>,
-    /// The label map of the body, if it has one.
-    pub body_map: Option<Arc<LabelMap>>,
+    /// The solid of labels that the body is, or is cut from.
+    pub body_labels: Option<Arc<LabelField>>,
+    /// Its label map, with the labels of the body in the voxels beside it, once a selector asks for it.
+    pub filled_map: Option<Arc<LabelMap>>,
     /// Label maps read so far.
     pub maps: HashMap<(PathBuf, Option<UnitFormat>, Option<usize>), Arc<LabelMap>>,
     /// Solids made of labels so far, costly to make.

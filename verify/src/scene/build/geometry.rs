@@ -20,7 +20,7 @@ impl Builder<'_> {
         let Some(body) = self.sound_shape(key, format) else { return };
         let section = body.validate_body().and_then(|()| body.section(&self.dimension));
         self.section = section.map_err(|error| self.mistake(key, error)).ok();
-        self.body_map = first_map(&body);
+        self.body_labels = first_labels(&body);
         self.body = Some(body);
     }
 
@@ -281,8 +281,8 @@ impl Builder<'_> {
     fn label(&mut self, key: &str, label: u32, of: Option<MapOf>) -> Option<Selector> {
         let map = match of {
             Some(of) => self.map(&format!("{key}.file"), of)?,
-            None => match &self.body_map {
-                Some(map) => map.clone(),
+            None => match &self.body_labels {
+                Some(field) => field.map().clone(),
                 None => {
                     self.mistake(key, "needs a `file`, since the body is not made of a label map");
                     return None;
@@ -290,7 +290,21 @@ impl Builder<'_> {
             },
         };
         self.known_label(&format!("{key}.value"), label, &map);
-        Some(Selector::Label { map, label })
+        Some(Selector::Label { map: self.filled(map), label })
+    }
+
+    /// A map that is that of the body with the labels of the body beside its voxels, others as they are.
+    fn filled(&mut self, map: Arc<LabelMap>) -> Arc<LabelMap> {
+        match &self.body_labels {
+            Some(field)
+                if Arc::ptr_eq(field.map(), &map)
+                    && self.body.as_ref().is_some_and(lies_in_labels) =>
+            {
+                let fill = || Arc::new(map.filled(field.labels()));
+                self.filled_map.get_or_insert_with(fill).clone()
+            }
+            _ => map,
+        }
     }
 
     /// A closed surface from a file.
@@ -314,13 +328,23 @@ impl Builder<'_> {
     }
 }
 
-/// The first label map in a shape.
-fn first_map(shape: &Shape) -> Option<Arc<LabelMap>> {
+/// The first solid of labels in a shape.
+fn first_labels(shape: &Shape) -> Option<Arc<LabelField>> {
     match shape {
-        Shape::Labels(field) => Some(field.map().clone()),
-        Shape::Union(parts) | Shape::Intersection(parts) => parts.iter().find_map(first_map),
-        Shape::Difference(first, second) => first_map(first).or_else(|| first_map(second)),
+        Shape::Labels(field) => Some(field.clone()),
+        Shape::Union(parts) | Shape::Intersection(parts) => parts.iter().find_map(first_labels),
+        Shape::Difference(first, second) => first_labels(first).or_else(|| first_labels(second)),
         _ => None,
+    }
+}
+
+/// Whether a shape is a solid of labels, or a part of one.
+fn lies_in_labels(shape: &Shape) -> bool {
+    match shape {
+        Shape::Labels(_) => true,
+        Shape::Intersection(parts) => parts.iter().any(lies_in_labels),
+        Shape::Difference(first, _) => lies_in_labels(first),
+        _ => false,
     }
 }
 
