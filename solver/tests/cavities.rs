@@ -129,7 +129,7 @@ fn the_transposed_stiffness_of_a_fluid_is_that_of_its_derivative() {
         at(1.0).iter().zip(at(-1.0)).map(|(a, b)| (a - b) / (2.0 * step)).collect();
     let product = |of: &[f64], part: Following| {
         let mut product = rest(&model);
-        let tangent = FollowingTangent::new(&model.following, (0.0, None), &u, 3);
+        let mut tangent = FollowingTangent::new(&model.following, (0.0, None), &u, 3);
         tangent.add_times(of, part, &mut product);
         product
     };
@@ -141,6 +141,24 @@ fn the_transposed_stiffness_of_a_fluid_is_that_of_its_derivative() {
     let symmetric = [product(&v, Following::Symmetric), product(&w, Following::Symmetric)];
     let (one, two) = (dot(&w, &symmetric[0]), dot(&v, &symmetric[1]));
     assert!((one - two).abs() < 1e-12 * scale, "{one} {two}");
+}
+
+#[test]
+fn products_with_a_kept_stiffness_of_pressures_are_those_without() {
+    let (_, model) = build(&hollow_ball(fluid(5e3, 1e-5)));
+    let (u, v) = (noise(&model, 1e-3, 1), noise(&model, 1.0, 2));
+    let mut tangent = FollowingTangent::new(&model.following, (0.0, None), &u, 3);
+    let mut product = || {
+        let mut product = rest(&model);
+        tangent.add_times(&v, Following::Symmetric, &mut product);
+        product
+    };
+    let first = product();
+    let last = (0..20).map(|_| product()).last().unwrap();
+    let size = |of: &[f64]| of.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let differences: Vec<f64> = first.iter().zip(&last).map(|(a, b)| a - b).collect();
+    assert_ne!(first, last, "the kept stiffness was not used");
+    assert!(size(&differences) < 1e-13 * size(&first));
 }
 
 fn solved(problem: &Problem, motion: Motion) -> (Model, State) {

@@ -117,7 +117,7 @@ fn the_stiffness_of_a_pressure_is_the_symmetric_part_of_its_derivative() {
             at(1.0).iter().zip(at(-1.0)).map(|(a, b)| (a - b) / (2.0 * step)).collect();
         let mut product = zero.clone();
         let d = model.components;
-        let tangent = FollowingTangent::new(&model.following, (0.0, None), &u, d);
+        let mut tangent = FollowingTangent::new(&model.following, (0.0, None), &u, d);
         tangent.add_times(&v, Following::Symmetric, &mut product);
         // Of a quadratic form only the symmetric part counts.
         let (expected, found) = (work(&v, &zero, &difference), work(&v, &zero, &product));

@@ -1,5 +1,6 @@
 //! Numbers, vectors, tensors and packed fields.
 
+pub(crate) mod block_matrix;
 pub(crate) mod lanes;
 pub(crate) mod lowest_modes;
 pub(crate) mod packed;

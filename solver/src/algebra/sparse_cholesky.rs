@@ -40,17 +40,20 @@ impl Scratch {
 impl SparseCholesky {
     /// Of a matrix given by its lower triangle; `None` if it is not positive definite.
     pub fn new(lower: &SparseColMat<usize, f64>) -> Option<SparseCholesky> {
-        let params = CholeskySymbolicParams::default();
-        let symbolic = factorize_symbolic_cholesky(
-            lower.symbolic(),
-            Side::Lower,
-            SymmetricOrdering::Amd,
-            params,
-        )
-        .ok()?;
-        let factor = vec![0.0; symbolic.len_val()];
-        let mut cholesky = SparseCholesky { symbolic: Arc::new(symbolic), factor };
+        let mut cholesky = SparseCholesky::in_order(lower, SymmetricOrdering::Amd)?;
         cholesky.factor_again(lower).then_some(cholesky)
+    }
+
+    /// Without numbers yet, for matrices with entries at these places.
+    pub fn in_order(
+        lower: &SparseColMat<usize, f64>,
+        order: SymmetricOrdering<usize>,
+    ) -> Option<SparseCholesky> {
+        let params = CholeskySymbolicParams::default();
+        let places = lower.symbolic();
+        let symbolic = factorize_symbolic_cholesky(places, Side::Lower, order, params).ok()?;
+        let factor = vec![0.0; symbolic.len_val()];
+        Some(SparseCholesky { symbolic: Arc::new(symbolic), factor })
     }
 
     /// Of another matrix with entries at the same places; false if it is not positive

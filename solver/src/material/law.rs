@@ -1,6 +1,7 @@
 //! Every law as one value, and the material that it belongs to.
 #![allow(non_snake_case)]
 
+use crate::algebra::real::Dual;
 use crate::algebra::tensor::{Matrix3, tensor};
 use crate::material::constants::ElasticConstants;
 use crate::material::constitutive_law::{ConstitutiveLaw, Deformation};
@@ -94,6 +95,11 @@ impl Law {
         with_law!(self, law => law.bulk_slope(J))
     }
 
+    /// U''(J) \[Pa\].
+    pub fn bulk_curvature(&self, J: f64) -> f64 {
+        with_law!(self, law => law.bulk_slope(Dual { value: J, slope: 1.0 }).slope)
+    }
+
     /// Fraction s = max(0, 1 − 3μ/2λ) of the bulk energy that is projected on
     /// patches (method book, eq. 3.13): 0 for ν ≤ 0.3, 0.97 for ν = 0.49. It is
     /// 0 for the linear law, as J is not linear in the displacement.
@@ -145,7 +151,7 @@ impl Law {
 
     /// Whether its derivative costs more than a product with ∂P/∂F, so that it pays to keep that.
     pub fn is_costly(&self) -> bool {
-        matches!(self, Law::Ogden(_) | Law::Own(_))
+        self.has_fibres() || matches!(self, Law::Ogden(_) | Law::Own(_) | Law::Demiray(_))
     }
 
     /// Cauchy stress σ = P Fᵀ/J \[Pa\].

@@ -196,6 +196,28 @@ impl Projection {
         self.fraction * weights.zip(gains).map(|(w, gain)| w * gain).sum::<f64>()
     }
 
+    /// Slopes of the moments of the pressure along those of J, of which a part acts \[Pa\]:
+    /// s c Σ_q w_q B_b B_c U''(θ_q) \[b\]\[c\].
+    pub fn slopes(
+        &self,
+        law: &Law,
+        groups: Range<usize>,
+        jacobians: &[f64],
+        part: f64,
+    ) -> [[f64; 4]; 4] {
+        let patch = &self.blocks[groups];
+        let mut slopes = [[0.0; 4]; 4];
+        for (q, theta) in projected(patch, jacobians).into_iter().enumerate() {
+            let BasisBlock { weights, basis } = &patch[q / LANES];
+            let basis = basis.map(|b| b.0[q % LANES]);
+            let bulk = self.fraction * part * weights.0[q % LANES] * law.bulk_curvature(theta);
+            for b in 0..4 {
+                (0..4).for_each(|c| slopes[b][c] += bulk * basis[b] * basis[c]);
+            }
+        }
+        slopes
+    }
+
     /// As [`Projection::pressures`], for output.
     pub fn plain_pressures(&self, law: &Law, groups: Range<usize>, jacobians: &[f64]) -> Vec<f64> {
         let patch = &self.blocks[groups];

@@ -18,7 +18,7 @@ pub struct Summary {
     pub time_steps: (f64, f64),
     /// Critical step in the reference configuration \[s\].
     pub critical_time_step: f64,
-    /// All evaluations of the internal force.
+    /// All evaluations of the internal force, and what factors of the tangent cost in such.
     pub force_evaluations: usize,
     /// Those of them for critical time steps.
     pub lanczos_evaluations: usize,
@@ -144,7 +144,7 @@ pub struct NewtonCounts {
     /// Products with the tangent operator; each takes 1.3 to 1.8 times as long as
     /// an evaluation of the internal force and is counted as one.
     pub products: usize,
-    /// All evaluations of the internal force.
+    /// All evaluations of the internal force, and what factors of the tangent cost in such.
     pub evaluations: usize,
     /// Largest unbalanced nodal force over the largest nodal force \[–\].
     pub residual: f64,

@@ -1,12 +1,14 @@
 //! Products with the tangent operator K = ∂f_int/∂u, without a matrix.
 #![allow(non_snake_case)]
 
+use crate::algebra::block_matrix::BlockMatrix;
 use crate::model::essential::ConstraintForces;
 use crate::model::following::{FollowingTangent, OwnFluid};
-use crate::model::{Following, Model};
+use crate::model::{Block, Chunk, Following, Model};
 use crate::motion::internal_force::{
-    OwnPressures, Workspace, linearise, linearised_stiffness_times,
+    OwnPressures, Workspace, for_each_chunk, linearise, linearised_stiffness_times,
 };
+use crate::motion::kernel::ChunkTangent;
 
 /// v ↦ Π M^(−1/2) K M^(−1/2) Π v with Π the projection onto free displacements.
 pub(crate) struct Tangent<'a> {
@@ -54,6 +56,10 @@ impl<'a> Tangent<'a> {
         Tangent { following: Some(own), ..self }
     }
 
+    pub fn model(&self) -> &'a Model {
+        self.model
+    }
+
     pub fn free_size(&self) -> usize {
         self.model.size().saturating_sub(self.model.constraints.count(self.t)).max(1)
     }
@@ -91,7 +97,7 @@ impl<'a> Tangent<'a> {
 
     fn times(&mut self, part: Following, direction: &[f64]) -> Vec<f64> {
         let mut product = self.internal_stiffness_times(direction);
-        if let Some(loads) = &self.following {
+        if let Some(loads) = &mut self.following {
             let mut following = vec![0.0; self.u.len()];
             loads.add_times(direction, part, &mut following);
             product.iter_mut().zip(&following).for_each(|(p, f)| *p -= f);
@@ -107,6 +113,18 @@ impl<'a> Tangent<'a> {
         }
         let product = self.stiffness_times(direction);
         (product, self.workspace.patches().flat_map(|patch| patch.volume).collect())
+    }
+
+    /// Visits the tangents of all chunks, at fixed pressures where patches have their own but for the
+    /// part that J gives at once.
+    pub fn for_each_chunk(&mut self, visit: impl FnMut(&Block, &Chunk, &ChunkTangent)) {
+        for_each_chunk(self.model, self.own.as_ref(), self.workspace, visit);
+    }
+
+    /// The stiffness of pressures that turn with the surface \[N/m\], which is taken from that of the
+    /// body.
+    pub fn turning(&mut self) -> Option<&BlockMatrix> {
+        self.following.as_mut().map(FollowingTangent::turning)
     }
 
     fn internal_stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {

@@ -2,6 +2,7 @@
 
 use super::part::Following;
 use super::pressed_surface::PressedSurface;
+use crate::algebra::block_matrix::BlockMatrix;
 use crate::algebra::packed::{axpy, dot};
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::Discretisation;
@@ -135,6 +136,17 @@ impl CavityLoad {
         product: &mut [f64],
     ) {
         self.surface.add_stiffness_times(pressure, uv, part, components, product);
+    }
+
+    /// The same as entries of a matrix, as [`PressedSurface::add_stiffness`].
+    pub(super) fn add_turning(
+        &self,
+        pressure: f64,
+        u: &[f64],
+        components: usize,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.surface.add_stiffness(pressure, u, components, matrix);
     }
 
     /// The force of a unit pressure \[N/Pa\], and ∂V/∂u \[m²\].

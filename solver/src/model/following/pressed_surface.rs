@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::part::Following;
-
+use crate::algebra::block_matrix::BlockMatrix;
 use crate::algebra::real::Dual;
 use crate::algebra::tensor::{Matrix3, Vector3, cofactor, map, tensor_cofactor};
 use crate::discretisation::{Discretisation, Rows};
@@ -101,6 +101,40 @@ impl PressedSurface {
                     product[components * node + k] += along[k];
                 }
             }
+        }
+    }
+
+    /// Adds ½(K + Kᵀ) of [`Self::add_stiffness_times`] to a matrix of nodes.
+    pub fn add_stiffness(
+        &self,
+        pressure: f64,
+        u: &[f64],
+        components: usize,
+        matrix: &mut BlockMatrix,
+    ) {
+        let mut functions: Vec<(u32, (f64, Matrix3))> = Vec::new();
+        for (point, area) in self.areas.iter().enumerate() {
+            let F = self.rows.deformation_gradient(point, u, components);
+            // What a gradient of each component turns and stretches of the area \[l\]: columns \[k\].
+            let turned: [Matrix3; 3] = std::array::from_fn(|l| {
+                let column = |k: usize| {
+                    let mut gradient = Matrix3::zeros();
+                    gradient[(k, l)] = 1.0;
+                    cofactor_slope(&F, &gradient) * area
+                };
+                Matrix3::from_columns(&[column(0), column(1), column(2)])
+            });
+            functions.clear();
+            functions.extend(self.rows.row(point).map(|entry| {
+                let gradient = &self.rows.grad_phi[entry];
+                let along =
+                    turned[0] * gradient.x + turned[1] * gradient.y + turned[2] * gradient.z;
+                (self.rows.nodes[entry], (self.rows.phi[entry], along))
+            }));
+            functions.sort_unstable_by_key(|(node, _)| *node);
+            matrix.add_pairs(&functions, |(phi, along), (other_phi, other)| {
+                (*phi * other + *other_phi * along.transpose()) * (-0.5 * pressure)
+            });
         }
     }
 

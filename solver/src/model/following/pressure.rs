@@ -2,6 +2,7 @@
 
 use super::part::Following;
 use super::pressed_surface::PressedSurface;
+use crate::algebra::block_matrix::BlockMatrix;
 use crate::discretisation::Discretisation;
 use crate::error::Error;
 use crate::problem::{Amplitude, Pressure, Problem};
@@ -52,6 +53,19 @@ impl PressureLoad {
         let pressure = self.pressure * self.amplitude.at(t);
         if pressure != 0.0 {
             self.surface.add_stiffness_times(pressure, uv, part, components, product);
+        }
+    }
+
+    pub(super) fn add_stiffness(
+        &self,
+        t: f64,
+        u: &[f64],
+        components: usize,
+        matrix: &mut BlockMatrix,
+    ) {
+        let pressure = self.pressure * self.amplitude.at(t);
+        if pressure != 0.0 {
+            self.surface.add_stiffness(pressure, u, components, matrix);
         }
     }
 }

@@ -3,6 +3,7 @@
 //! side where nodes are read and eight in the law (method book, section 11).
 #![allow(non_snake_case)]
 
+mod chunk_tangent;
 mod extra;
 mod nodes;
 mod own_pressures;
@@ -14,6 +15,7 @@ use crate::material::with_law;
 use crate::model::blocks::{LocalVectors, with_gradients};
 use crate::model::projection::PatchMoments;
 use crate::model::{Block, Chunk};
+pub use chunk_tangent::{ChunkTangent, chunk_tangent};
 pub use extra::{ENTRIES, ExtraStress, Found, Symmetric};
 use fearless_simd::Simd;
 use nodes::{add_forces, deformation_gradients};

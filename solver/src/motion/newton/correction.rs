@@ -71,7 +71,7 @@ impl Solver<'_> {
                 System { tangent, residual, change, forcing, sliding, shift, guide, saddle };
             let correction = solver.linear.solve(model, &mut solver.free, system, go_on);
             solver.counts.products += correction.products;
-            solver.counts.evaluations += correction.products;
+            solver.counts.evaluations += correction.products + correction.of_factors;
             correction
         };
         let mut correction = solve(self, residual, change, saddle);

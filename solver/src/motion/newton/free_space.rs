@@ -79,23 +79,39 @@ impl<'a> FreeSpace<'a> {
         }
     }
 
+    /// The rows of what is prescribed, then of closed contacts: nodes with factors \[–\], and the unit
+    /// vector along which they act.
+    pub fn for_each_row(&self, mut visit: impl FnMut(&[u32], &[f64], &Vector3)) {
+        let (mut nodes, mut factors) = (Vec::new(), Vec::new());
+        self.model.constraints.for_each_row(self.t, |component, row| {
+            nodes.clear();
+            factors.clear();
+            row.for_each(|(node, phi)| {
+                nodes.push(node);
+                factors.push(phi);
+            });
+            visit(&nodes, &factors, &Vector3::ith(component, 1.0));
+        });
+        let Some(rows) = &self.model.nodal_rows else { return };
+        for ContactRow { node, along, .. } in &self.contacts {
+            let entries = rows.row(*node as usize);
+            visit(&rows.nodes[entries.clone()], &rows.phi[entries], along);
+        }
+    }
+
     fn assembled(&self, stopped: &[Vec<f64>]) -> Option<Together> {
         let (model, d) = (self.model, self.model.components);
         let (mut starts, mut entries) = (vec![0], Vec::new());
-        model.constraints.for_each_row(self.t, |component, nodes| {
-            entries.extend(nodes.map(|(node, phi)| ((d * node as usize + component) as u32, phi)));
-            starts.push(entries.len());
-        });
-        let conditions = starts.len() - 1;
-        let rows = model.nodal_rows.as_ref()?;
-        for ContactRow { node, along, .. } in &self.contacts {
-            for entry in rows.row(*node as usize) {
-                let first = d * rows.nodes[entry] as usize;
-                let factor = |k: usize| ((first + k) as u32, rows.phi[entry] * along[k]);
-                entries.extend((0..d).filter(|&k| along[k] != 0.0).map(factor));
+        model.nodal_rows.as_ref()?;
+        self.for_each_row(|nodes, factors, along| {
+            for (&node, factor) in nodes.iter().zip(factors) {
+                let first = d * node as usize;
+                let part = |k: usize| ((first + k) as u32, factor * along[k]);
+                entries.extend((0..d).filter(|&k| along[k] != 0.0).map(part));
             }
             starts.push(entries.len());
-        }
+        });
+        let conditions = starts.len() - 1 - self.contacts.len();
         for motion in stopped {
             let momentum = |(i, v): (usize, &f64)| (i as u32, model.inertia[i / d] * v);
             entries.extend(motion.iter().enumerate().map(momentum));

@@ -1,7 +1,7 @@
 //! The stiffness at rest of smooth displacements.
 #![allow(non_snake_case)]
 
-use super::coarse_matrix::CoarseMatrix;
+use crate::algebra::block_matrix::BlockMatrix;
 use crate::algebra::sparse::{Combine, Padded, Sparse, pad, unpad};
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::spline_lattice::Lattice;
@@ -46,7 +46,7 @@ pub(super) struct CoarseSpace {
     /// P and Pᵀ.
     values: [Sparse; 2],
     /// Without held displacements.
-    free: CoarseMatrix,
+    free: BlockMatrix,
     cholesky: Option<SparseCholesky>,
     scratch: Scratch,
 }
@@ -80,7 +80,7 @@ impl CoarseSpace {
         let count = numbers.count as usize;
         let transposed = values.transposed(count);
         let functions = Functions { lattice, numbers };
-        let mut free = CoarseMatrix::new(count, d);
+        let mut free = BlockMatrix::new(count, d);
         (0..model.positions.len()).for_each(|node| free.reserve(row_of(&values, node).0));
         functions.add_stiffness(model, at_rest.most, &mut free);
         add_springs(model, &values, &mut free);
@@ -127,7 +127,7 @@ impl CoarseSpace {
 }
 
 /// Adds a part of the stiffness of every node, lumped to the functions that reach it.
-fn add_to_nodes(diagonal: &[f64], values: &Sparse, part: f64, matrix: &mut CoarseMatrix) {
+fn add_to_nodes(diagonal: &[f64], values: &Sparse, part: f64, matrix: &mut BlockMatrix) {
     for (node, stiffness) in diagonal.iter().enumerate() {
         let (columns, values) = row_of(values, node);
         for (&i, &value) in columns.iter().zip(values) {
@@ -137,7 +137,7 @@ fn add_to_nodes(diagonal: &[f64], values: &Sparse, part: f64, matrix: &mut Coars
 }
 
 /// Adds the springs of the surface, lumped to nodes.
-fn add_springs(model: &Model, values: &Sparse, matrix: &mut CoarseMatrix) {
+fn add_springs(model: &Model, values: &Sparse, matrix: &mut BlockMatrix) {
     for (node, springs) in model.following.lumped_springs() {
         let (columns, values) = row_of(values, node as usize);
         for (along, stiffness) in directions(&springs) {
@@ -148,7 +148,7 @@ fn add_springs(model: &Model, values: &Sparse, matrix: &mut CoarseMatrix) {
 
 /// Functions of which only a tail reaches the body may bend almost without a point that
 /// sees it: their stiffness over Σ_a k_a N(X_a)² is raised to a part of the median.
-fn stiffen_tails(diagonal: &[f64], values: &Sparse, matrix: &mut CoarseMatrix) {
+fn stiffen_tails(diagonal: &[f64], values: &Sparse, matrix: &mut BlockMatrix) {
     let mut sums = vec![0.0; matrix.len()];
     for (node, stiffness) in diagonal.iter().enumerate() {
         let (columns, values) = row_of(values, node);
@@ -204,7 +204,7 @@ impl Functions {
         });
     }
 
-    fn add_stiffness(&self, model: &Model, most: f64, matrix: &mut CoarseMatrix) {
+    fn add_stiffness(&self, model: &Model, most: f64, matrix: &mut BlockMatrix) {
         let mut found = Vec::new();
         for block in &model.blocks {
             let moduli = ModuliAtRest::of(block).capped(most);
@@ -213,9 +213,11 @@ impl Functions {
                 matrix.add_elastic(&found, weight * moduli.shear, weight * moduli.pointwise);
             }
             if moduli.projected > 0.0 {
+                let mut stiffness = [[0.0; 4]; 4];
+                (0..4).for_each(|b| stiffness[b][b] = moduli.projected);
                 for chunk in &block.chunks {
                     let moments = self.patch_moments(model, block, chunk);
-                    matrix.add_squares(&moments, moduli.projected);
+                    matrix.add_squares(&moments, &stiffness);
                 }
             }
         }

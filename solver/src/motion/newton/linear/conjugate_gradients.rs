@@ -2,17 +2,13 @@
 #![allow(non_snake_case)]
 
 use super::coarse_space::{Held, Stiffness};
+use super::due_factors::{DueFactors, MadeFor};
 use super::preconditioner::Preconditioner;
 use super::system::{Correction, System};
 use crate::algebra::packed::{axpy, dot, largest};
 use crate::model::Model;
 use crate::motion::newton::free_space::FreeSpace;
 
-/// Held displacements that may change before the preconditioner is made anew, over their
-/// number \[–\].
-const CHANGED: f64 = 0.02;
-/// The same for the shift, as a factor \[–\].
-const SHIFTED: f64 = 3.0;
 /// Bodies of fewer nodes, and those in a plane, take no more products with the diagonal alone.
 const LEAST_NODES: usize = 200;
 /// For more nodes the preconditioner is made at once.
@@ -33,9 +29,9 @@ pub(crate) struct Solver {
     until: Option<usize>,
     /// Whether a correction has been solved.
     corrected: bool,
-    /// For what it was made: held nodes, roughly with the directions, and the shift.
-    held: Vec<(u32, [u64; 3])>,
-    shift: f64,
+    /// In place of the preconditioner, once iterations have cost as much as they do.
+    pub(super) factors: DueFactors,
+    made_for: Option<MadeFor>,
 }
 
 impl Solver {
@@ -54,8 +50,8 @@ impl Solver {
             preconditioner,
             until: few.then_some(OF_FIRST),
             corrected: false,
-            held: Vec::new(),
-            shift: f64::NAN,
+            factors: DueFactors::default(),
+            made_for: None,
         }
     }
 
@@ -76,29 +72,29 @@ impl Solver {
 
     /// Makes the preconditioner anew where it would no longer serve.
     pub(super) fn prepare(&mut self, free: &FreeSpace, shift: f64) {
-        let Some(preconditioner) = &mut self.preconditioner else { return };
-        let directions = free.held();
-        // Normals of a closed contact turn a little; its node says enough.
-        let mut held: Vec<(u32, [u64; 3])> = directions
-            .iter()
-            .map(|(node, along)| (*node, [0, 1, 2].map(|k| (along[k].abs() * 2.0) as u64)))
-            .collect();
-        held.sort_unstable();
-        let known = held.iter().filter(|entry| self.held.binary_search(entry).is_ok()).count();
-        let changed = held.len() + self.held.len() - 2 * known;
-        let ratio = (shift / self.shift).max(self.shift / shift);
-        let same = changed as f64 <= CHANGED * held.len() as f64;
-        if same && (shift == self.shift || ratio < SHIFTED) {
+        if self.preconditioner.is_none() && !self.factors.are_made() {
             return;
         }
-        let held_by = |(node, along): (u32, _)| Held {
-            node,
-            along,
-            stiffness: self.at_rest.diagonal[node as usize],
-        };
-        let directions: Vec<_> = directions.into_iter().map(held_by).collect();
-        preconditioner.hold(&self.at_rest, &directions, shift);
-        (self.held, self.shift) = (held, shift);
+        let now = MadeFor::now(free, shift);
+        self.factors.keep_for(&now);
+        let Some(preconditioner) = &mut self.preconditioner else { return };
+        if self.made_for.as_ref().is_some_and(|made| made.serves(&now)) {
+            return;
+        }
+        let stiffness = |node: u32| self.at_rest.diagonal[node as usize];
+        let held = |(node, along)| Held { node, along, stiffness: stiffness(node) };
+        let held: Vec<_> = free.held().into_iter().map(held).collect();
+        preconditioner.hold(&self.at_rest, &held, shift);
+        self.made_for = Some(now);
+    }
+
+    /// Counts a product; whether what preconditions is another since.
+    pub(super) fn count(&mut self, model: &Model, free: &FreeSpace, system: &mut System) -> bool {
+        let due = self.has_become_due(model);
+        if due {
+            self.prepare(free, system.shift);
+        }
+        self.factors.count(model, free, &self.at_rest, system) || due
     }
 
     /// Conjugate gradients within the free displacements, while `go_on` says so.
@@ -136,14 +132,12 @@ impl Solver {
                     axpy(&mut change, square / curvature.abs(), &direction);
                 }
                 indefinite = true;
+                self.factors.leave();
                 break;
             }
             axpy(&mut change, square / curvature, &direction);
             axpy(&mut residual, -square / curvature, &product);
-            let due = self.has_become_due(model);
-            if due {
-                self.prepare(free, shift);
-            }
+            let due = self.count(model, free, &mut system);
             let restart = due || count + 1 == PATIENCE && self.preconditioner.take().is_some();
             descent = self.preconditioned(model, free, &mut residual);
             let before = std::mem::replace(&mut square, dot(&residual, &descent));
@@ -158,7 +152,8 @@ impl Solver {
         // Each takes more than the one before; what was not due with the first is due late.
         self.until = self.until.map(|left| if self.corrected { left } else { OF_ALL });
         self.corrected = true;
-        Correction { change, indefinite, products, stopped, ..Correction::default() }
+        let of_factors = self.factors.take_cost();
+        Correction { change, indefinite, products, of_factors, stopped, ..Correction::default() }
     }
 
     /// What a change \[m\] that is made at once leaves of the residual \[N\], and the products that
@@ -187,7 +182,11 @@ impl Solver {
         for (i, (r, z)) in residual.iter_mut().zip(&descent).enumerate() {
             *r = model.inertia[i / d] * z;
         }
-        if let Some(preconditioner) = &mut self.preconditioner {
+        if self.factors.are_made() {
+            descent.copy_from_slice(residual);
+            self.factors.solve(&mut descent);
+            free.project(&mut descent);
+        } else if let Some(preconditioner) = &mut self.preconditioner {
             preconditioner.apply(d, residual, &mut descent);
             free.project(&mut descent);
         } else if self.at_rest.most.is_finite() {

@@ -27,18 +27,17 @@ impl Solver {
         let mut residual = std::mem::take(&mut system.residual);
         residual.extend(gaps);
         let forcing = system.forcing;
-        let mut products = 0;
-        if largest(&solution) > 0.0 {
-            products += 1;
-            let product = system.saddle_times(model, &self.at_rest.diagonal, &patches, &solution);
-            axpy(&mut residual, -1.0, &product);
-        }
-        let first = self.both_preconditioned(model, free, &patches, &mut residual);
-        let right = residual.clone();
         let start = solution.clone();
-        let mut lanczos = Recurrence::new(residual, first);
-        let target = forcing * lanczos.left.abs();
-        let mut stopped = false;
+        let (mut products, mut stopped) = (0, false);
+        let mut right = residual;
+        if largest(&start) > 0.0 {
+            products += 1;
+            let product = system.saddle_times(model, &self.at_rest.diagonal, &patches, &start);
+            axpy(&mut right, -1.0, &product);
+        }
+        let first = self.both_preconditioned(model, free, &patches, &mut right);
+        let mut lanczos = Recurrence::new(right.clone(), first);
+        let mut target = forcing * lanczos.left.abs();
         while products < MOST {
             stopped = !go_on();
             let left = lanczos.left.abs();
@@ -52,9 +51,20 @@ impl Solver {
             let diagonal = lanczos.orthogonalise(&mut next);
             let descent = self.both_preconditioned(model, free, &patches, &mut next);
             lanczos.advance(diagonal, next, descent, &mut solution);
+            if self.count(model, free, &mut system) {
+                let way: Vec<f64> = solution.iter().zip(&start).map(|(a, b)| a - b).collect();
+                let of = (&patches[..], &right[..], &way[..]);
+                let whole;
+                (lanczos, whole) = self.started_again(model, free, &mut system, of);
+                target = forcing * whole;
+                products += 1;
+            }
         }
         let step: Vec<f64> = solution.iter().zip(&start).map(|(a, b)| a - b).collect();
         let curvature = curvature(size, &step, &right, &patches);
+        if curvature < 0.0 {
+            self.factors.leave();
+        }
         let pressures = solution.split_off(size);
         Correction {
             change: solution,
@@ -62,8 +72,27 @@ impl Solver {
             fluids: Vec::new(),
             indefinite: curvature < 0.0,
             products,
+            of_factors: self.factors.take_cost(),
             stopped,
         }
+    }
+
+    /// The recurrence for what a way \[m\] has left of the right side, and the norm of the whole of it,
+    /// with what preconditions now.
+    fn started_again(
+        &mut self,
+        model: &Model,
+        free: &mut FreeSpace,
+        system: &mut System,
+        (patches, right, way): (&[SaddlePatch], &[f64], &[f64]),
+    ) -> (Recurrence, f64) {
+        let whole = self.both_preconditioned(model, free, patches, &mut right.to_vec());
+        let whole = dot(right, &whole).max(0.0).sqrt();
+        let mut rest = right.to_vec();
+        let product = system.saddle_times(model, &self.at_rest.diagonal, patches, way);
+        axpy(&mut rest, -1.0, &product);
+        let descent = self.both_preconditioned(model, free, patches, &mut rest);
+        (Recurrence::new(rest, descent), whole)
     }
 
     /// Of displacements and pressures; what is held leaves `residual`.

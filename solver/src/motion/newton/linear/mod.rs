@@ -1,8 +1,10 @@
 //! The linear systems of corrections.
 
-mod coarse_matrix;
 mod coarse_space;
 mod conjugate_gradients;
+mod due_factors;
+mod elimination_order;
+mod factors;
 mod guide;
 mod minimal_residuals;
 mod nodal_values;

@@ -18,6 +18,8 @@ pub(crate) struct Correction {
     pub indefinite: bool,
     /// Products with K.
     pub products: usize,
+    /// What factors have cost beside them, in products.
+    pub of_factors: usize,
     /// Whether the observer ended the run.
     pub stopped: bool,
 }

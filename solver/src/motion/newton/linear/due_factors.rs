@@ -1,0 +1,120 @@
+//! When factors of the tangent are made.
+
+use super::coarse_space::Stiffness;
+use super::factors::Factors;
+use super::system::System;
+use crate::algebra::tensor::Vector3;
+use crate::model::Model;
+use crate::motion::newton::free_space::FreeSpace;
+
+/// Held displacements that may change before what was made for them is made again, over their
+/// number \[–\].
+const CHANGED: f64 = 0.02;
+/// The same for the shift, as a factor \[–\].
+const SHIFTED: f64 = 3.0;
+
+/// What a preconditioner was made for: held nodes, roughly with the directions, and the shift.
+#[derive(Default)]
+pub(super) struct MadeFor {
+    held: Vec<(u32, [u64; 3])>,
+    shift: f64,
+}
+
+impl MadeFor {
+    /// What is held now.
+    pub fn now(free: &FreeSpace, shift: f64) -> MadeFor {
+        // Normals of a closed contact turn a little; its node says enough.
+        let roughly = |along: Vector3| [0, 1, 2].map(|k| (along[k].abs() * 2.0) as u64);
+        let mut held: Vec<(u32, [u64; 3])> =
+            free.held().iter().map(|(node, along)| (*node, roughly(*along))).collect();
+        held.sort_unstable();
+        MadeFor { held, shift }
+    }
+
+    /// Whether it still serves.
+    pub fn serves(&self, now: &MadeFor) -> bool {
+        let known = now.held.iter().filter(|entry| self.held.binary_search(entry).is_ok()).count();
+        let changed = now.held.len() + self.held.len() - 2 * known;
+        let ratio = (now.shift / self.shift).max(self.shift / now.shift);
+        changed as f64 <= CHANGED * now.held.len() as f64
+            && (now.shift == self.shift || ratio < SHIFTED)
+    }
+}
+
+/// Factors of the tangent, made each time that iterations have cost as much as they do: so neither
+/// costs more than twice what the other would have.
+#[derive(Default)]
+pub(super) struct DueFactors {
+    factors: Option<Factors>,
+    /// Whether they have been looked at; they may be too large.
+    seen: bool,
+    /// What they were made for, where they are in use.
+    made_for: Option<MadeFor>,
+    /// Products since they were made, and what solutions with them cost in products.
+    spent: f64,
+    /// How often in succession they could not be made.
+    failures: i32,
+    /// What factors and solutions with them have cost, in products.
+    cost: f64,
+}
+
+impl DueFactors {
+    /// Whether they are in use.
+    pub fn are_made(&self) -> bool {
+        self.made_for.is_some()
+    }
+
+    /// Leaves them where they no longer serve.
+    pub fn keep_for(&mut self, now: &MadeFor) {
+        self.made_for = self.made_for.take().filter(|made| made.serves(now));
+    }
+
+    /// Leaves them where the tangent is no longer positive definite.
+    pub fn leave(&mut self) {
+        self.made_for = None;
+    }
+
+    /// Counts a product; whether factors were due with it and have been made, or given up.
+    pub fn count(
+        &mut self,
+        model: &Model,
+        free: &FreeSpace,
+        at_rest: &Stiffness,
+        system: &mut System,
+    ) -> bool {
+        self.spent += 1.0;
+        if !self.seen && self.spent > Factors::least_price(model) {
+            self.seen = true;
+            self.factors = Factors::new(model);
+        }
+        let used = self.are_made();
+        let Some(factors) = &mut self.factors else { return false };
+        if used {
+            self.spent += factors.price_of_solution();
+            self.cost += factors.price_of_solution();
+        }
+        if self.spent < factors.price(model) * f64::powi(2.0, self.failures) {
+            return false;
+        }
+        self.spent = 0.0;
+        self.cost += factors.price(model);
+        let made = factors.make(free, at_rest, system);
+        self.failures = if made { 0 } else { self.failures + 1 };
+        self.made_for = made.then(|| MadeFor::now(free, system.shift));
+        made || used
+    }
+
+    /// What they have cost since this was asked for, in products with the tangent.
+    pub fn take_cost(&mut self) -> usize {
+        let whole = self.cost.floor();
+        self.cost -= whole;
+        whole as usize
+    }
+
+    /// Solves with a force \[N\] in place.
+    pub fn solve(&mut self, force: &mut [f64]) {
+        if let Some(factors) = &mut self.factors {
+            factors.solve(force);
+        }
+    }
+}
