@@ -1,8 +1,9 @@
 //! ∂P/∂F at the points of a chunk, and how the pressure of its patch follows from J.
 #![allow(non_snake_case)]
 
+use super::own_pressures::BlockPressures;
 use super::points::{jacobians, pressures, stresses};
-use super::{BlockPressures, Scratch};
+use super::scratch::Scratch;
 use crate::algebra::block_matrix::PointTangent;
 use crate::algebra::lanes::{LANES, Lanes, SimdBlock};
 use crate::algebra::tensor::Matrix3;

@@ -28,13 +28,9 @@ impl Solver {
         residual.extend(gaps);
         let forcing = system.forcing;
         let start = solution.clone();
-        let (mut products, mut stopped) = (0, false);
-        let mut right = residual;
-        if largest(&start) > 0.0 {
-            products += 1;
-            let product = system.saddle_times(model, &self.at_rest.diagonal, &patches, &start);
-            axpy(&mut right, -1.0, &product);
-        }
+        let mut stopped = false;
+        let (mut right, mut products) =
+            self.right_side(model, &mut system, &patches, (residual, &start));
         let first = self.both_preconditioned(model, free, &patches, &mut right);
         let mut lanczos = Recurrence::new(right.clone(), first);
         let mut target = forcing * lanczos.left.abs();
@@ -75,6 +71,22 @@ impl Solver {
             of_factors: self.factors.take_cost(),
             stopped,
         }
+    }
+
+    /// What a start \[m\] leaves of the right side, and the products that took.
+    fn right_side(
+        &self,
+        model: &Model,
+        system: &mut System,
+        patches: &[SaddlePatch],
+        (mut residual, start): (Vec<f64>, &[f64]),
+    ) -> (Vec<f64>, usize) {
+        if largest(start) == 0.0 {
+            return (residual, 0);
+        }
+        let product = system.saddle_times(model, &self.at_rest.diagonal, patches, start);
+        axpy(&mut residual, -1.0, &product);
+        (residual, 1)
     }
 
     /// The recurrence for what a way \[m\] has left of the right side, and the norm of the whole of it,
