@@ -35,12 +35,8 @@ impl Column {
     }
 
     fn block(&mut self, row: u32) -> &mut Matrix3 {
-        let place = self.rows.binary_search(&row).unwrap_or_else(|place| {
-            self.rows.insert(place, row);
-            self.blocks.insert(place, Matrix3::zeros());
-            place
-        });
-        &mut self.blocks[place]
+        let mut place = self.rows.partition_point(|at| *at < row);
+        self.block_from(&mut place, row)
     }
 }
 

@@ -14,7 +14,6 @@ const CHANGED: f64 = 0.02;
 const SHIFTED: f64 = 3.0;
 
 /// What a preconditioner was made for: held nodes, roughly with the directions, and the shift.
-#[derive(Default)]
 pub(super) struct MadeFor {
     held: Vec<(u32, [u64; 3])>,
     shift: f64,
@@ -90,14 +89,14 @@ impl DueFactors {
         let used = self.are_made();
         let Some(factors) = &mut self.factors else { return false };
         if used {
-            self.spent += factors.price_of_solution();
-            self.cost += factors.price_of_solution();
+            self.spent += factors.price_of_solution;
+            self.cost += factors.price_of_solution;
         }
-        if self.spent < factors.price(model) * f64::powi(2.0, self.failures) {
+        if self.spent < factors.price * f64::powi(2.0, self.failures) {
             return false;
         }
         self.spent = 0.0;
-        self.cost += factors.price(model);
+        self.cost += factors.price;
         let made = factors.make(free, at_rest, system);
         self.failures = if made { 0 } else { self.failures + 1 };
         self.made_for = made.then(|| MadeFor::now(free, system.shift));

@@ -37,10 +37,10 @@ const TANGENTS: f64 = 3.0;
 pub(super) struct Factors {
     matrix: BlockMatrix,
     order: Order,
-    /// Neighbours of all points.
-    pairs: f64,
-    /// Unknowns.
-    size: f64,
+    /// What making them costs in products with the tangent.
+    pub price: f64,
+    /// What a solution costs in products with the tangent.
+    pub price_of_solution: f64,
     cholesky: Option<SparseCholesky>,
     /// Entries of the matrix that they were made for.
     places: usize,
@@ -50,17 +50,19 @@ pub(super) struct Factors {
 impl Factors {
     /// Without factors yet; `None` where they would have too many entries.
     pub fn new(model: &Model) -> Option<Factors> {
-        let d = model.components;
         let order = Order::of(model);
         let pairs = pairs(model);
         if order.entries > MOST_ENTRIES.0 || order.entries as f64 > MOST_ENTRIES.1 * pairs {
             return None;
         }
+        let entries = order.entries as f64;
+        let operations = entries * entries / model.size() as f64;
+        let of_entries = WRITTEN * entries + operations / OPERATIONS;
         Some(Factors {
-            matrix: BlockMatrix::new(model.positions.len(), d),
-            pairs,
-            size: model.size() as f64,
+            matrix: BlockMatrix::new(model.positions.len(), model.components),
             order,
+            price: Factors::least_price(model) + of_entries / pairs,
+            price_of_solution: entries / (ENTRIES * pairs),
             cholesky: None,
             places: 0,
             scratch: Scratch::default(),
@@ -70,19 +72,6 @@ impl Factors {
     /// What the tangents of all points cost in products with the tangent.
     pub fn least_price(model: &Model) -> f64 {
         TANGENTS * pairs(model) / model.point_positions.len() as f64
-    }
-
-    /// What making them costs in products with the tangent.
-    pub fn price(&self, model: &Model) -> f64 {
-        let entries = self.order.entries as f64;
-        let operations = entries * entries / self.size;
-        let of_entries = WRITTEN * entries + operations / OPERATIONS;
-        Factors::least_price(model) + of_entries / self.pairs
-    }
-
-    /// What a solution costs in products with the tangent.
-    pub fn price_of_solution(&self) -> f64 {
-        self.order.entries as f64 / (ENTRIES * self.pairs)
     }
 
     /// Makes them for a system; whether its tangent is positive definite.
