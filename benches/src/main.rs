@@ -12,7 +12,7 @@ use clap::{Args, Parser};
 use std::path::{Path, PathBuf};
 
 /// Fill the tables of the README and of the guide from the output of `mtled verify`, `cargo bench`
-/// or `mtled study race`.
+/// or `mtled contest race`.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
@@ -32,17 +32,23 @@ struct Source {
     /// Fill the tables of `cargo bench` from Criterion's folder.
     #[arg(long, value_name = "FOLDER", num_args = 0..=1, default_missing_value = "target/criterion")]
     bench: Option<PathBuf>,
-    /// Fill the table of `mtled study race` from its race.md.
-    #[arg(long, value_name = "RACE")]
+    /// Fill the table of `mtled contest race` from its tables.md.
+    #[arg(long, value_name = "TABLES")]
     race: Option<PathBuf>,
 }
 
 fn main() -> anyhow::Result<()> {
     let Arguments { source, page } = Arguments::parse();
+    if let Some(tables) = &source.race {
+        let whole = markers::first_table(&read(tables)?)?;
+        fill(&page, "race", &whole)?;
+        fill(&page, "race_at_one_per_cent", &markers::rows_with(&whole, "| 1.00 % |"))?;
+        print!("{whole}");
+        return Ok(());
+    }
     let (name, table) = match &source {
         Source { verify: Some(results), .. } => ("verify", verify::table(results)?),
         Source { bench: Some(criterion), .. } => ("bench", bench::tables(criterion)?),
-        Source { race: Some(page), .. } => ("race", markers::first_table(&read(page)?)?),
         _ => anyhow::bail!("nothing to fill a table from"),
     };
     fill(&page, name, &table)?;

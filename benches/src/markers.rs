@@ -24,9 +24,22 @@ pub fn first_table(page: &str) -> Result<String> {
     if table.is_empty() { Err(anyhow!("the page has no table")) } else { Ok(table) }
 }
 
+/// The head of a table, and its rows with a text.
+pub fn rows_with(table: &str, text: &str) -> String {
+    let (head, rows): (Vec<_>, Vec<_>) = table.lines().enumerate().partition(|(n, _)| *n < 2);
+    let chosen = rows.iter().filter(|(_, row)| row.contains(text));
+    head.iter().chain(chosen).fold(String::new(), |all, (_, line)| all + line + "\n")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_of_a_table_keep_its_head() {
+        let table = "| a | b |\n|---|---|\n| 1 | 2 |\n| 3 | 4 |\n";
+        assert_eq!(rows_with(table, "| 3 |"), "| a | b |\n|---|---|\n| 3 | 4 |\n");
+    }
 
     #[test]
     fn the_first_table_ends_where_its_rows_do() {

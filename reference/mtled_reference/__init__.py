@@ -11,5 +11,5 @@ LEVELS = (0, 1, 2)
 """Meshes of a case from coarse to fine."""
 
 FINEST = 3
-"""A fourth mesh, of the bonded block with FEniCSx only: its field is the reference solution
-of the race."""
+"""A fourth mesh, of the bonded block with FEniCSx only: its field is
+`finest/bonded_block.json`."""

@@ -1,4 +1,4 @@
-"""Solves cases by finite elements, merges the solutions, and times runs of the race."""
+"""Solves cases by finite elements and merges the solutions."""
 
 import argparse
 import signal
@@ -6,8 +6,7 @@ import sys
 from pathlib import Path
 
 from . import CODES, FINEST, LEVELS
-from .race.reference_solution import write_reference_solution
-from .race.timing import race
+from .finest import write_reference_solution
 from .regenerate import regenerate
 from .shared.case import read_case
 from .shared.reference_file import merge_into
@@ -33,7 +32,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--traceback", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(required=True)
     _add_solving(commands)
-    _add_race(commands)
+    _add_finest(commands)
     _add_references(commands)
     return parser
 
@@ -100,25 +99,16 @@ def _strip(options) -> None:
     time_strip(options.case, tuple(options.cells), options.steps)
 
 
-def _add_race(commands) -> None:
-    """The commands of the race."""
-    command = commands.add_parser("race", help="one run of the race, in this process")
-    command.add_argument("problem")
-    command.add_argument("--cases", type=Path, required=True, help="folder of the case files")
-    command.add_argument("--code", choices=CODES, required=True)
-    command.add_argument("--element", required=True, help="such as P2 or Q1/P0")
-    command.add_argument("--cells", type=int, required=True, help="along an edge of the body")
-    command.add_argument("--out", type=Path, required=True)
-    command.set_defaults(run=_race)
-
-    command = commands.add_parser("race-reference", help="the reference solution of the race")
+def _add_finest(commands) -> None:
+    """The command that writes a field on a finer mesh than those of a reference."""
+    command = commands.add_parser("finest", help="the field of the bonded block on a finer mesh")
     command.add_argument("case", type=Path)
     output = f"output of solve-mesh --mesh {FINEST}"
     command.add_argument("--solved", type=Path, required=True, help=output)
     ratio = "size of the next coarser mesh over that of the finest"
     command.add_argument("--refinement", type=float, default=1.5, help=ratio)
     command.add_argument("--out", type=Path, required=True)
-    command.set_defaults(run=_race_reference)
+    command.set_defaults(run=_finest)
 
 
 def _add_references(commands) -> None:
@@ -149,18 +139,7 @@ def _solve_mesh(options) -> None:
     solve_mesh_here(options.case, options.code, options.mesh, options.out)
 
 
-def _race(options) -> None:
-    race(
-        options.problem,
-        options.cases,
-        options.code,
-        options.element,
-        options.cells,
-        options.out,
-    )
-
-
-def _race_reference(options) -> None:
+def _finest(options) -> None:
     write_reference_solution(options.case, options.solved, options.refinement, options.out)
 
 

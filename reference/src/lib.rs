@@ -29,7 +29,11 @@ bundled! {
     "cut_ball"
     "falling_beam"
     "indented_block"
+    "inflated_tube"
     "parted_arms"
+    "rubber_block"
+    "smooth_compressible"
+    "smooth_nearly_incompressible"
     "soft_inclusion"
     "sphere_gravity"
     "turek_hron_csm1"
@@ -134,11 +138,11 @@ pub static LABEL_MAPS: &[(&str, &[u8])] = &[
     ("slice.nrrd", include_bytes!("../brain/slice.nrrd")),
 ];
 
-/// Displacements of the bonded block on the finest mesh, `race/bonded_block.json`.
-pub static FINEST_BLOCK: &str = include_str!("../race/bonded_block.json");
+/// Displacements of the bonded block on the finest mesh, `finest/bonded_block.json`.
+pub static FINEST_BLOCK: &str = include_str!("../finest/bonded_block.json");
 
-/// Times of the finite-element codes, `race/timings.json`.
-pub static RACE_TIMINGS: &str = include_str!("../race/timings.json");
+/// Who races on which problems, `race.toml`.
+pub static RACE: &str = include_str!("../race.toml");
 
 /// Body forces that SymPy derived for the manufactured solutions, `manufactured/body_force.json`.
 pub static MANUFACTURED_BODY_FORCES: &str = include_str!("../manufactured/body_force.json");

@@ -15,9 +15,8 @@ MAY_IMPORT = {
     "fenicsx": {"shared"},
     "scikit_fem": {"shared"},
     "brain": {"shared", *CODES},
-    "race": {"shared", *CODES},
     "whole_brain": {"shared", *CODES, "brain"},
-    "": {"shared", *CODES, "brain", "whole_brain", "race"},
+    "": {"shared", *CODES, "brain", "whole_brain"},
     "adapters": {"", "shared", *CODES},
     "adapters/simulators": {"adapters"},
 }

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.sparse
 
 skfem = pytest.importorskip("skfem")
 
@@ -18,7 +19,7 @@ from mtled_reference.scikit_fem.newton import solve_static
 from mtled_reference.scikit_fem.record import Recorder
 from mtled_reference.scikit_fem.solve import solve_mesh
 from mtled_reference.shared.case import BodyForce, read_case
-from mtled_reference.shared.selection import bounding_box, cut_of_ball
+from mtled_reference.shared.selection import bounding_box, cut_of_ball, radii_of_quarter_ring
 
 CASES = Path(__file__).parent.parent / "cases"
 
@@ -36,6 +37,8 @@ def volume(shape: dict, dimension: int) -> float:
         return 4.0 / 3.0 * np.pi * content["radius"] ** 3
     if kind == "cylinder":
         return np.pi * content["radius"] ** 2 * content["height"]
+    if radii := radii_of_quarter_ring(shape):
+        return 0.25 * np.pi * (radii[1] ** 2 - radii[0] ** 2)
     if kind == "intersection":  # of a ball and a half-space
         radius, depth = cut_of_ball(shape)
         return np.pi / 3.0 * (radius + depth) ** 2 * (2.0 * radius - depth)
@@ -160,6 +163,33 @@ def test_a_quarter_with_symmetry_gives_the_values_of_the_whole(name):
     assert part.keys() == full.keys()
     for key, value in full.items():
         assert np.array(part[key]) == pytest.approx(np.array(value), abs=1e-8, rel=1e-7), key
+
+
+def test_the_cut_through_a_tube_carries_the_pressure_on_its_deformed_bore():
+    case = read_case(CASES / "inflated_tube.toml")
+    division = case_mesh(case, 0)
+    model = Model(case, mesh_of_blocks(division.blocks), division.symmetry)
+    solved = solve_static(model, 4, silent, Factorisation())
+    (pressure,) = case.pressures
+    bore = np.flatnonzero(np.linalg.norm(model.nodes - [0.0, 0.01], axis=1) < 1e-9)[0]
+    radius = 0.01 + solved.displacements[bore, 1]
+    force = solved.reactions[model.supports["x0"], 0].sum()
+    assert radius > 0.0145
+    assert force == pytest.approx(-pressure.pressure * radius * case.thickness, rel=1e-8)
+
+
+def test_the_tangent_of_a_body_under_pressure_is_the_derivative_of_its_forces():
+    case = read_case(CASES / "inflated_tube.toml")
+    model = Model(case, mesh_of_blocks(case_mesh(case, 0).blocks), [])
+    random = np.random.default_rng(1)
+    u, along = (1e-4 * random.standard_normal(model.nodes.shape) for _ in range(2))
+    along = np.where(model.fixed, 0.0, along)
+    _, _, upper, _ = model.internal(u, True)
+    whole = upper + upper.T - scipy.sparse.diags(upper.diagonal())
+    product = whole @ along.ravel()[model.free]
+    forces = [model.internal(u + step * along)[1] for step in (1e-5, -1e-5)]
+    expected = ((forces[0] - forces[1]) / 2e-5).ravel()[model.free]
+    assert product == pytest.approx(expected, abs=1e-6 * np.abs(expected).max())
 
 
 def test_energy_is_conserved_without_damping():

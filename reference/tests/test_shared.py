@@ -36,8 +36,8 @@ def test_a_law_that_no_reference_solves_is_refused():
 def test_what_no_reference_solves_is_refused(tmp_path):
     text = (CASES / "bonded_block.toml").read_text()
     case = tmp_path / "case.toml"
-    case.write_text(text + '[[pressure]]\nname = "p"\nwhere = "all"\npressure = 1.0\n')
-    with pytest.raises(ValueError, match="pressure is not solved by the references"):
+    case.write_text(text + '[[spring]]\nname = "p"\nwhere = "all"\nstiffness = 1.0\n')
+    with pytest.raises(ValueError, match="spring is not solved by the references"):
         read_case(case)
     part = "{ sphere = { centre = [0.0, 0.0, 0.0], radius = 1.0 } }"
     case.write_text(text + f"[[body_force]]\nwhere = {part}\nacceleration = [0.0, 0.0, 1.0]\n")

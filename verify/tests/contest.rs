@@ -12,7 +12,7 @@ mod stored;
 
 use fake::Arena;
 use mtled_verify::bundled::CASES;
-use mtled_verify::contests::solvers::absolute;
+use mtled_verify::contests::absolute;
 use mtled_verify::lab::store::Source;
 use mtled_verify::protocol::{Job, Resolution, parse_job};
 use program::{interrupt, mtled, program};

@@ -89,7 +89,7 @@ fn a_folder_that_cannot_be_written_is_named_before_the_run() {
         &["tune", "case.toml"],
         &["tune", "case.toml", "uniaxial_bar"],
         &["study", "convergence", "case.toml"],
-        &["study", "race", "--stored"],
+        &["contest", "race", "bonded_block"],
     ];
     for command in commands {
         let (code, out, err) = mtled(&folder, &[command, &["--out", "file/inside"]].concat());

@@ -4,21 +4,25 @@ import numpy as np
 
 from .. import LEVELS
 from ..shared.case import Case, read_case
-from ..shared.selection import bounding_box, selected
+from ..shared.selection import bounding_box, radii_of_quarter_ring, selected
 from .files import Refused
 
 EVEN = {"all", "plane", "half_space", "box"}
 """Selections whose borders an even mesh of a box can follow."""
+NOT_SOLVED = ("pressures", "springs", "cavities", "initial_velocities")
+"""Kinds of loads that an adapter refuses if it does not say otherwise."""
+COMPOSED = ("union", "intersection")
+"""Selections that others make up."""
 
 
-def read(job: dict) -> Case:
-    """The case of a job; refuses what no adapter of this folder solves."""
+def read(job: dict, refused: tuple[str, ...] = NOT_SOLVED) -> Case:
+    """The case of a job; refuses kinds of loads, and what no adapter of this folder solves."""
     try:
         case = read_case(job["case_file"])
     except ValueError as error:
         raise Refused(str(error)) from None
     problem = job["problem"]
-    for name in ("pressures", "springs", "cavities", "initial_velocities"):
+    for name in refused:
         if problem["loads"][name]:
             raise Refused(name.replace("_", " "))
     for region in problem["regions"]:
@@ -54,10 +58,18 @@ def is_even(case: Case) -> bool:
     """Whether the case is the equilibrium of a box whose selections are parallel to it."""
     selectors = [p.selector for p in case.prescriptions] + [r.selector for r in case.regions]
     selectors += [traction.selector for traction in case.tractions]
-    kinds = {s if isinstance(s, str) else next(iter(s)) for s in selectors}
+    kinds = {kind for selector in selectors for kind in _kinds(selector)}
     on_all = all(force.selector == "all" for force in case.body_forces)
     is_box = case.dimension == 3 and "box" in case.shape
     return case.is_static and is_box and on_all and kinds <= EVEN
+
+
+def _kinds(selector) -> set[str]:
+    """The kinds of selections that a selection is made of."""
+    if isinstance(selector, str):
+        return {selector}
+    kind, content = next(iter(selector.items()))
+    return set().union(*map(_kinds, content)) if kind in COMPOSED else {kind}
 
 
 def counts(case: Case, spacing: float, degree: int) -> tuple[np.ndarray, np.ndarray, list[int]]:
@@ -65,6 +77,16 @@ def counts(case: Case, spacing: float, degree: int) -> tuple[np.ndarray, np.ndar
     whose nodes have the wanted spacing [m]."""
     low, high = bounding_box(case.shape)
     return low, high, [max(1, round(length / (degree * spacing))) for length in high - low]
+
+
+def counts_of_ring(case: Case, spacing: float, degree: int) -> tuple:
+    """Inner and outer radius [m] of a quarter of a ring in plane strain, and numbers of elements of a
+    degree across it and around whose nodes have the wanted spacing [m]."""
+    radii = radii_of_quarter_ring(case.shape)
+    if radii is None or case.dimension == 3:
+        raise Refused("bodies without an even mesh")
+    lengths = radii[1] - radii[0], 0.25 * np.pi * (radii[0] + radii[1])
+    return radii, tuple(max(1, round(length / (degree * spacing))) for length in lengths)
 
 
 def reference_level(job: dict) -> int:

@@ -1,8 +1,11 @@
 """Solves a job with FElupe: python -m mtled_reference.adapters.felupe JOB ANSWER
 
 Static boxes of one neo-Hookean material without loads, by trilinear hexahedra, with three fields
-where ν ≥ 0.45 and the law has an isochoric split.
+where ν ≥ 0.45 and the law has an isochoric split. With --element such a box is solved as in a race:
+trilinear hexahedra Q1, with three fields Q1/P0.
 """
+
+from dataclasses import dataclass
 
 import felupe
 import numpy as np
@@ -15,29 +18,42 @@ except ImportError:
 
 from ..shared.case import Case
 from ..shared.selection import selected
-from .cases import counts, read
-from .files import Refused, answer
+from .cases import counts, is_even, read
+from .files import Quick, Refused, answer
 
 LOAD_STEPS = (5, 20)
 """Numbers of load steps, tried in turn."""
 RESIDUAL = 1e-6
 """Of Newton's method, over the forces [–]."""
 NEARLY_INCOMPRESSIBLE = 0.45
+THREE_FIELDS = {"Q1": False, "Q1/P0": True}
+"""Whether p and θ are fields of an element."""
+FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+"""Corners of the faces of a hexahedron."""
+FAILURES = (felupe.NewtonConvergenceError, ValueError, FloatingPointError)
 
 
-def solve(job: dict) -> dict:
+def solve(job: dict, element: str | None) -> dict:
     """The answer to a job."""
     case = read(job)
     _refuse_others(case, job)
-    low, high, numbers = counts(case, job["spacing_m"], 1)
-    mesh = felupe.Cube(a=low, b=high, n=tuple(n + 1 for n in numbers))
-    region = felupe.RegionHexahedron(mesh)
+    material = job["problem"]["regions"][0]["material"]
+    if element is not None:
+        quick = Quick(FAILURES)
+        three_fields = THREE_FIELDS[element]
+        body = quick.solved(
+            lambda parts: _equilibrium(case, job, material, three_fields, parts, quick.RESIDUAL)
+        )
+        return _answered(case, body) | {"apart_cpu_s": quick.apart_s()}
+    three_fields = (
+        material["law"] != "neo_hookean_log_j"
+        and material["poisson_ratio"] >= NEARLY_INCOMPRESSIBLE
+    )
     for steps in LOAD_STEPS:
-        field = felupe.FieldContainer([felupe.Field(region, dim=3)])
-        solid, method = _solid(job["problem"]["regions"][0]["material"], field)
         try:
-            return _solved(case, job, field, solid, steps) | {"method": method}
-        except (felupe.NewtonConvergenceError, ValueError, FloatingPointError) as error:
+            body = _equilibrium(case, job, material, three_fields, steps, RESIDUAL)
+            return _answered(case, body)
+        except FAILURES as error:
             failure = error
     raise Refused(f"no convergence: {failure}", "not_converged")
 
@@ -48,23 +64,25 @@ def _refuse_others(case: Case, job: dict) -> None:
         raise Refused("bodies other than boxes")
     if not case.is_static:
         raise Refused("motion in time")
-    if case.obstacles or case.body_forces or case.tractions:
-        raise Refused("contact, body forces and tractions")
+    if case.obstacles or case.body_forces:
+        raise Refused("contact and body forces")
+    if case.tractions and not is_even(case):
+        raise Refused("tractions on parts that no even mesh follows")
     if len(case.regions) > 1 or any(probe.positions is None for probe in case.probes):
         raise Refused("several regions, centres of mass")
-    if any(p.rotation or p.formula for p in case.prescriptions):
-        raise Refused("rotations and formulas")
+    if any(p.rotation for p in case.prescriptions):
+        raise Refused("rotations")
 
 
-def _solid(material: dict, field):
+def _solid(material: dict, three_fields: bool, field):
     """The body and what it is made of."""
     mu, bulk = material["shear_modulus_pa"], material["bulk_modulus_pa"]
-    if material["law"] == "neo_hookean_log_j":
+    if material["law"] == "neo_hookean_log_j" and not three_fields:
         law = felupe.NeoHookeCompressible(mu=mu, lmbda=material["lame_modulus_pa"])
         return felupe.SolidBody(law, field), "trilinear hexahedra"
     if material["strain_energy"] != "mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2":
         raise Refused(f"the law {material['law']}")
-    if material["poisson_ratio"] < NEARLY_INCOMPRESSIBLE:
+    if not three_fields:
         return felupe.SolidBody(felupe.NeoHooke(mu=mu, bulk=bulk), field), "trilinear hexahedra"
     solid = felupe.SolidBodyNearlyIncompressible(felupe.NeoHooke(mu=mu), field, bulk=bulk)
     return solid, "trilinear hexahedra Q1/P0, three fields"
@@ -88,28 +106,72 @@ def _supports(case: Case, points: np.ndarray):
     return full, fixed, owned
 
 
-def _solved(case: Case, job: dict, field, solid, steps: int) -> dict:
-    """Probes and reactions after load steps."""
-    points = field.region.mesh.points
-    full, fixed, owned = _supports(case, points)
+@dataclass(frozen=True)
+class Body:
+    """A body in equilibrium, and which components of which nodes are held by whom."""
+
+    field: felupe.FieldContainer
+    solid: object
+    method: str
+    free: np.ndarray
+    owned: dict
+
+
+def _equilibrium(
+    case: Case, job: dict, material: dict, three_fields: bool, steps: int, residual: float
+) -> Body:
+    """The body after load steps."""
+    low, high, numbers = counts(case, job["spacing_m"], 1)
+    mesh = felupe.Cube(a=low, b=high, n=tuple(n + 1 for n in numbers))
+    field = felupe.FieldContainer([felupe.Field(felupe.RegionHexahedron(mesh), dim=3)])
+    solid, method = _solid(material, three_fields, field)
+    full, fixed, owned = _supports(case, mesh.points)
     free = np.flatnonzero(~fixed.ravel())
+    loads = _loads(case, mesh)
+    loaded = np.flatnonzero(np.any(loads != 0.0, axis=1))
+    load = felupe.PointLoad(field, loaded, loads[loaded])
     for step in range(1, steps + 1):
+        load.update(step / steps * loads[loaded])
         felupe.newtonraphson(
-            items=[solid],
+            items=[solid, load] if len(loaded) else [solid],
             dof0=np.flatnonzero(fixed.ravel()),
             dof1=free,
             ext0=(step / steps * full)[fixed],
             solver=spsolve,
-            tol=RESIDUAL,
+            tol=residual,
             verbose=0,
         )
-    u = field[0].values
-    forces = solid.assemble.vector(field).toarray().reshape(-1, 3)
+    return Body(field, solid, method, free, owned)
+
+
+def _answered(case: Case, body: Body) -> dict:
+    """Probes and reactions."""
+    u, points = body.field[0].values, body.field.region.mesh.points
+    forces = body.solid.assemble.vector(body.field).toarray().reshape(-1, 3)
+    reactions = {n: [(mine * forces).sum(axis=0).tolist()] for n, mine in body.owned.items()}
     return {
         "displacements_m": {p.name: [_at(p.positions, points, u)] for p in case.probes},
-        "reactions_n": {n: [(mine * forces).sum(axis=0).tolist()] for n, mine in owned.items()},
-        "unknowns": len(free),
+        "reactions_n": reactions,
+        "unknowns": len(body.free),
+        "method": body.method,
     }
+
+
+def _loads(case: Case, mesh: felupe.Mesh) -> np.ndarray:
+    """Nodal forces (n, 3) [N] of dead tractions at the end: a corner of a rectangle gets a quarter of
+    its force."""
+    points, forces = mesh.points, np.zeros_like(mesh.points)
+    facets = np.concatenate([mesh.cells[:, face] for face in FACES])
+    _, first, times = np.unique(np.sort(facets), axis=0, return_index=True, return_counts=True)
+    outside = facets[first[times == 1]]
+    for row in case.tractions:
+        inside = selected(row.selector, points, 1e-6 * np.ptp(points, axis=0).max())
+        loaded = outside[inside[outside].all(axis=1)]
+        a, b, _, d = points[loaded].swapaxes(0, 1)
+        areas = np.linalg.norm(np.cross(b - a, d - a), axis=1)
+        force = np.array(row.traction) * row.amplitude(case.time.load_end)
+        np.add.at(forces, loaded, 0.25 * areas[:, None, None] * force)
+    return forces
 
 
 def _at(positions: np.ndarray, points: np.ndarray, u: np.ndarray) -> list:
@@ -121,4 +183,4 @@ def _at(positions: np.ndarray, points: np.ndarray, u: np.ndarray) -> list:
 
 
 if __name__ == "__main__":
-    answer("FElupe", lambda: felupe.__version__, solve)
+    answer("FElupe", lambda: felupe.__version__, solve, tuple(THREE_FIELDS))

@@ -5,7 +5,7 @@ import scipy.sparse
 import skfem
 
 from ..scikit_fem.factorisation import Factorisation
-from ..scikit_fem.versions import packages
+from ..scikit_fem.solve import packages
 from ..shared.case import Case
 from ..shared.materials import THREE_FIELDS
 from .body import read_body

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import ufl
-from dolfinx import fem
+from dolfinx import fem, mesh
 
 from ..shared.case import Case
 from ..shared.materials import strain_energy, three_field_energy
 from ..shared.selection import selected
 from . import versions
-from .kinematics import Solid, invariants
+from .kinematics import PlaneStrain, Solid, invariants
 from .mirror import Mirror
 
 CONSTANTS = ("density", "shear_modulus", "bulk_modulus")
@@ -117,10 +117,46 @@ class Model:
             psi = strain_energy(self.material, first, second, J, ufl.ln)
             energy = psi * factor * dx
         residual = ufl.derivative(energy + self._energy_of_contact(), self.unknown)
+        residual = residual + self._work_of_pressures(F, factor)
         self.residual_form = self._form(residual)
         self.jacobian_form = self._form(ufl.derivative(residual, self.unknown))
         self.energy_form = self._form(psi * factor * dx)
         self._make_load_forms(factor, dx)
+
+    def _work_of_pressures(self, F, factor):
+        """∫ p v · cof F N dA in plane strain. Its derivative is symmetric where the ends of the curve
+        stay on axes."""
+        self.pressures, work = [], 0
+        v = ufl.TestFunction(self.space)
+        v = ufl.split(v)[0] if self.three_fields else v
+        for row in self.case.pressures:
+            if not isinstance(self.kinematics, PlaneStrain):
+                raise ValueError("pressures that follow the surface are solved in plane strain only")
+            pressure = fem.Constant(self.domain, 0.0)
+            plane = ufl.as_matrix([[F[0, 0], F[0, 1]], [F[1, 0], F[1, 1]]])
+            outward = ufl.cofac(plane) * ufl.FacetNormal(self.domain)
+            ds = self._boundary_measure(row.selector)
+            work = work + pressure * ufl.inner(v, outward) * factor * ds
+            self.pressures.append((pressure, row))
+        return work
+
+    def _boundary_measure(self, selector):
+        """Integrates over boundary facets whose corners lie in a selection."""
+        dimension = self.domain.topology.dim - 1
+        tolerance = 1e-6 * float(np.ptp(self.positions, axis=0).max())
+
+        def marked(x):
+            return selected(selector, self.kinematics.positions(x.T), tolerance)
+
+        facets = np.sort(mesh.locate_entities_boundary(self.domain, dimension, marked))
+        ones = np.ones(len(facets), np.int32)
+        tags = mesh.meshtags(self.domain, dimension, facets.astype(np.int32), ones)
+        return ufl.Measure("ds", self.domain, subdomain_data=tags)(1)
+
+    def load_pressures(self, t: float, fraction: float) -> None:
+        """Sets pressures to a fraction of those at a time [s]."""
+        for pressure, row in self.pressures:
+            pressure.value = fraction * row.pressure * row.amplitude(t)
 
     def _energy_of_contact(self):
         """What a body that touches nothing does not have."""

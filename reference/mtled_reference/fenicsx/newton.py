@@ -127,16 +127,14 @@ class Newton:
             raise NotConverged("the linear solver failed")
 
 
-def solve_static(model, conditions, newton, steps: int, progress, extra_forces=0.0) -> np.ndarray:
-    """Loads the body in equal steps; returns the reactions (nodes, components) [N].
-
-    `extra_forces` (nodes, components) [N] are added to the loads of the case.
-    """
+def solve_static(model, conditions, newton, steps: int, progress) -> np.ndarray:
+    """Loads the body in equal steps; returns the reactions (nodes, components) [N]."""
     t = model.case.time.load_end
     for n in range(steps):
         fraction = (n + 1) / steps
+        model.load_pressures(t, fraction)
         fixed, values = conditions.prescribed(t, fraction)
-        forces = conditions.external_forces(t, fraction) + fraction * extra_forces
+        forces = conditions.external_forces(t, fraction)
         reactions = newton.solve(fixed, values, forces)
         progress(fraction, f"load step {n + 1} of {steps}")
     return reactions

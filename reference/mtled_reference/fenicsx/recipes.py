@@ -4,9 +4,9 @@ import numpy as np
 
 from ..shared.case import Case
 from ..shared.measurements import recorded_times
-from ..shared.selection import bounding_box, cut_of_ball
+from ..shared.selection import bounding_box, cut_of_ball, radii_of_quarter_ring
 from .kinematics import Axisymmetric, PlaneStrain
-from .mesh_blocks import mesh_of_blocks
+from .mesh_blocks import Block, mesh_of_blocks
 from .mesh_shapes import (
     bilinear,
     box,
@@ -73,6 +73,43 @@ def _half_of_cube(cell: str, counts, power: float, family: str, steps: int = 4):
         return Recipe(cell, 2, points, cells, size, family, mirrors=mirrors, load_steps=steps)
 
     return made
+
+
+def _whole_cube(counts, steps: int = 4):
+    """The whole cube, without any symmetry."""
+
+    def made(case: Case, level: int) -> Recipe:
+        low, _, high = _corners(case)
+        n = counts[level]
+        points, cells = mesh_of_blocks(box(low, high, (n,) * 3), "hexahedron")
+        size = (high[0] - low[0]) / n
+        return Recipe("hexahedron", 2, points, cells, size, "hexahedra, uniform", load_steps=steps)
+
+    return made
+
+
+def quarter_ring(radii, counts, cell: str) -> tuple[np.ndarray, np.ndarray]:
+    """Points [m] and cells of order 2 of a quarter of a ring with so many cells across and around."""
+    inner, outer = radii
+
+    def placed(s):
+        radius, angle = inner + (outer - inner) * s[:, 0], 0.5 * np.pi * s[:, 1]
+        return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+    points, cells = mesh_of_blocks([Block(placed, counts)], cell)
+    # On the axes, up to round-off.
+    return np.where(np.abs(points) < 1e-12 * outer, 0.0, points), cells
+
+
+def _inflated_tube(case: Case, level: int) -> Recipe:
+    n = (4, 8, 16)[level]
+    radii = radii_of_quarter_ring(case.shape)
+    points, cells = quarter_ring(radii, (n, 2 * n), "quadrilateral")
+    size, family = (radii[1] - radii[0]) / n, "quadrilaterals, even"
+    kinematics = _plane_strain(case)
+    return Recipe(
+        "quadrilateral", 2, points, cells, size, family, kinematics=kinematics, load_steps=8
+    )
 
 
 def _uniaxial_bar(case: Case, level: int) -> Recipe:
@@ -268,6 +305,10 @@ RECIPES = {
     ),
     "falling_beam": _falling_beam,
     "indented_block": _indented_block,
+    "inflated_tube": _inflated_tube,
+    "rubber_block": _whole_cube((4, 8, 12), steps=8),
+    "smooth_compressible": _whole_cube((4, 8, 16)),
+    "smooth_nearly_incompressible": _whole_cube((4, 8, 16)),
     "soft_inclusion": _soft_inclusion,
     "sphere_gravity": _sphere_gravity,
     "turek_hron_csm1": _turek_hron,

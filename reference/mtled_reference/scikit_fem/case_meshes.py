@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..shared.case import Case
-from ..shared.selection import bounding_box, cut_of_ball
+from ..shared.selection import bounding_box, cut_of_ball, radii_of_quarter_ring
 from .hexahedra import (
     between,
     beyond_patch,
@@ -52,6 +52,38 @@ def case_mesh(case: Case, level: int) -> CaseMesh:
     if case.name not in MESHES:
         raise ValueError(f"there is no mesh of hexahedra for the case {case.name}")
     return MESHES[case.name](case, level)
+
+
+def _whole_cube(counts, steps: int = 4) -> Callable:
+    """The whole cube, without any symmetry."""
+
+    def mesh(case: Case, level: int) -> CaseMesh:
+        low, high = bounding_box(case.shape)
+        n = counts[level]
+        block = box_block(low, high, (n,) * 3)
+        return CaseMesh([block], (high[0] - low[0]) / n, "hexahedra, uniform", [], steps)
+
+    return mesh
+
+
+def quarter_ring(radii: tuple[float, float], counts: tuple[int, int]) -> Block:
+    """A quarter of a ring with so many cells across and around."""
+    inner, outer = radii
+
+    def placed(r: np.ndarray) -> np.ndarray:
+        radius, angle = inner + (outer - inner) * r[:, 0], 0.5 * np.pi * r[:, 1]
+        points = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        # On the axes, up to round-off.
+        return np.where(np.abs(points) < 1e-12 * outer, 0.0, points)
+
+    return Block(placed, counts)
+
+
+def _inflated_tube(case: Case, level: int) -> CaseMesh:
+    radii = radii_of_quarter_ring(case.shape)
+    n = (3, 6, 12)[level]
+    block = quarter_ring(radii, (n, 2 * n))
+    return CaseMesh([block], (radii[1] - radii[0]) / n, "quadrilaterals, even", [], 8)
 
 
 def _uniaxial_bar(case: Case, level: int) -> CaseMesh:
@@ -289,6 +321,10 @@ MESHES: dict[str, Callable[[Case, int], CaseMesh]] = {
     "falling_beam": _falling_beam,
     "twisted_cylinder": _twisted_cylinder,
     "indented_block": _indented_block,
+    "inflated_tube": _inflated_tube,
+    "rubber_block": _whole_cube((2, 4, 8), steps=8),
+    "smooth_compressible": _whole_cube((3, 6, 12)),
+    "smooth_nearly_incompressible": _whole_cube((3, 6, 12)),
     "soft_inclusion": _soft_inclusion,
     "sphere_gravity": _sphere_gravity,
     "cut_ball": _cut_ball,

@@ -7,6 +7,7 @@ import skfem
 from ..shared.case import Case, Prescription, Region
 from ..shared.selection import selected
 from .kernel import Elements, evaluate
+from .pressures import Following, following
 from .symmetry import Plane
 
 ELEMENTS = {
@@ -52,7 +53,9 @@ class Model:
         self.supports = {p.name: self.support_nodes(p) for p in case.prescriptions}
         self.fixed = self._fixed()
         self.free = ~self.fixed.ravel()
-        self.pattern = _Pattern(self.elements, self.free, self.d)
+        self.following, self.fraction = following(self), 1.0
+        loaded = [self.following] if self.following else []
+        self.pattern = _Pattern([*self.elements, *loaded], self.free, self.d)
 
     def _elements(self) -> list[Elements]:
         """Elements by region; `self.owners` has the region of each element."""
@@ -195,7 +198,8 @@ class Model:
         return forces
 
     def internal(self, u: np.ndarray, with_tangent: bool = False, along: np.ndarray | None = None):
-        """Strain energy [J] and internal forces (n, d) [N] at displacements u; on request
+        """Strain energy [J] and internal forces (n, d) [N] at displacements u, with those of a
+        fraction of the pressures that follow the body; on request
         also the upper triangle of the tangent at the free unknowns, and the product of
         the whole tangent with `along`."""
         energy, forces = 0.0, np.zeros(self.nodes.shape)
@@ -213,6 +217,13 @@ class Model:
                         moved = along[part.nodes].reshape(len(part.nodes), -1, 1)
                         change = np.matmul(state.tangent, moved).reshape(state.residual.shape)
                         scatter(product, part.nodes, change)
+        if self.following:
+            pressures, part = self.following, self.fraction * self.following.matrices
+            scatter(forces, pressures.nodes, pressures.forces(part, self.nodes + u))
+            if with_tangent:
+                blocks.append(self.pattern.upper(part))
+                if along is not None:
+                    scatter(product, pressures.nodes, pressures.forces(part, along))
         if not with_tangent:
             return energy, forces
         return energy, forces, self.pattern.assemble(np.concatenate(blocks)), product
@@ -230,7 +241,7 @@ class _Pattern:
     """The sparsity pattern of the upper triangle of the matrix of free unknowns, and the
     positions of the entries of element matrices in it."""
 
-    def __init__(self, elements: list[Elements], free: np.ndarray, d: int):
+    def __init__(self, elements: list[Elements | Following], free: np.ndarray, d: int):
         number = np.where(free, np.cumsum(free) - 1, -1)
         nodes = np.concatenate([group.nodes for group in elements])
         unknowns = number[(d * nodes[:, :, None] + np.arange(d)).reshape(len(nodes), -1)]

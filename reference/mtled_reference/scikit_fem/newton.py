@@ -60,6 +60,7 @@ def solve_static(
         progress(0.0, "from the solution of a coarser mesh")
         try:
             start = np.where(model.fixed, full, guess)
+            model.fraction = 1.0
             u, iterations = _equilibrium(model, start, full, loads, factors, residual)
             solved = u, 1, iterations
         except (NotConverged, FloatingPointError):
@@ -82,6 +83,7 @@ def _loaded(
     while load < 1.0 - 1e-12:
         target = min(1.0, load + step)
         progress(load, f"load {target:.3f}")
+        model.fraction = target
         extrapolated = u + (target - load) * rate
         try:
             solution, used = _equilibrium(

@@ -1,5 +1,9 @@
 """Solves a case with scikit-fem on one mesh."""
 
+import platform
+
+import numpy as np
+import scipy
 import skfem
 
 from ..shared.case import Case
@@ -12,7 +16,6 @@ from .mesh import interpolated, mesh_of_blocks
 from .model import Model
 from .newton import RESIDUAL, StaticSolution, solve_static
 from .record import Recorder
-from .versions import packages
 
 
 def solve_mesh(case: Case, level: int, progress) -> dict:
@@ -84,4 +87,14 @@ def _description(model: Model, division: CaseMesh, factors: Factorisation) -> di
         "mesh_family": family,
         "solver": f"Newton, residual {RESIDUAL:g} of the internal forces, {factors.name}",
         "packages": packages(),
+    }
+
+
+def packages() -> dict[str, str]:
+    """Versions of Python and the packages by name."""
+    return {
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "scikit-fem": skfem.__version__,
     }

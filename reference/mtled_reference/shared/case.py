@@ -11,7 +11,7 @@ from .materials import Material, material_from_table
 
 Triple = tuple[float, float, float]
 
-NOT_SOLVED = ("initial_velocity", "pressure", "spring", "cavity")
+NOT_SOLVED = ("initial_velocity", "spring", "cavity")
 """Tables of a case file that the references leave to the meshless solver."""
 
 
@@ -112,6 +112,16 @@ class Traction:
 
 
 @dataclass(frozen=True)
+class Pressure:
+    """A pressure [Pa] that follows a part of the boundary."""
+
+    name: str
+    selector: object
+    pressure: float
+    amplitude: Amplitude
+
+
+@dataclass(frozen=True)
 class Obstacle:
     """A rigid obstacle: a shape grown by `offset` [m]."""
 
@@ -157,6 +167,7 @@ class Case:
     prescriptions: list[Prescription]
     body_forces: list[BodyForce]
     tractions: list[Traction]
+    pressures: list[Pressure]
     obstacles: list[Obstacle]
     time: Time
     probes: list[Probe]
@@ -214,6 +225,10 @@ def read_case(path: str | Path) -> Case:
         tractions=[
             Traction(row["name"], row["where"], tuple(row["traction"]), _amplitude(row))
             for row in document.get("traction", [])
+        ],
+        pressures=[
+            Pressure(row["name"], row["where"], float(row["pressure"]), _amplitude(row))
+            for row in document.get("pressure", [])
         ],
         obstacles=[_obstacle(row) for row in document.get("obstacle", [])],
         time=_time(document["time"]),

@@ -88,6 +88,21 @@ def cut_of_ball(shape: dict) -> tuple[float, float]:
     return ball["sphere"]["radius"], -above["half_space"]["point"][2]
 
 
+def radii_of_quarter_ring(shape: dict) -> tuple[float, float] | None:
+    """Inner and outer radius [m] of a quarter of a ring around the z axis, the difference of two
+    cylinders in a box with x ≥ 0 and y ≥ 0; None of another shape."""
+    try:
+        ring, quarter = shape["intersection"]
+        outer, inner = (member["cylinder"] for member in ring["difference"])
+        low = quarter["box"]["min"]
+    except (KeyError, TypeError, ValueError):
+        return None
+    axes = [cylinder["axis"][:2] + cylinder["base"][:2] for cylinder in (outer, inner)]
+    if np.any(axes) or np.any(low[:2]):
+        return None
+    return inner["radius"], outer["radius"]
+
+
 def _height(plane: dict, positions: np.ndarray) -> np.ndarray:
     """Signed distance [m] to a plane, positive on the side of the normal."""
     normal = np.asarray(plane["normal"], float)

@@ -11,7 +11,7 @@ from skfem.refdom import RefTet
 from ..scikit_fem.factorisation import Factorisation
 from ..scikit_fem.kernel import Elements as Batch
 from ..scikit_fem.kernel import evaluate
-from ..scikit_fem.versions import packages
+from ..scikit_fem.solve import packages
 from ..shared.case import Case
 from ..shared.materials import THREE_FIELDS
 from .mesh import Tetrahedra, quadratic

@@ -9,7 +9,7 @@ use serde::Deserialize;
 /// The probe of the block at which displacements are compared.
 const LATTICE: &str = "lattice";
 
-/// `reference/race/bonded_block.json`: the finest mesh.
+/// `reference/finest/bonded_block.json`: the finest mesh.
 #[derive(Debug, Deserialize)]
 struct Stored {
     problem_hash: String,
@@ -39,7 +39,7 @@ pub struct FinestField {
 /// |f₁ − f₂|/(r − 1) after the last refinement by r.
 pub fn finest(case: &Case) -> Result<Option<FinestField>> {
     let stored: Stored = serde_json::from_str(mtled_reference::FINEST_BLOCK)
-        .context("reference/race/bonded_block.json")?;
+        .context("reference/finest/bonded_block.json")?;
     if stored.problem_hash != case.problem_hash {
         return Ok(None);
     }

@@ -1,10 +1,11 @@
 //! `mtled protocol …`.
 
 use super::common::Common;
+use super::load::SetArgs;
 use super::streams::{print_data, print_text};
 use crate::accuracy::ReferenceSolution;
 use crate::bundled::unpack;
-use crate::contests::solvers::{Spacing, absolute, solve_job};
+use crate::contests::{Spacing, absolute, solve_job};
 use crate::lab::store::Source;
 use crate::protocol::{
     Job, Resolution, SoundReply, answer_schema, job_schema, parse_job, read_reply,
@@ -46,6 +47,8 @@ pub enum ProtocolCommand {
         job: PathBuf,
         /// The answer, a new file.
         answer: PathBuf,
+        #[command(flatten)]
+        set: SetArgs,
     },
 }
 
@@ -73,8 +76,8 @@ pub fn protocol(command: &ProtocolCommand, common: &Common) -> Result<u8> {
         }
         ProtocolCommand::Job { case, out, spacing } => write_job(case, out, *spacing, common),
         ProtocolCommand::Check { job, answer } => check(job, answer, common),
-        ProtocolCommand::Solve { job, answer } => {
-            let solved = solve_job(&read_job(job)?);
+        ProtocolCommand::Solve { job, answer, set } => {
+            let solved = solve_job(&read_job(job)?, &set.overrides);
             let reply = solved.with_context(|| format!("cannot solve {}", job.display()))?;
             write_atomically(answer, (serde_json::to_string(&reply)? + "\n").as_bytes())?;
             Ok(0)

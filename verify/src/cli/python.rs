@@ -57,11 +57,11 @@ pub fn python_for(code: &str, reference: &Path, say: &dyn Fn(&str)) -> Result<Py
     }
 }
 
-/// The Python that runs `code`, if it is installed.
-pub fn installed(code: &str, reference: &Path) -> Option<Python> {
-    match code {
-        "fenicsx" => fenicsx().ok(),
-        _ => Some(virtual_environment(reference)).filter(|python| python.imports("skfem")),
+/// A Python that imports a module, if there is one.
+pub fn with_module(module: &str, reference: &Path) -> Option<Python> {
+    match module {
+        "dolfinx" => fenicsx().ok(),
+        _ => Some(virtual_environment(reference)).filter(|python| python.imports(module)),
     }
 }
 

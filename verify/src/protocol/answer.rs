@@ -34,6 +34,10 @@ pub struct Answer {
     /// children. It is measured too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cpu_s: Option<f64>,
+    /// Of that, what the solution has not taken and a longer program would take once: the start of
+    /// an interpreter, imports, generation of code, attempts that failed, writing the answer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub apart_cpu_s: Option<f64>,
     /// Largest resident memory that the program believes to have taken. It is measured too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_memory_bytes: Option<u64>,

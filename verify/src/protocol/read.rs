@@ -60,6 +60,8 @@ pub struct Answered {
     pub unknowns: u64,
     /// Processor time \[s\] that the program believes to have taken.
     pub claimed_cpu_s: Option<f64>,
+    /// Processor time \[s\] that it tells apart from that of the solution.
+    pub apart_cpu_s: Option<f64>,
     /// Memory \[byte\] that the program believes to have taken.
     pub claimed_memory_bytes: Option<u64>,
     /// How it was solved.
@@ -176,6 +178,7 @@ fn answered(answer: Answer, case: &Case, instants: usize) -> Result<Answered, An
         solver: answer.solver,
         unknowns: answer.unknowns,
         claimed_cpu_s: answer.cpu_s,
+        apart_cpu_s: answer.apart_cpu_s,
         claimed_memory_bytes: answer.peak_memory_bytes,
         method: answer.method,
     })

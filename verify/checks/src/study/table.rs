@@ -35,7 +35,7 @@ pub fn number(name: &str, unit: &str) -> Column {
 }
 
 /// A cell of a table.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Cell {
     /// In the unit of its column; NaN, written as `null`, for none.

@@ -1,13 +1,10 @@
 //! `mtled study`.
 
-mod race;
-
 use super::common::Common;
 use super::lab::sweep::{SweepArgs, sweep};
 use crate::lab::sweep::Subject;
 use anyhow::Result;
 use clap::Subcommand;
-use race::{RaceArgs, race_study};
 
 #[derive(Debug, Subcommand)]
 pub enum StudyCommand {
@@ -24,9 +21,6 @@ pub enum StudyCommand {
     Convergence(SweepArgs),
     /// Which recipes and loads end without warnings, and how the others end.
     Stability(SweepArgs),
-    /// Speed against error, beside FEniCSx and scikit-fem: the bonded block and two smooth
-    /// problems over series of recipes and elements.
-    Race(RaceArgs),
 }
 
 pub fn study(command: &StudyCommand, common: &Common) -> Result<u8> {
@@ -36,6 +30,5 @@ pub fn study(command: &StudyCommand, common: &Common) -> Result<u8> {
         StudyCommand::Timestep(arguments) => sweep(Subject::TimeStep, arguments, common),
         StudyCommand::Convergence(arguments) => sweep(Subject::Convergence, arguments, common),
         StudyCommand::Stability(arguments) => sweep(Subject::Stability, arguments, common),
-        StudyCommand::Race(arguments) => race_study(arguments, common),
     }
 }

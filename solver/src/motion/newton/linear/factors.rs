@@ -21,9 +21,12 @@ use faer::sparse::linalg::cholesky::SymmetricOrdering;
 const HOLDS: f64 = 1e6;
 /// Part of the stiffness of nodes that is added everywhere \[–\]: round-off.
 const FLOOR: f64 = 1e-9;
-/// Most entries of the factors: for memory, and for a neighbour of a point, since a solution with
-/// factors of bodies that are neither thin nor small costs more than it saves.
-const MOST_ENTRIES: (usize, f64) = (8_000_000, 32.0);
+/// Most entries of the factors, for memory.
+const MOST_ENTRIES: usize = 8_000_000;
+/// Most entries for a neighbour of a point in space, since a solution with factors of bodies that are
+/// neither thin nor small costs more than it saves. In a plane the number grows slower, and the other
+/// preconditioner does worse.
+const MOST_IN_SPACE: f64 = 32.0;
 /// What the work for a neighbour of a point in a product with the tangent is worth: operations of a
 /// factorisation, and entries of the factors in a solution.
 const OPERATIONS: f64 = 100.0;
@@ -52,10 +55,11 @@ impl Factors {
     pub fn new(model: &Model) -> Option<Factors> {
         let order = Order::of(model);
         let pairs = pairs(model);
-        if order.entries > MOST_ENTRIES.0 || order.entries as f64 > MOST_ENTRIES.1 * pairs {
+        let entries = order.entries as f64;
+        let in_space = model.components == 3;
+        if order.entries > MOST_ENTRIES || in_space && entries > MOST_IN_SPACE * pairs {
             return None;
         }
-        let entries = order.entries as f64;
         let operations = entries * entries / model.size() as f64;
         let of_entries = WRITTEN * entries + operations / OPERATIONS;
         Some(Factors {
