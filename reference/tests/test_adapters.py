@@ -40,6 +40,21 @@ def test_a_box_with_a_body_force_on_a_part_gets_no_even_mesh():
     assert not is_even(replace(case, body_forces=[replace(force, selector=part)]))
 
 
+@pytest.mark.parametrize("name", ["bonded_block", "inflated_tube"])
+def test_pressures_are_refused_but_on_a_quarter_of_a_ring(name):
+    loads = {kind: [] for kind in NOT_SOLVED} | {"pressures": [{}]}
+    material = {key: None for key in ("fibres", "sheets", "active_stress", "prony")}
+    problem = {"loads": loads, "regions": [{"material": material}]}
+    job = {"case_file": str(CASES / f"{name}.toml"), "problem": problem}
+    if name == "inflated_tube":
+        assert read(job, pressures_on_rings=True).pressures
+    else:
+        with pytest.raises(Refused, match="pressures"):
+            read(job, pressures_on_rings=True)
+    with pytest.raises(Refused, match="pressures"):
+        read(job)
+
+
 def test_a_race_takes_the_fewest_parts_of_the_load_that_converge_and_tells_the_rest_apart():
     compiled = iter([0.0, 0.0, 5.0])
     quick = Quick((ValueError,), lambda: next(compiled))

@@ -178,6 +178,15 @@ def test_the_cut_through_a_tube_carries_the_pressure_on_its_deformed_bore():
     assert force == pytest.approx(-pressure.pressure * radius * case.thickness, rel=1e-8)
 
 
+@pytest.mark.parametrize("name", ["bonded_block", "turek_hron_csm3"])
+def test_pressures_in_space_and_in_motion_are_refused(name):
+    (pressure,) = read_case(CASES / "inflated_tube.toml").pressures
+    case = replace(read_case(CASES / f"{name}.toml"), pressures=[pressure])
+    division = case_mesh(case, 0)
+    with pytest.raises(ValueError, match="in equilibria in plane strain only"):
+        Model(case, mesh_of_blocks(division.blocks), division.symmetry)
+
+
 def test_the_tangent_of_a_body_under_pressure_is_the_derivative_of_its_forces():
     case = read_case(CASES / "inflated_tube.toml")
     model = Model(case, mesh_of_blocks(case_mesh(case, 0).blocks), [])

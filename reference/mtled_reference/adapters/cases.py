@@ -9,21 +9,21 @@ from .files import Refused
 
 EVEN = {"all", "plane", "half_space", "box"}
 """Selections whose borders an even mesh of a box can follow."""
-NOT_SOLVED = ("pressures", "springs", "cavities", "initial_velocities")
-"""Kinds of loads that an adapter refuses if it does not say otherwise."""
 COMPOSED = ("union", "intersection")
 """Selections that others make up."""
 
 
-def read(job: dict, refused: tuple[str, ...] = NOT_SOLVED) -> Case:
-    """The case of a job; refuses kinds of loads, and what no adapter of this folder solves."""
+def read(job: dict, pressures_on_rings: bool = False) -> Case:
+    """The case of a job; refuses what no adapter of this folder solves, and pressures that follow
+    the surface, on a quarter of a ring at rest only if the adapter does not solve them there."""
     try:
         case = read_case(job["case_file"])
     except ValueError as error:
         raise Refused(str(error)) from None
     problem = job["problem"]
-    for name in refused:
-        if problem["loads"][name]:
+    solved = pressures_on_rings and case.is_static and _is_ring(case)
+    for name in ("pressures", "springs", "cavities", "initial_velocities"):
+        if problem["loads"][name] and not (name == "pressures" and solved):
             raise Refused(name.replace("_", " "))
     for region in problem["regions"]:
         material = region["material"]
@@ -82,11 +82,16 @@ def counts(case: Case, spacing: float, degree: int) -> tuple[np.ndarray, np.ndar
 def counts_of_ring(case: Case, spacing: float, degree: int) -> tuple:
     """Inner and outer radius [m] of a quarter of a ring in plane strain, and numbers of elements of a
     degree across it and around whose nodes have the wanted spacing [m]."""
-    radii = radii_of_quarter_ring(case.shape)
-    if radii is None or case.dimension == 3:
+    if not (case.is_static and _is_ring(case)):
         raise Refused("bodies without an even mesh")
+    radii = radii_of_quarter_ring(case.shape)
     lengths = radii[1] - radii[0], 0.25 * np.pi * (radii[0] + radii[1])
     return radii, tuple(max(1, round(length / (degree * spacing))) for length in lengths)
+
+
+def _is_ring(case: Case) -> bool:
+    """Whether the body is a quarter of a ring in plane strain."""
+    return case.dimension == 2 and radii_of_quarter_ring(case.shape) is not None
 
 
 def reference_level(job: dict) -> int:

@@ -1,6 +1,6 @@
 """Solves a job with FElupe: python -m mtled_reference.adapters.felupe JOB ANSWER
 
-Static boxes of one neo-Hookean material without loads, by trilinear hexahedra, with three fields
+Static boxes of one neo-Hookean material under dead tractions at most, by trilinear hexahedra, with three fields
 where ν ≥ 0.45 and the law has an isochoric split. With --element such a box is solved as in a race:
 trilinear hexahedra Q1, with three fields Q1/P0.
 """

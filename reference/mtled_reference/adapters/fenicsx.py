@@ -1,7 +1,8 @@
 """Solves a job with FEniCSx: python -m mtled_reference.adapters.fenicsx JOB ANSWER
 
 Boxes get even meshes of hexahedra of order 2 without symmetry, other cases those of the stored
-references. With --element a box is solved as in a race, with this element.
+references. With --element a box, or a quarter of a ring in plane strain, is solved as in a race,
+with this element.
 """
 
 from dataclasses import replace
@@ -28,8 +29,6 @@ RESIDUAL = 1e-6
 """Of Newton's method, over the forces [–]."""
 LOAD_STEPS = (4, 16)
 """Numbers of load steps, tried in turn."""
-
-
 ELEMENTS = {
     "P1": ("tetrahedron", 1, False, 1),
     "P2": ("tetrahedron", 2, False, 3),
@@ -46,7 +45,7 @@ OPTIMISED = ("-O3", "-march=native", "-ffast-math")
 
 def solve(job: dict, element: str | None) -> dict:
     """The answer to a job."""
-    case = read(job, ("springs", "cavities", "initial_velocities"))
+    case = read(job, pressures_on_rings=True)
     if element is not None:
         return _quick(case, job, element)
     try:

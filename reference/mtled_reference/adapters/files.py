@@ -23,8 +23,8 @@ class Refused(Exception):
 
 class Quick:
     """Solves as a race does: the load in the fewest parts that converge, to a residual of a
-    hundredth of the differences between discretisations. The processor time of attempts that
-    failed, of compiling, of imports and of writing the answer is told apart."""
+    hundredth of the differences between discretisations. It tells apart the processor
+    time of failed attempts, of compiling, of imports and of writing the answer."""
 
     PARTS = (1, 2, 4, 8, 16)
     """Numbers of parts of the load, tried in turn."""

@@ -8,10 +8,7 @@ from ..shared.selection import selected
 from . import versions
 from .kinematics import Axisymmetric
 from .mirror import Mirror
-from .model import Model
-
-ON_BOUNDARY = 1e-6
-"""Tolerance of selections over the size of the body [–]."""
+from .model import ON_BOUNDARY, Model
 
 
 class Conditions:
@@ -108,17 +105,10 @@ class Conditions:
     def _traction(self, row) -> np.ndarray:
         """Nodal forces (nodes, components) [N] of a dead traction."""
         model = self.model
-        facets = np.sort(self._facets(lambda x: selected(row.selector, x, self.tolerance)))
-        facets = facets.astype(np.int32)
-        if len(facets) == 0:
-            raise ValueError(f"no boundary facet in traction {row.name}")
-        tags = mesh.meshtags(
-            model.domain, model.domain.topology.dim - 1, facets, np.ones(len(facets), np.int32)
-        )
-        ds = ufl.Measure("ds", model.domain, subdomain_data=tags)
+        ds = model.boundary_measure(f"traction {row.name}", row.selector)
         force = fem.Constant(model.domain, self._in_unknowns(row.traction))
         v = ufl.TestFunction(model.u_space)
-        form = fem.form(ufl.inner(force, v) * model.kinematics.volume_factor(model.domain) * ds(1))
+        form = fem.form(ufl.inner(force, v) * model.kinematics.volume_factor(model.domain) * ds)
         return versions.assemble_vector(form).reshape(-1, model.kinematics.components)
 
     def external_forces(self, t: float, fraction: float = 1.0) -> np.ndarray:

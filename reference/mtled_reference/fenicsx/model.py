@@ -17,6 +17,8 @@ from . import versions
 from .kinematics import PlaneStrain, Solid, invariants
 from .mirror import Mirror
 
+ON_BOUNDARY = 1e-6
+"""Tolerance of selections over the size of the body [–]."""
 CONSTANTS = ("density", "shear_modulus", "bulk_modulus")
 
 
@@ -130,25 +132,27 @@ class Model:
         v = ufl.TestFunction(self.space)
         v = ufl.split(v)[0] if self.three_fields else v
         for row in self.case.pressures:
-            if not isinstance(self.kinematics, PlaneStrain):
-                raise ValueError("pressures that follow the surface are solved in plane strain only")
+            if not (isinstance(self.kinematics, PlaneStrain) and self.case.is_static):
+                raise ValueError("pressures are solved in equilibria in plane strain only")
             pressure = fem.Constant(self.domain, 0.0)
             plane = ufl.as_matrix([[F[0, 0], F[0, 1]], [F[1, 0], F[1, 1]]])
             outward = ufl.cofac(plane) * ufl.FacetNormal(self.domain)
-            ds = self._boundary_measure(row.selector)
+            ds = self.boundary_measure(f"pressure {row.name}", row.selector)
             work = work + pressure * ufl.inner(v, outward) * factor * ds
             self.pressures.append((pressure, row))
         return work
 
-    def _boundary_measure(self, selector):
-        """Integrates over boundary facets whose corners lie in a selection."""
+    def boundary_measure(self, what: str, selector):
+        """Integrates over the boundary facets whose corners lie in the selection of a load."""
         dimension = self.domain.topology.dim - 1
-        tolerance = 1e-6 * float(np.ptp(self.positions, axis=0).max())
+        tolerance = ON_BOUNDARY * float(np.ptp(self.positions, axis=0).max())
 
         def marked(x):
             return selected(selector, self.kinematics.positions(x.T), tolerance)
 
         facets = np.sort(mesh.locate_entities_boundary(self.domain, dimension, marked))
+        if len(facets) == 0:
+            raise ValueError(f"no boundary facet in {what}")
         ones = np.ones(len(facets), np.int32)
         tags = mesh.meshtags(self.domain, dimension, facets.astype(np.int32), ones)
         return ufl.Measure("ds", self.domain, subdomain_data=tags)(1)

@@ -4,7 +4,12 @@ import numpy as np
 
 from ..shared.case import Case
 from ..shared.measurements import recorded_times
-from ..shared.selection import bounding_box, cut_of_ball, radii_of_quarter_ring
+from ..shared.selection import (
+    bounding_box,
+    cut_of_ball,
+    on_quarter_ring,
+    radii_of_quarter_ring,
+)
 from .kinematics import Axisymmetric, PlaneStrain
 from .mesh_blocks import Block, mesh_of_blocks
 from .mesh_shapes import (
@@ -90,15 +95,8 @@ def _whole_cube(counts, steps: int = 4):
 
 def quarter_ring(radii, counts, cell: str) -> tuple[np.ndarray, np.ndarray]:
     """Points [m] and cells of order 2 of a quarter of a ring with so many cells across and around."""
-    inner, outer = radii
-
-    def placed(s):
-        radius, angle = inner + (outer - inner) * s[:, 0], 0.5 * np.pi * s[:, 1]
-        return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-
-    points, cells = mesh_of_blocks([Block(placed, counts)], cell)
-    # On the axes, up to round-off.
-    return np.where(np.abs(points) < 1e-12 * outer, 0.0, points), cells
+    block = Block(lambda s: on_quarter_ring(radii, s), counts)
+    return mesh_of_blocks([block], cell)
 
 
 def _inflated_tube(case: Case, level: int) -> Recipe:

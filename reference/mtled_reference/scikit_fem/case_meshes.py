@@ -6,7 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..shared.case import Case
-from ..shared.selection import bounding_box, cut_of_ball, radii_of_quarter_ring
+from ..shared.selection import (
+    bounding_box,
+    cut_of_ball,
+    on_quarter_ring,
+    radii_of_quarter_ring,
+)
 from .hexahedra import (
     between,
     beyond_patch,
@@ -68,15 +73,7 @@ def _whole_cube(counts, steps: int = 4) -> Callable:
 
 def quarter_ring(radii: tuple[float, float], counts: tuple[int, int]) -> Block:
     """A quarter of a ring with so many cells across and around."""
-    inner, outer = radii
-
-    def placed(r: np.ndarray) -> np.ndarray:
-        radius, angle = inner + (outer - inner) * r[:, 0], 0.5 * np.pi * r[:, 1]
-        points = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        # On the axes, up to round-off.
-        return np.where(np.abs(points) < 1e-12 * outer, 0.0, points)
-
-    return Block(placed, counts)
+    return Block(lambda r: on_quarter_ring(radii, r), counts)
 
 
 def _inflated_tube(case: Case, level: int) -> CaseMesh:

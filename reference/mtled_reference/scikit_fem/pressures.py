@@ -33,8 +33,8 @@ def following(model) -> Following | None:
     case, parts = model.case, []
     if not case.pressures:
         return None
-    if model.d != 2:
-        raise ValueError("pressures that follow the surface are solved in plane strain only")
+    if model.d != 2 or not case.is_static:
+        raise ValueError("pressures are solved in equilibria in plane strain only")
     for row in case.pressures:
         facets, _ = model.facets_in(row.selector)
         if not len(facets):

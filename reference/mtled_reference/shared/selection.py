@@ -103,6 +103,15 @@ def radii_of_quarter_ring(shape: dict) -> tuple[float, float] | None:
     return inner["radius"], outer["radius"]
 
 
+def on_quarter_ring(radii: tuple[float, float], s: np.ndarray) -> np.ndarray:
+    """Points (n, 2) [m] of a quarter of a ring at s (n, 2) in [0, 1] across it and around."""
+    inner, outer = radii
+    radius, angle = inner + (outer - inner) * s[:, 0], 0.5 * np.pi * s[:, 1]
+    points = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    # On the axes, up to round-off.
+    return np.where(np.abs(points) < 1e-12 * outer, 0.0, points)
+
+
 def _height(plane: dict, positions: np.ndarray) -> np.ndarray:
     """Signed distance [m] to a plane, positive on the side of the normal."""
     normal = np.asarray(plane["normal"], float)
