@@ -1,6 +1,7 @@
 //! A step allocates nothing.
 #![allow(unsafe_code)] // Counting allocations needs a `GlobalAlloc`, which is an unsafe trait.
 
+#[path = "all/common/mod.rs"]
 mod common;
 
 use common::*;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 const CASE: &str = concat!(
     "\n",
-    include_str!("../../../tests/common/pulled_block.toml"),
+    include_str!("../../../tests/all/common/pulled_block.toml"),
     "[time]\nmethod = \"static\"\nload_end = 1.0\n"
 );
 
