@@ -63,11 +63,25 @@ pub fn unpack(dir: &Path) -> anyhow::Result<PathBuf> {
     for (name, text) in CASES {
         write_atomically(&cases.join(format!("{name}.toml")), text.as_bytes())?;
     }
-    for (name, bytes) in LABEL_MAPS {
+    write_label_maps(dir, |_| true)?;
+    Ok(cases)
+}
+
+/// Writes the label maps that the text of a bundled case names to `dir/brain`; returns the folder
+/// in which it is to be read.
+pub fn unpack_label_maps_of(text: &str, dir: &Path) -> anyhow::Result<PathBuf> {
+    let cases = dir.join("cases");
+    std::fs::create_dir(&cases).context("cannot make the folder of a bundled case")?;
+    write_label_maps(dir, |name| text.contains(name))?;
+    Ok(cases)
+}
+
+fn write_label_maps(dir: &Path, chosen: impl Fn(&str) -> bool) -> anyhow::Result<()> {
+    for (name, bytes) in LABEL_MAPS.iter().filter(|(name, _)| chosen(name)) {
         write_atomically(&dir.join("brain").join(name), bytes)
             .with_context(|| format!("cannot write the label map {name}"))?;
     }
-    Ok(cases)
+    Ok(())
 }
 
 /// Names of the bundled cases that are quickly solved.

@@ -55,6 +55,11 @@ impl Discretisation {
     /// Nodes and quadrature points of a problem with their supports. Points
     /// are sorted by region and patch, neighbours in space close in memory.
     pub fn new(problem: &Problem) -> Result<Discretisation, Error> {
+        // In the pool: a thread outside it would have to wake those inside for every sum.
+        rayon::scope(|_| Discretisation::of(problem))
+    }
+
+    fn of(problem: &Problem) -> Result<Discretisation, Error> {
         refuse(problem.check())?;
         problem.body.validate_body()?;
         let dimension = problem.dimension;

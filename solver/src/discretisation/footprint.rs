@@ -55,7 +55,7 @@ const PANELS_PER_AREA: [f64; 2] = [1.0, 8.0];
 const GRADED_DENSITY: [f64; 2] = [1.1, 1.2];
 
 /// Sample points of the body along each axis, in a plane and in space.
-const SAMPLES: [usize; 2] = [256, 40];
+const SAMPLES: [usize; 2] = [160, 32];
 
 /// Points on a lattice over the body and a little beyond.
 struct SamplePoints {

@@ -65,6 +65,11 @@ pub struct Model {
 impl Model {
     /// Binds materials, conditions and loads to a discretisation.
     pub fn new(problem: &Problem, discretisation: &Discretisation) -> Result<Model, Error> {
+        // In the pool, as the discretisation is made.
+        rayon::scope(|_| Model::of(problem, discretisation))
+    }
+
+    fn of(problem: &Problem, discretisation: &Discretisation) -> Result<Model, Error> {
         let quadrature = &discretisation.quadrature;
         let relaxation = problem.motion.relaxation();
         let lumped = matches!(problem.motion, Motion::Dynamic { .. })

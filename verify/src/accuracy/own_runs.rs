@@ -2,8 +2,8 @@
 //! other.
 
 use super::reference_solution::ReferenceSolution;
-use crate::reference::agreement::rms_of_points;
-use crate::reference::{Family, Quantity, ReferenceValues, quantities, size_of};
+use crate::reference::agreement::{rms_of_points, sizes_of_families};
+use crate::reference::{Family, Quantity, ReferenceValues, quantities};
 use crate::scene::Case;
 use mtled_checks::report::four_digits;
 use std::collections::BTreeMap;
@@ -47,20 +47,8 @@ pub fn from_own_runs(
     })
 }
 
-/// The largest number of each family; moments against the largest force times the
-/// size of the body.
+/// The sizes of the families of a run.
 pub(super) fn scales(case: &Case, values: &[Vec<f64>]) -> BTreeMap<Family, f64> {
-    let mut largest: BTreeMap<Family, f64> = BTreeMap::new();
-    for (quantity, values) in quantities(case).iter().zip(values) {
-        let entry = largest.entry(quantity.family).or_default();
-        *entry = values.iter().fold(*entry, |a, b| a.max(b.abs()));
-    }
-    let size = size_of(case);
-    let force = largest.get(&Family::Force).copied().unwrap_or(0.0);
-    for (family, least) in [(Family::Centre, size), (Family::Moment, force * size)] {
-        if let Some(entry) = largest.get_mut(&family) {
-            *entry = entry.max(least);
-        }
-    }
-    largest
+    let families = quantities(case).into_iter().map(|quantity| quantity.family);
+    sizes_of_families(case, families.zip(values.iter().cloned()))
 }

@@ -1,6 +1,6 @@
 //! Agreement of two codes within their error bars, and the reference value.
 
-use super::format::{ReferenceFile, Solution};
+use super::format::{Mesh, ReferenceFile, Solution};
 use super::quantity::{Family, Quantity, is_dynamic, quantities, size_of};
 use super::read::MESHES;
 use super::richardson::{Estimate, estimate, rms};
@@ -143,25 +143,39 @@ fn extrapolated(solution: &Solution, quantity: &Quantity, highest: f64, scale: f
     estimate([&fine, &medium, &coarse], sizes, highest, scale)
 }
 
-/// The largest value of each family on the finest meshes; for families that may vanish
-/// by symmetry at least the size of the body (centres) or the largest force times that
-/// size (moments).
+/// The sizes of the families on the finest meshes.
 pub fn scales(case: &Case, file: &ReferenceFile) -> BTreeMap<Family, f64> {
+    let finest = || file.solutions.iter().filter_map(|solution| solution.meshes.last());
+    let of_mesh = |mesh: &Mesh| {
+        let values = |quantity: Quantity| (quantity.family, mesh.values[&quantity.name].flat());
+        quantities(case).into_iter().map(values).collect::<Vec<_>>()
+    };
+    sizes_of_families(case, finest().flat_map(of_mesh))
+}
+
+/// The largest value of each family; for families that may vanish by symmetry at least the size
+/// of the body (centres), the force that does the strain energy over the largest displacement
+/// (reactions), or the size of the forces times that of the body (moments).
+pub fn sizes_of_families(
+    case: &Case,
+    values: impl Iterator<Item = (Family, Vec<f64>)>,
+) -> BTreeMap<Family, f64> {
     let mut largest: BTreeMap<Family, f64> = BTreeMap::new();
-    for quantity in quantities(case) {
-        let entry = largest.entry(quantity.family).or_default();
-        for mesh in file.solutions.iter().filter_map(|solution| solution.meshes.last()) {
-            let values = mesh.values[&quantity.name].flat();
-            *entry = values.iter().fold(*entry, |a, b| a.max(b.abs()));
-        }
+    for (family, values) in values {
+        let entry = largest.entry(family).or_default();
+        *entry = values.iter().fold(*entry, |a, b| a.max(b.abs()));
     }
+    let of = |family: Family| largest.get(&family).copied().unwrap_or(0.0);
     let size = size_of(case);
-    if let Some(centre) = largest.get_mut(&Family::Centre) {
-        *centre = centre.max(size);
-    }
-    let force = largest.get(&Family::Force).copied().unwrap_or(0.0);
-    if let Some(moment) = largest.get_mut(&Family::Moment) {
-        *moment = moment.max(force * size);
+    let (energy, displacement) = (of(Family::StrainEnergy), of(Family::Displacement));
+    let working = if displacement > 0.0 { energy / displacement } else { 0.0 };
+    let force = of(Family::Force).max(working);
+    for (family, least) in
+        [(Family::Centre, size), (Family::Force, force), (Family::Moment, force * size)]
+    {
+        if let Some(entry) = largest.get_mut(&family) {
+            *entry = entry.max(least);
+        }
     }
     largest
 }

@@ -1,7 +1,7 @@
 //! Cases by their file or name, and errors of the solver as mistakes in them.
 
 use super::memory::refuse_beyond_memory;
-use crate::bundled::{CASES, unpack};
+use crate::bundled::{CASES, unpack, unpack_label_maps_of};
 use crate::scene::{Case, Diagnostic, Override, one_error, parse_overridden, read_overridden};
 use anyhow::{Context, Result};
 use mtled::error::Error;
@@ -39,7 +39,11 @@ fn read(case: &Path, overrides: &[Override]) -> Result<Case> {
         None => read_overridden(case, overrides).map_err(one_error),
         Some((name, text)) => {
             let folder = tempfile::tempdir().context("cannot make a folder for a bundled case")?;
-            let cases = unpack(folder.path())?;
+            // An override may name any of the label maps.
+            let cases = match overrides {
+                [] => unpack_label_maps_of(text, folder.path())?,
+                _ => unpack(folder.path())?,
+            };
             parse_overridden(text, &format!("{name}.toml"), &cases, overrides).map_err(one_error)
         }
     }
