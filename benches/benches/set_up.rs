@@ -13,7 +13,7 @@ use mtled::problem::{Basis, Gradients, Problem};
 use mtled_benches::bodies::{cube, recommended};
 use mtled_benches::measure::{Group, all_threads, one_thread, settings, smoke};
 use mtled_benches::notes::BodySize;
-use mtled_verify::machine::peak_memory;
+use mtled_run::machine::peak_memory;
 use std::hint::black_box;
 
 const TMP: &str = env!("CARGO_TARGET_TMPDIR");

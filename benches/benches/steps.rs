@@ -7,9 +7,9 @@ use mtled_benches::bodies::{cube, recommended};
 use mtled_benches::measure::{Group, all_threads, one_thread, settings, smoke};
 use mtled_benches::notes::BodySize;
 use mtled_benches::stepper::Stepper;
-use mtled_verify::bundled::unpack;
-use mtled_verify::run::solve_case;
-use mtled_verify::scene::{Case, one_error, read_case};
+use mtled_case::bundled::unpack;
+use mtled_case::scene::{Case, one_error, read_case};
+use mtled_run::run::solve_case;
 use rayon::ThreadPool;
 use std::path::Path;
 

@@ -4,7 +4,7 @@ use crate::estimates::{Estimate, full_id, measured, median, read, time};
 use crate::pairs;
 use anyhow::{Result, ensure};
 use mtled_benches::notes::{BodySize, Limit, Note, Unit, VARIANTS};
-use mtled_verify::machine::provenance;
+use mtled_run::machine::provenance;
 use std::fmt::Write;
 use std::path::Path;
 

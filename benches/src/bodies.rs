@@ -12,7 +12,7 @@ use mtled::problem::{
     BackgroundGrid, Cloud, Dimension, GradientStorage, Gradients, Motion, Problem, StepControl,
     VolumetricProjection, defaults,
 };
-use mtled_verify::specimens::simple::{SIZE, block_shape, free_body, recipe};
+use mtled_run::specimens::simple::{SIZE, block_shape, free_body, recipe};
 
 /// Cells per nodal spacing, which gives two points per node \[–\].
 const CELLS_PER_SPACING: f64 = 1.26;

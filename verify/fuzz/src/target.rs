@@ -195,7 +195,7 @@ impl Target {
     pub fn sealed(self, bytes: Vec<u8>) -> Vec<u8> {
         match std::str::from_utf8(&bytes) {
             Ok(text) if self == Target::Store && text.starts_with('{') => {
-                mtled_verify::lab::store::sealed(text).into_bytes()
+                mtled_lab::lab::store::sealed(text).into_bytes()
             }
             _ => bytes,
         }

@@ -1,7 +1,7 @@
 //! The discretisation of a case as arrays.
 
 use crate::arrays::{Rows, rows, vectors};
-use mtled_verify::run::Prepared;
+use mtled_run::run::Prepared;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 

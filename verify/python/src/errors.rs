@@ -1,8 +1,8 @@
 //! Errors of the crates as exceptions of the package, which `mtled/errors.py` defines.
 
-use mtled_verify::files::FileError;
-use mtled_verify::scene::{Diagnostic, Mistakes};
-use mtled_verify::warp::WarpError;
+use mtled_case::scene::{Diagnostic, Mistakes};
+use mtled_io::files::FileError;
+use mtled_run::warp::WarpError;
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 

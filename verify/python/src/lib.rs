@@ -1,5 +1,5 @@
 //! The module `mtled._mtled`: cases, their discretisation and their results as Python objects
-//! with numpy arrays. Everything that is computed is computed by `mtled` and `mtled_verify`;
+//! with numpy arrays. Everything that is computed is computed by `mtled` and the crates of the harness;
 //! the package around this module is Python.
 
 // A module uses only modules above it.
@@ -29,8 +29,9 @@ mod _mtled {
     use super::result::Result;
     #[pymodule_export]
     use super::warped::WarpedImage;
-    use mtled_verify::bundled::CASES;
-    use mtled_verify::{cli, scene};
+    use mtled_case::bundled::CASES;
+    use mtled_case::scene;
+    use mtled_verify::cli;
     use pyo3::prelude::*;
     use std::ffi::OsString;
 

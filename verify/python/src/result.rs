@@ -3,11 +3,11 @@
 use crate::arrays::{Rows, positions, rows, vectors};
 use crate::errors::exception;
 use crate::warped::{WarpedImage, unit_of};
-use mtled_verify::files::image::{Interpolation, read_image};
-use mtled_verify::picture::{Choice, Shown, panels, picture_svg};
-use mtled_verify::run::{Finished, StoredField, field_at_nodes, history};
-use mtled_verify::scene::Case;
-use mtled_verify::warp::{DisplacementField, deform, nodes_outside};
+use mtled_case::scene::Case;
+use mtled_io::files::image::{Interpolation, read_image};
+use mtled_run::picture::{Choice, Shown, panels, picture_svg};
+use mtled_run::run::{Finished, StoredField, field_at_nodes, history};
+use mtled_run::warp::{DisplacementField, deform, nodes_outside};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -58,7 +58,7 @@ impl Result {
         }
     }
 
-    fn body(&self, py: Python) -> PyResult<mtled_verify::picture::Body> {
+    fn body(&self, py: Python) -> PyResult<mtled_run::picture::Body> {
         let body = py.detach(|| self.finished.body(&self.case)).map_err(exception)?;
         body.ok_or_else(|| {
             PyValueError::new_err(

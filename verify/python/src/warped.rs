@@ -3,9 +3,9 @@
 use crate::arrays::{Rows, rows};
 use crate::errors::exception;
 use mtled_checks::report::write_atomically;
-use mtled_verify::files::LengthUnit;
-use mtled_verify::files::image::{Grid, Image, ImageFormat, field_bytes, image_bytes};
-use mtled_verify::warp::Deformed;
+use mtled_io::files::LengthUnit;
+use mtled_io::files::image::{Grid, Image, ImageFormat, field_bytes, image_bytes};
+use mtled_run::warp::Deformed;
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

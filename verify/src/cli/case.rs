@@ -4,13 +4,13 @@ use super::common::{COULD_NOT_RUN, Common, Format};
 use super::load::{SetArgs, located};
 use super::messages::place;
 use super::streams::{print_data, print_json, print_text};
-use crate::bundled::{CASES, TEMPLATES, Template};
-use crate::run::{load, prepare_to_run};
-use crate::scene::{Diagnostic, Mistakes, Override, schema};
 use anyhow::{Result, bail};
 use clap::Subcommand;
+use mtled_case::bundled::{CASES, TEMPLATES, Template};
+use mtled_case::scene::{Diagnostic, Mistakes, Override, schema};
 use mtled_checks::escape::printable;
 use mtled_checks::report::write_atomically;
+use mtled_run::run::{load, prepare_to_run};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

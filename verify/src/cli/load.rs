@@ -1,9 +1,9 @@
 //! Options about cases, and errors in running one.
 
-use crate::run;
-use crate::scene::{Case, Override, one_error};
 use clap::Args;
 use mtled::error::Error;
+use mtled_case::scene::{Case, Override, one_error};
+use mtled_run::run;
 
 /// Values in place of those of a case file.
 #[derive(Debug, Args)]

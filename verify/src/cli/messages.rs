@@ -2,7 +2,7 @@
 
 use super::common::{Common, Format};
 use super::streams::to_standard_error;
-use crate::scene::{Diagnostic, Mistakes};
+use mtled_case::scene::{Diagnostic, Mistakes};
 use mtled_checks::escape::{printable_json, printable_lines};
 use serde_json::{Map, Value, json};
 use std::fmt::Display;

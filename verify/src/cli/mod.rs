@@ -144,10 +144,10 @@ pub fn run_with(arguments: Vec<OsString>) -> u8 {
     });
     // A second Ctrl-C ends the program at once.
     let handler = ctrlc::set_handler(|| {
-        if crate::run::interrupted() {
+        if mtled_run::run::interrupted() {
             std::process::exit(STOPPED as i32);
         }
-        crate::run::interrupt();
+        mtled_run::run::interrupt();
     });
     let result = match (pool, handler) {
         (Some(Err(error)), _) => Err(error.into()),

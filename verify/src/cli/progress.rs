@@ -1,9 +1,9 @@
 //! Progress bars on a terminal, and a line of progress now and then elsewhere.
 
 use super::common::{Common, STOPPED};
-use crate::lab::store::{Planned, Progress, Stopped};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use mtled_checks::escape::printable;
+use mtled_lab::lab::store::{Planned, Progress, Stopped};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 

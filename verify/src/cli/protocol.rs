@@ -3,18 +3,18 @@
 use super::common::Common;
 use super::load::SetArgs;
 use super::streams::{print_data, print_text};
-use crate::accuracy::ReferenceSolution;
-use crate::bundled::unpack;
-use crate::contests::{Spacing, absolute, solve_job};
-use crate::lab::store::Source;
-use crate::protocol::{
-    Job, Resolution, SoundReply, answer_schema, job_schema, parse_job, read_reply,
-};
-use crate::scene::{one_error, read_case};
 use anyhow::{Context, Result, bail};
 use clap::{Subcommand, ValueEnum};
+use mtled_case::bundled::unpack;
+use mtled_case::protocol::{
+    Job, Resolution, SoundReply, answer_schema, job_schema, parse_job, read_reply,
+};
+use mtled_case::scene::{one_error, read_case};
 use mtled_checks::input::read_text;
 use mtled_checks::report::{ensure_writable, write_atomically};
+use mtled_lab::contests::{Spacing, absolute, solve_job};
+use mtled_lab::lab::store::Source;
+use mtled_run::accuracy::ReferenceSolution;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Subcommand)]

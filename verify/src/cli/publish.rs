@@ -1,10 +1,10 @@
 //! Reports of a single study.
 
 use super::common::Common;
-use crate::machine::provenance;
 use anyhow::Result;
 use mtled_checks::report::{json, markdown_tables, write_report};
 use mtled_checks::study::{Report, Study};
+use mtled_run::machine::provenance;
 use std::path::Path;
 use std::time::Instant;
 

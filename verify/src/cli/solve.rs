@@ -3,15 +3,15 @@
 use super::common::{Common, INCONCLUSIVE, STOPPED};
 use super::load::{SetArgs, located};
 use super::progress::progress_bar;
-use crate::run::{
-    Failed, Finished, PAGE_FILE, SavedState, audit_doubts, load, prepare_to_run, solve_recorded,
-};
-use crate::scene::Case;
 use clap::Args;
 use mtled::error::Error;
 use mtled::motion::observe::Continue;
+use mtled_case::scene::Case;
 use mtled_checks::escape::file_name;
 use mtled_checks::report::ensure_writable;
+use mtled_run::run::{
+    Failed, Finished, PAGE_FILE, SavedState, audit_doubts, load, prepare_to_run, solve_recorded,
+};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

@@ -2,7 +2,7 @@
 
 use crate::mutate::{Input, compressed};
 use anyhow::Result;
-use mtled_verify::run::vtu::{PointArray, VtuFrame, to_vtu};
+use mtled_run::run::vtu::{PointArray, VtuFrame, to_vtu};
 use std::fmt::Write;
 
 /// Labels of 4 × 4 × 4 voxels.

@@ -6,8 +6,8 @@ mod binary;
 use crate::mutate::Input;
 use crate::target::Target;
 use anyhow::{Context, Result};
-use mtled_verify::bundled::{CASES, LARGE, bundled_reference};
-use mtled_verify::scene::{Knob, Setting, edited};
+use mtled_case::bundled::{CASES, LARGE, bundled_reference};
+use mtled_case::scene::{Knob, Setting, edited};
 use std::path::{Path, PathBuf};
 
 /// The folder of this crate.

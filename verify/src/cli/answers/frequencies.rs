@@ -3,11 +3,11 @@
 use crate::cli::common::{Common, INCONCLUSIVE, STOPPED};
 use crate::cli::load::{SetArgs, located};
 use crate::cli::progress::progress_bar;
-use crate::frequencies::{Unfound, find_modes, to_json, to_text, write_modes_of};
-use crate::run::load;
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use mtled::frequencies::{CONVERGED, MassKind};
+use mtled_run::frequencies::{Unfound, find_modes, to_json, to_text, write_modes_of};
+use mtled_run::run::load;
 use std::path::PathBuf;
 
 /// Most frequencies of a search: their vectors must fit into the memory.

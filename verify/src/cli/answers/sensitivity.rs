@@ -3,12 +3,12 @@
 use crate::cli::common::{Common, INCONCLUSIVE, STOPPED};
 use crate::cli::load::SetArgs;
 use crate::cli::progress::progress_bar;
-use crate::lab::store::Source;
-use crate::run::{audit_doubts, ensure_fits};
-use crate::sensitivity::{Unmeasured, measure, to_json, to_text};
 use anyhow::{Context, Result};
 use clap::Args;
 use mtled_checks::escape::printable;
+use mtled_lab::lab::store::Source;
+use mtled_lab::sensitivity::{Unmeasured, measure, to_json, to_text};
+use mtled_run::run::{audit_doubts, ensure_fits};
 
 #[derive(Debug, Args)]
 pub struct SensitivityArgs {
@@ -38,7 +38,7 @@ pub fn sensitivity(arguments: &SensitivityArgs, common: &Common) -> Result<u8> {
     let found = match found {
         Ok(found) => found,
         Err(Unmeasured::Stopped) => return Ok(STOPPED),
-        Err(Unmeasured::Case(mistakes)) => return Err(crate::scene::one_error(mistakes)),
+        Err(Unmeasured::Case(mistakes)) => return Err(mtled_case::scene::one_error(mistakes)),
         Err(reason) => return Err(reason.into()),
     };
     for doubt in source.case.notes.iter().chain(&found.doubts) {

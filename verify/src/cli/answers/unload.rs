@@ -3,11 +3,11 @@
 use crate::cli::common::{Common, INCONCLUSIVE, STOPPED};
 use crate::cli::load::{SetArgs, located};
 use crate::cli::progress::progress_bar;
-use crate::run::load;
-use crate::unloaded::{find_unloaded, unloaded_json, unloaded_text, write_unloaded_of};
 use anyhow::Result;
 use clap::Args;
 use mtled::unloaded::Unloading;
+use mtled_lab::unloaded::{find_unloaded, unloaded_json, unloaded_text, write_unloaded_of};
+use mtled_run::run::load;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

@@ -2,11 +2,13 @@
 
 use super::problems::{OwnProblems, believed, files, problems};
 use crate::cli::common::Common;
-use crate::contests::{ContestCase, Outcome, Results, Seen, SolverRun, StoredEnd, doubts, judge};
-use crate::lab::label::percent;
 use anyhow::{Context, Result};
 use clap::Args;
 use mtled_checks::escape::printable;
+use mtled_lab::contests::{
+    ContestCase, Outcome, Results, Seen, SolverRun, StoredEnd, doubts, judge,
+};
+use mtled_lab::lab::label::percent;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 

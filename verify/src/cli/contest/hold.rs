@@ -2,9 +2,9 @@
 
 use crate::cli::common::{Common, STOPPED, command_line};
 use crate::cli::publish::{report_of, tables};
-use crate::contests::{Contest, ContestCase, History, Judged, Results, study, write_pages};
 use anyhow::Result;
 use mtled_checks::report::{ensure_writable, json, svg, write_atomically};
+use mtled_lab::contests::{Contest, ContestCase, History, Judged, Results, study, write_pages};
 use std::path::Path;
 use std::time::Instant;
 

@@ -6,13 +6,13 @@ mod problems;
 mod race;
 
 use super::common::Common;
-use crate::contests::{
-    Contest, Entrant, History, Identity, Judged, LONGEST_RUN_S, Spacing, benchmark,
-};
 use anyhow::{Context, Result, bail};
 use check::{CheckArgs, check};
 use clap::{Args, Subcommand};
 use hold::{held, publish};
+use mtled_lab::contests::{
+    Contest, Entrant, History, Identity, Judged, LONGEST_RUN_S, Spacing, benchmark,
+};
 use problems::{OwnProblems, believed, bundled, cases, files, laddered, problems};
 use race::{RaceArgs, race};
 use std::path::PathBuf;

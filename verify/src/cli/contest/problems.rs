@@ -1,13 +1,13 @@
 //! The problems of a contest, and the files of results about them.
 
-use crate::bundled::REFERENCES;
-use crate::contests::{
-    ContestCase, Results, ResultsFault, Spacing, benchmark, problem_of, result_files,
-};
-use crate::lab::store::Source;
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use mtled_case::bundled::REFERENCES;
 use mtled_checks::input::read_text;
+use mtled_lab::contests::{
+    ContestCase, Results, ResultsFault, Spacing, benchmark, problem_of, result_files,
+};
+use mtled_lab::lab::store::Source;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

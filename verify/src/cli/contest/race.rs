@@ -4,9 +4,9 @@ use super::hold::held;
 use super::problems::{cases, laddered};
 use crate::cli::common::Common;
 use crate::cli::python::{checkout, with_module};
-use crate::contests::{Contest, RaceList};
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use mtled_lab::contests::{Contest, RaceList};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

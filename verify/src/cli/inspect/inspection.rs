@@ -1,9 +1,6 @@
 //! What is known about a case before it is run.
 #![allow(non_snake_case)]
 
-use crate::machine::peak_memory;
-use crate::run::Prepared;
-use crate::scene::Case;
 use clap::ValueEnum;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
@@ -11,6 +8,9 @@ use mtled::model::zero_energy::{ZeroEnergyModes, zero_energy_modes};
 use mtled::motion::critical_time_step::{CriticalStep, critical_time_step};
 use mtled::motion::internal_force::Workspace;
 use mtled::motion::newton::{InfSup, inf_sup};
+use mtled_case::scene::Case;
+use mtled_run::machine::peak_memory;
+use mtled_run::run::Prepared;
 use rayon::prelude::*;
 
 /// Bodies with more nodes than this are searched for zero-energy modes only on request.

@@ -6,9 +6,9 @@ mod text;
 use super::common::{Common, Format};
 use super::load::{SetArgs, located};
 use super::streams::{print_json, print_text};
-use crate::run::{load, prepare};
 use clap::Args;
 use inspection::{Search, examine};
+use mtled_run::run::{load, prepare};
 use std::path::PathBuf;
 use text::{advice, to_json, to_text};
 

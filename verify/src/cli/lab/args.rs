@@ -1,12 +1,12 @@
 //! Options that several commands share.
 
-use crate::accuracy::Group;
-use crate::lab::store::{JobPlan, Store};
-use crate::lab::sweep::{REFINEMENT, ReferenceSource};
 use anyhow::{Context, Result};
 use clap::Args;
 use mtled_checks::escape::file_name;
 use mtled_checks::report::ensure_writable;
+use mtled_lab::lab::store::{JobPlan, Store};
+use mtled_lab::lab::sweep::{REFINEMENT, ReferenceSource};
+use mtled_run::accuracy::Group;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]

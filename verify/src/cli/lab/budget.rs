@@ -5,11 +5,11 @@ use crate::cli::common::{Common, command_line};
 use crate::cli::load::SetArgs;
 use crate::cli::progress::ManyRuns;
 use crate::cli::publish::{publish, report_of};
-use crate::lab::budget::{BudgetRequest, budget_study, budget_text, measure_budget};
-use crate::lab::store::{Source, TaskRunner};
 use anyhow::Result;
 use clap::Args;
 use mtled_checks::report::ensure_writable;
+use mtled_lab::lab::budget::{BudgetRequest, budget_study, budget_text, measure_budget};
+use mtled_lab::lab::store::{Source, TaskRunner};
 use std::time::Instant;
 
 #[derive(Debug, Args)]

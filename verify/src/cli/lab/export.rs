@@ -3,10 +3,10 @@
 use super::filter::FilterArgs;
 use crate::cli::common::Common;
 use crate::cli::streams::print_data;
-use crate::lab::records::{quantities_are_missing, runs_table};
 use anyhow::{Result, bail};
 use clap::Args;
 use mtled_checks::report::{ensure_writable, write_atomically};
+use mtled_lab::lab::records::{quantities_are_missing, runs_table};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

@@ -2,10 +2,10 @@
 
 use super::args::StoreArgs;
 use crate::cli::common::{COULD_NOT_RUN, Common};
-use crate::lab::records::{FilterError, RunFilter, Wanted};
-use crate::lab::store::{Contents, Corrupt, Job, RunRecord, Store};
 use anyhow::Result;
 use clap::Args;
+use mtled_lab::lab::records::{FilterError, RunFilter, Wanted};
+use mtled_lab::lab::store::{Contents, Corrupt, Job, RunRecord, Store};
 use std::collections::BTreeSet;
 
 /// A store and which of its records are meant.

@@ -1,9 +1,9 @@
 //! One option for every knob of a case.
 
-use crate::lab::sweep::Axis;
-use crate::scene::{Knob, Levels};
 use anyhow::Result;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
+use mtled_case::scene::{Knob, Levels};
+use mtled_lab::lab::sweep::Axis;
 
 /// Ranges of settings by option; written by hand, so that a new knob needs no option here.
 #[derive(Debug, Default)]

@@ -6,14 +6,14 @@ use super::filter::{Chosen, FilterArgs, name_corrupt};
 use crate::cli::common::{COULD_NOT_RUN, Common};
 use crate::cli::progress::ManyRuns;
 use crate::cli::streams::print_json;
-use crate::lab::store::{
-    Contents, Corrupt, Progress, RunOutcome, RunRecord, Store, TaskRunner, read_part,
-    solver_identity,
-};
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
 use comfy_table::{Table, presets};
 use mtled_checks::escape::printable;
+use mtled_lab::lab::store::{
+    Contents, Corrupt, Progress, RunOutcome, RunRecord, Store, TaskRunner, read_part,
+    solver_identity,
+};
 use serde_json::json;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

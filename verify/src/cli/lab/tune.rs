@@ -2,20 +2,20 @@
 
 use super::args::{ErrorArgs, fraction, seconds};
 use super::ranges::Ranges;
-use crate::bundled::small_cases;
 use crate::cli::common::{Common, command_line};
 use crate::cli::load::SetArgs;
 use crate::cli::progress::ManyRuns;
 use crate::cli::publish::{publish, report_of, tables};
-use crate::lab::store::{Source, Store, TaskRunner};
-use crate::lab::tune::{
-    Goal, TuneRequest, Tuned, recommend, recommendation_study, tune, tune_study, tune_text,
-};
-use crate::scene::{Knob, Setting, with_paths_from};
 use anyhow::{Result, bail};
 use clap::Args;
+use mtled_case::bundled::small_cases;
+use mtled_case::scene::{Knob, Setting, with_paths_from};
 use mtled_checks::escape::file_name;
 use mtled_checks::report::{ensure_writable, write_atomically};
+use mtled_lab::lab::store::{Source, Store, TaskRunner};
+use mtled_lab::lab::tune::{
+    Goal, TuneRequest, Tuned, recommend, recommendation_study, tune, tune_study, tune_text,
+};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

@@ -1,10 +1,10 @@
 //! Stored references and their mistakes.
 
-use crate::bundled::{CASES, bundled_reference, unpack};
-use crate::reference::{Agreement, ReferenceError, ReferenceFile, agreements, read_reference};
-use crate::scene::{Case, one_error, read_case};
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use mtled_case::bundled::{CASES, bundled_reference, unpack};
+use mtled_case::reference::{Agreement, ReferenceError, ReferenceFile, agreements, read_reference};
+use mtled_case::scene::{Case, one_error, read_case};
 use std::path::{Path, PathBuf};
 
 /// Where cases and references are read from.

@@ -1,8 +1,8 @@
 //! References as tables and as JSON.
 
 use super::stored::{Referenced, StoredReference};
-use crate::reference::{Agreement, Basis};
 use comfy_table::{ContentArrangement, LineStyle, Table, presets};
+use mtled_case::reference::{Agreement, Basis};
 use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
 use serde_json::{Value, json};

@@ -2,9 +2,9 @@
 
 use super::common::Common;
 use super::lab::sweep::{SweepArgs, sweep};
-use crate::lab::sweep::Subject;
 use anyhow::Result;
 use clap::Subcommand;
+use mtled_lab::lab::sweep::Subject;
 
 #[derive(Debug, Subcommand)]
 pub enum StudyCommand {

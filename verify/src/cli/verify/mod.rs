@@ -9,14 +9,14 @@ use own_suite::{OwnRun, run_own};
 
 use super::common::{Common, STOPPED};
 use super::lab::StoreArgs;
-use crate::machine::provenance;
-use crate::studies::workbench::{Suite, Workbench};
-use crate::studies::{Definition, STUDIES};
 use anyhow::bail;
 use clap::Args;
 use gate::{Gate, GateArgs, report_to_github};
 use mtled_checks::report::{ensure_writable, human, json, read, read_report, write_report};
 use mtled_checks::study::{Report, Study};
+use mtled_harness::studies::workbench::{Suite, Workbench};
+use mtled_harness::studies::{Definition, STUDIES};
+use mtled_run::machine::provenance;
 use progress::Progress;
 use rayon::prelude::*;
 use std::convert::Infallible;
@@ -102,7 +102,7 @@ fn finish(
     arguments: &VerifyArgs,
     common: &Common,
 ) -> anyhow::Result<u8> {
-    if crate::run::interrupted() {
+    if mtled_run::run::interrupted() {
         return Ok(STOPPED);
     }
     gate.judge(&mut report, whole)?;

@@ -4,12 +4,12 @@ use super::gate::{Gate, GateArgs};
 use crate::cli::common::Common;
 use crate::cli::lab::StoreArgs;
 use crate::cli::progress::ManyRuns;
-use crate::lab::store::TaskRunner;
-use crate::machine::provenance;
-use crate::suite::Suite;
 use anyhow::bail;
 use mtled_checks::report::json;
 use mtled_checks::study::{Report, Study};
+use mtled_lab::lab::store::TaskRunner;
+use mtled_lab::suite::Suite;
+use mtled_run::machine::provenance;
 use std::path::Path;
 use std::time::Instant;
 

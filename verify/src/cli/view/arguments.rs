@@ -1,8 +1,8 @@
 //! Arguments of `mtled view`.
 
-use crate::picture::{Direction, Shown};
 use clap::{Args, ValueEnum};
 use mtled::algebra::tensor::Vector3;
+use mtled_run::picture::{Direction, Shown};
 use std::path::PathBuf;
 
 /// Draws the frames of the body that `mtled solve` wrote (body_*.vtu).

@@ -2,12 +2,12 @@
 
 use super::arguments::ViewArgs;
 use crate::cli::common::Common;
-use crate::display::Mesh;
-use crate::files::points::{MeshFile, read_mesh};
-use crate::picture::{Body, Choice, Field, Shown, panels, picture_svg};
-use crate::run::last_body_frame;
 use anyhow::{Context, Result, bail, ensure};
 use mtled_checks::report::write_atomically;
+use mtled_io::files::points::{MeshFile, read_mesh};
+use mtled_run::display::Mesh;
+use mtled_run::picture::{Body, Choice, Field, Shown, panels, picture_svg};
+use mtled_run::run::last_body_frame;
 
 pub fn view(arguments: &ViewArgs, common: &Common) -> Result<u8> {
     let folder = &arguments.result;
@@ -72,7 +72,7 @@ fn body_of(file: MeshFile) -> Body {
         array.values.into_iter().map(|region| region as u16).collect()
     });
     let mesh = Mesh { corners: file.corners, vertices: file.points, cells: file.cells, regions };
-    let field = |array: crate::files::points::NamedArray| Field {
+    let field = |array: mtled_io::files::points::NamedArray| Field {
         name: array.name,
         components: array.components,
         values: array.values,

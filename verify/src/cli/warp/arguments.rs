@@ -1,7 +1,7 @@
 //! Arguments of `mtled warp`.
 
-use crate::files::LengthUnit;
 use clap::{Args, ValueEnum};
+use mtled_io::files::LengthUnit;
 use std::path::PathBuf;
 
 /// Image files are .nii, .nii.gz or .nrrd, told by their endings. Fields are on the grid of the

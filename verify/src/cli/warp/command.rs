@@ -4,19 +4,19 @@ use super::arguments::WarpArgs;
 use super::outputs::{Outputs, write_all};
 use super::summary::Summary;
 use crate::cli::common::Common;
-use crate::files::LengthUnit;
-use crate::files::image::{Image, Interpolation, field_bytes, image_bytes, read_image};
-use crate::files::points::read_landmarks;
-use crate::files::surface::to_stl;
-use crate::run::{StoredField, load};
-use crate::scene::Case;
-use crate::warp::{
+use anyhow::{Context, Result};
+use mtled::problem::Problem;
+use mtled_case::scene::Case;
+use mtled_checks::escape::file_name;
+use mtled_io::files::LengthUnit;
+use mtled_io::files::image::{Image, Interpolation, field_bytes, image_bytes, read_image};
+use mtled_io::files::points::read_landmarks;
+use mtled_io::files::surface::to_stl;
+use mtled_run::run::{StoredField, load};
+use mtled_run::warp::{
     DisplacementField, RegionSurface, WarpError, deform, forward_field, move_landmarks,
     nodes_outside, region_surfaces, to_csv,
 };
-use anyhow::{Context, Result};
-use mtled::problem::Problem;
-use mtled_checks::escape::file_name;
 use std::path::{Path, PathBuf};
 
 pub fn warp(arguments: &WarpArgs, common: &Common) -> Result<u8> {

@@ -1,11 +1,11 @@
 //! Files that `mtled warp` writes.
 
 use super::arguments::WarpArgs;
-use crate::files::image::ImageFormat;
-use crate::files::{FileError, Mistake};
-use crate::warp::WarpError;
 use anyhow::Result;
 use mtled_checks::report::{ensure_writable, write_atomically};
+use mtled_io::files::image::ImageFormat;
+use mtled_io::files::{FileError, Mistake};
+use mtled_run::warp::WarpError;
 use std::path::{Path, PathBuf};
 
 type ImageFile = (PathBuf, ImageFormat);

@@ -1,11 +1,11 @@
 //! What `mtled warp` has done, as text and as JSON.
 
 use crate::cli::common::Common;
-use crate::warp::{Deformed, DisplacementField, MovedLandmark, TOLERANCE};
 use anyhow::Result;
 use comfy_table::{Table, presets};
 use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
+use mtled_run::warp::{Deformed, DisplacementField, MovedLandmark, TOLERANCE};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! Every mistake in a case file is reported with its place, its key and what
 //! was expected.
 
-use mtled_verify::scene::{Diagnostic, read_case};
+use mtled_case::scene::{Diagnostic, read_case};
 use std::path::{Path, PathBuf};
 
 /// File, line, key, part of the message.
@@ -205,7 +205,7 @@ fn a_mistake_is_printed_with_its_line_and_a_caret() {
 fn several_mistakes_are_reported_together() {
     let text = std::fs::read_to_string(folder().join("negative_density.toml")).unwrap();
     let text = text.replace("spacing = 0.02", "spacing = 0.02\ndilation = 0.5");
-    let found = mtled_verify::scene::parse_case(&text, "two.toml", &folder()).unwrap_err();
+    let found = mtled_case::scene::parse_case(&text, "two.toml", &folder()).unwrap_err();
     let keys: Vec<&str> = found.iter().map(|mistake| mistake.key.as_str()).collect();
     assert_eq!(keys, ["material.tissue.density", "discretisation.dilation"]);
 }
@@ -215,7 +215,7 @@ fn of_many_numbers_that_are_not_finite_the_first_are_reported_and_the_others_cou
     let text = std::fs::read_to_string(folder().join("negative_density.toml")).unwrap();
     let rows = "nan, ".repeat(50_000);
     let text = format!("{text}[output]\nmoment_about = [{rows}]\n");
-    let found = mtled_verify::scene::parse_case(&text, "many.toml", &folder()).unwrap_err();
+    let found = mtled_case::scene::parse_case(&text, "many.toml", &folder()).unwrap_err();
     assert_eq!(found.len(), 20);
     assert!(found[19].message.ends_with("so must 49980 more numbers of the file"), "{}", found[19]);
     let printed = found[19].to_string();

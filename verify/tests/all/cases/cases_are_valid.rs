@@ -4,8 +4,8 @@
 use mtled::discretisation::nodes::node_cloud;
 use mtled::geometry::Extent;
 use mtled::problem::{Cloud, Dimension, Motion, Prescribed};
-use mtled_verify::bundled::LARGE;
-use mtled_verify::scene::{Case, parse_case, read_case, schema};
+use mtled_case::bundled::LARGE;
+use mtled_case::scene::{Case, parse_case, read_case, schema};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;

@@ -1,8 +1,8 @@
 //! Label maps made for the occasion: bodies that rest in a mould of themselves.
 #![allow(non_snake_case)]
 
-use mtled_verify::run::{contact_results, prepare, solve_case};
-use mtled_verify::scene::read_case;
+use mtled_case::scene::read_case;
+use mtled_run::run::{contact_results, prepare, solve_case};
 use std::path::Path;
 
 /// Writes a label map of `SIZE`³ voxels of 2 mm and a case in which the body of all its labels

@@ -1,7 +1,7 @@
 //! What the program writes before anything is solved: commented cases, manual pages.
 
 use crate::common::program::mtled;
-use mtled_verify::bundled::TEMPLATES;
+use mtled_case::bundled::TEMPLATES;
 use tempfile::TempDir;
 
 #[test]

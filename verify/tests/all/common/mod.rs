@@ -1,7 +1,7 @@
 //! A small case and a made-up reference to it, for the tests of references.
 
-use mtled_verify::reference::{Mesh, ReferenceFile, Solution, Values, quantities};
-use mtled_verify::scene::{Case, parse_case};
+use mtled_case::reference::{Mesh, ReferenceFile, Solution, Values, quantities};
+use mtled_case::scene::{Case, parse_case};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -3,10 +3,10 @@
 
 use super::fake::Arena;
 use crate::common::program::{interrupt, mtled, program};
-use mtled_verify::bundled::CASES;
-use mtled_verify::contests::absolute;
-use mtled_verify::lab::store::Source;
-use mtled_verify::protocol::{Job, Resolution, parse_job};
+use mtled_case::bundled::CASES;
+use mtled_case::protocol::{Job, Resolution, parse_job};
+use mtled_lab::contests::absolute;
+use mtled_lab::lab::store::Source;
 use serde_json::Value;
 use std::path::Path;
 use std::time::{Duration, Instant};

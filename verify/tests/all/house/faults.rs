@@ -12,7 +12,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
 #[test]
 fn every_text_that_a_fault_replaces_is_in_the_source_once() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let files = [files("faults"), files("faults/cures")].concat();
+    let files = [files("harness/faults"), files("harness/faults/cures")].concat();
     let mut changes = 0;
     for file in &files {
         let fault: DocumentMut = std::fs::read_to_string(file).unwrap().parse().unwrap();

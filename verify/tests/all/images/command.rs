@@ -4,7 +4,7 @@
 use super::image::{Kind, around, nifti};
 use crate::common::program::mtled;
 use mtled::algebra::tensor::Vector3;
-use mtled_verify::files::{LengthUnit, surface};
+use mtled_io::files::{LengthUnit, surface};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;

@@ -3,12 +3,12 @@
 
 use super::image::{Kind, Place, SIZE, around, nifti, voxels};
 use mtled::algebra::tensor::{Matrix3, Vector3};
-use mtled_verify::files::image::{
+use mtled_case::scene::parse_case;
+use mtled_io::files::image::{
     Image, ImageFormat, Interpolation, field_bytes, image_bytes, read_image,
 };
-use mtled_verify::run::{StoredField, prepare};
-use mtled_verify::scene::parse_case;
-use mtled_verify::warp::{
+use mtled_run::run::{StoredField, prepare};
+use mtled_run::warp::{
     DisplacementField, TOLERANCE, deform, forward_field, nodes_outside, source_of,
 };
 use std::path::Path;

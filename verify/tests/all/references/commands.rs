@@ -2,7 +2,7 @@
 
 use crate::common::program::{interrupt, mtled, program};
 use crate::common::{BLOCK, block, json, synthetic};
-use mtled_verify::reference::Values;
+use mtled_case::reference::Values;
 use serde_json::Value;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;

@@ -1,10 +1,10 @@
 //! References: which are accepted, and the messages of those that are refused.
 
 use crate::common::{BLOCK, block, json, synthetic};
-use mtled_verify::bundled::{CASES, REFERENCES};
-use mtled_verify::reference::compare::compare;
-use mtled_verify::reference::{Basis, Family, Values, agreements, read_reference};
-use mtled_verify::scene::{parse_case, problem_hash, read_case};
+use mtled_case::bundled::{CASES, REFERENCES};
+use mtled_case::reference::compare::compare;
+use mtled_case::reference::{Basis, Family, Values, agreements, read_reference};
+use mtled_case::scene::{parse_case, problem_hash, read_case};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;

@@ -2,9 +2,9 @@
 
 use mtled::motion::observe::Unobserved;
 use mtled::simulation::Simulation;
-use mtled_verify::bundled::unpack;
-use mtled_verify::run::solve_case;
-use mtled_verify::scene::read_case;
+use mtled_case::bundled::unpack;
+use mtled_case::scene::read_case;
+use mtled_run::run::solve_case;
 
 #[test]
 fn a_problem_through_the_library_has_the_bits_that_the_program_gives() {

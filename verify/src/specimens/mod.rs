@@ -1,6 +1,0 @@
-//! Problems stated in code: simple bodies, manufactured solutions, other spacings.
-
-pub mod manufactured;
-pub mod simple;
-pub mod spacing;
-pub mod stable_step;
