@@ -1,4 +1,4 @@
-//! Case files ([`scene`]), the finite-element references that belong to them ([`reference`]), the protocol
+//! Case files ([`scene`]), the finite-element references that belong to them ([`mod@reference`]), the protocol
 //! for other solvers ([`protocol`]) and what the program has with it ([`bundled`]).
 
 // A module uses only modules above it.

@@ -65,7 +65,7 @@ impl Workbench {
         }
     }
 
-    /// A bundled case; in another family than 0 its lattice is jittered by [`VARIATION`] of the
+    /// A bundled case; in another family than 0 its lattice is jittered by `VARIATION` of the
     /// spacing, or its graded cloud reseeded.
     pub fn case(&self, name: &str) -> Result<Case> {
         let mut case = self.unvaried_case(name)?;
@@ -100,7 +100,7 @@ impl Workbench {
     }
 
     /// A check of our own figure against its stored bound; `remark` is what else is known of it.
-    /// See [`StoredBounds`] for a check that has none yet.
+    /// See `StoredBounds` for a check that has none yet.
     pub fn regression(&self, id: &str, label: &str, value: f64, unit: &str, remark: &str) -> Check {
         let (bound, mut source) = self.bounds.bound(id);
         if !remark.is_empty() {
@@ -109,7 +109,7 @@ impl Workbench {
         Check::new(id, label, Kind::Regression, value, bound, unit, &source)
     }
 
-    /// A check of a target of theory or of our own, in units of 1. Where [`is_missed`] says that
+    /// A check of a target of theory or of our own, in units of 1. Where `is_missed` says that
     /// the target is known to be missed, and nowhere else, the check is a regression.
     pub fn target(&self, id: &str, label: &str, value: f64, target: Bound, source: &str) -> Check {
         if !is_missed(self.suite == Suite::Full, id) {
