@@ -115,9 +115,10 @@ pub enum Error {
     #[error("the displacement of condition \"{name}\" at node {node} ({}) is not a finite number: \
              change its formula or select other nodes", show(.position))]
     NoDisplacement { name: String, node: usize, position: Vector3 },
-    #[error("condition \"{second}\" prescribes another displacement {component} than condition \"{first}\" for {nodes} nodes \
+    #[error("condition \"{second}\" prescribes another displacement {component} than condition \"{first}\" for {} \
              that both select, at node {node} ({}) {:.4e} m and {:.4e} m at t = {time:.6} s: \
-             change one of them, or its selection", show(.position), .displacements[1], .displacements[0])]
+             change one of them, or its selection",
+            counted(*.nodes), show(.position), .displacements[1], .displacements[0])]
     ContradictingConditions {
         first: String,
         second: String,
@@ -128,11 +129,12 @@ pub enum Error {
         time: f64,
         displacements: [f64; 2],
     },
-    #[error("{nodes} nodes are inside obstacle \"{name}\" at the start, node {node} at ({}) by {depth:.4e} m: \
-             move the obstacle, change its side, or give it another offset", show(.position))]
+    #[error("{} {} inside obstacle \"{name}\" at the start, node {node} at ({}) by {depth:.4e} m: \
+             move the obstacle, change its side, or give it another offset",
+            counted(*.nodes), if *.nodes == 1 { "is" } else { "are" }, show(.position))]
     NodesInObstacle { name: String, nodes: usize, node: usize, position: Vector3, depth: f64 },
-    #[error("condition \"{condition}\" moves {nodes} nodes into obstacle \"{obstacle}\", node {node} at ({}) by {depth:.4e} m \
-             at t = {time:.6} s: change the displacement, or move the obstacle", show(.position))]
+    #[error("condition \"{condition}\" moves {} into obstacle \"{obstacle}\", node {node} at ({}) by {depth:.4e} m \
+             at t = {time:.6} s: change the displacement, or move the obstacle", counted(*.nodes), show(.position))]
     DrivenIntoObstacle {
         condition: String,
         obstacle: String,
@@ -330,6 +332,11 @@ fn not_held(free: usize) -> String {
             "; conditions and closed contacts leave {free} rigid motions of the body free: hold it at more nodes"
         ),
     }
+}
+
+/// Some nodes, in words.
+fn counted(nodes: usize) -> String {
+    if nodes == 1 { "1 node".into() } else { format!("{nodes} nodes") }
 }
 
 /// The condition of a matrix for a message.

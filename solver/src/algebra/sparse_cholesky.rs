@@ -20,6 +20,13 @@ pub(crate) struct SparseCholesky {
 #[derive(Default)]
 pub(crate) struct Scratch(Option<MemBuffer>, usize);
 
+/// There is nothing in it to keep.
+impl Clone for Scratch {
+    fn clone(&self) -> Scratch {
+        Scratch::default()
+    }
+}
+
 impl std::fmt::Debug for Scratch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_tuple("Scratch").field(&self.1).finish()

@@ -8,7 +8,7 @@ use crate::motion::extra_stress::ExtraState;
 use crate::motion::internal_force::{Workspace, internal_force};
 
 /// Displacements and velocities at one instant, and the work so far.
-#[derive(Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct State {
     /// Number of steps.
     pub step: usize,

@@ -64,7 +64,7 @@ fn solve_to(
     let mut prepared = prepare_to_run(&case.problem)?;
     if let Some(file) = &arguments.from {
         match SavedState::read(file, &case.problem, &prepared.model) {
-            Ok(saved) => prepared.start = Some(saved),
+            Ok(state) => prepared.start = Some(state),
             Err(error) => return Ok(Err(error)),
         }
     }

@@ -82,7 +82,7 @@ impl ConstraintSet {
 }
 
 /// Multipliers of the last enforcement, and scratch memory.
-#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct ConstraintForces {
     /// \[set\]\[row\] \[kg·m\], the sets of `stage`.
     pub(super) multipliers: Vec<Vec<f64>>,

@@ -1,6 +1,5 @@
 //! From a problem to its discretisation and model.
 
-use super::saved_state::SavedState;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::{Discretisation, Warning};
 use mtled::error::Error;
@@ -9,6 +8,7 @@ use mtled::model::contact::ContactSurface;
 use mtled::model::rigid_motions::{free_pieces, free_rigid_motions};
 use mtled::model::zero_energy::refuse_zero_energy_modes;
 use mtled::motion::mass_scaling::raise_masses;
+use mtled::motion::state::State;
 use mtled::problem::{Motion, Problem};
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -24,7 +24,7 @@ pub struct Prepared {
     pub setup_seconds: f64,
     contact_surface: OnceLock<ContactSurface>,
     /// From which a motion goes on, where it does not begin at rest.
-    pub start: Option<SavedState>,
+    pub start: Option<State>,
 }
 
 impl Prepared {

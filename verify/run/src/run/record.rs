@@ -294,8 +294,7 @@ impl Observer for Recorder<'_> {
         if !due(self.states.len()) {
             return false;
         }
-        let saved = SavedState::new(view.model, view.state);
-        self.states.extend(saved.ok());
+        self.states.push(SavedState::new(view.model, view.state));
         true
     }
 

@@ -25,33 +25,36 @@ struct Saved<S> {
     state: S,
 }
 
-/// A state as it is written.
+/// A state that is to be written.
 #[derive(Debug, Clone)]
 pub struct SavedState {
-    /// \[s\]
-    pub time: f64,
-    text: String,
+    body: String,
+    state: State,
 }
 
 impl SavedState {
     /// Of a model.
-    pub fn new(model: &Model, state: &State) -> Result<SavedState> {
+    pub fn new(model: &Model, state: &State) -> SavedState {
+        SavedState { body: fingerprint(model), state: state.clone() }
+    }
+
+    fn text(&self) -> Result<String> {
         let saved = Saved {
             mtled_state: VERSION,
             program: env!("CARGO_PKG_VERSION").to_string(),
-            body: fingerprint(model),
-            time_s: state.time,
-            state,
+            body: self.body.clone(),
+            time_s: self.state.time,
+            state: &self.state,
         };
-        Ok(SavedState { time: state.time, text: serde_json::to_string(&saved)? + "\n" })
+        Ok(serde_json::to_string(&saved)? + "\n")
     }
 
-    /// From a file, for a motion that goes on from it.
+    /// The state in a file, for a motion that goes on from it.
     ///
     /// # Errors
     /// A file that cannot be read, of another body, or of a time at which nothing is left of the
     /// motion.
-    pub fn read(path: &Path, problem: &Problem, model: &Model) -> Result<SavedState> {
+    pub fn read(path: &Path, problem: &Problem, model: &Model) -> Result<State> {
         let named = || path.display().to_string();
         let text = std::fs::read_to_string(path).with_context(named)?;
         let saved: Saved<State> = serde_json::from_str(&text)
@@ -76,12 +79,6 @@ impl SavedState {
             "{}: it is at {time} s, and time.end = {end} s leaves nothing of the motion",
             named()
         );
-        Ok(SavedState { time, text })
-    }
-
-    /// The state itself.
-    pub fn state(&self) -> Result<State> {
-        let saved: Saved<State> = serde_json::from_str(&self.text)?;
         Ok(saved.state)
     }
 }
@@ -96,7 +93,7 @@ pub fn is_state(name: &str) -> bool {
 pub fn write_states(states: &[SavedState], dir: &Path) -> Result<()> {
     for (number, saved) in states.iter().enumerate() {
         let path = dir.join(format!("state_{}.json", number + 1));
-        write_atomically(&path, saved.text.as_bytes())?;
+        write_atomically(&path, saved.text()?.as_bytes())?;
     }
     Ok(())
 }

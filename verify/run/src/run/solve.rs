@@ -94,8 +94,7 @@ pub fn integrate_prepared(
     observer: &mut dyn Observer,
 ) -> Result<Integrated, Error> {
     let (start, cpu) = (Instant::now(), cpu_seconds());
-    let saved = prepared.start.as_ref().and_then(|saved| saved.state().ok());
-    let mut state = saved.unwrap_or_else(|| State::new(&prepared.model));
+    let mut state = prepared.start.clone().unwrap_or_else(|| State::new(&prepared.model));
     let summary = simulate(&prepared.model, &problem.motion, &mut state, observer)?;
     Ok(Integrated {
         state,

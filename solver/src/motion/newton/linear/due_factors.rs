@@ -81,6 +81,10 @@ impl DueFactors {
         at_rest: &Stiffness,
         system: &mut System,
     ) -> bool {
+        #[cfg(test)]
+        if tests::SWITCHED_OFF.get() {
+            return false;
+        }
         self.spent += 1.0;
         if !self.seen && self.spent > Factors::least_price(model) {
             self.seen = true;
@@ -115,5 +119,77 @@ impl DueFactors {
         if let Some(factors) = &mut self.factors {
             factors.solve(force);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::algebra::random::Random;
+    use crate::algebra::tensor::Vector3;
+    use crate::geometry::{Selector, Shape};
+    use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
+    use crate::motion::observe::Unobserved;
+    use crate::problem::{
+        Amplitude, BodyForce, Dimension, EssentialCondition, Motion, Newton, Problem, Recipe,
+    };
+    use crate::simulation::Simulation;
+    use std::cell::Cell;
+
+    thread_local! {
+        /// Whether iterations go on without factors, however much they cost.
+        pub(super) static SWITCHED_OFF: Cell<bool> = const { Cell::new(false) };
+    }
+
+    /// A bar of random edges, two to eight times as long as it is thick, that hangs from one end
+    /// aslant, in space or in a plane.
+    fn bar(random: &mut Random, number: usize) -> Problem {
+        let mut between =
+            |low: f64, high: f64| low + 0.5 * (high - low) * (1.0 + random.symmetric());
+        let edges = Vector3::new(between(2.0, 8.0), between(1.0, 1.5), between(1.0, 1.5)) * 0.01;
+        let poisson_ratio = [0.3, 0.45, 0.49, 0.499][number % 4];
+        let constants = ElasticConstants::from_young_poisson(3000.0, poisson_ratio).unwrap();
+        let law = Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants));
+        let material = Material { density: 1000.0, law };
+        let body = Shape::Box { min: Vector3::zeros(), max: edges };
+        let mut problem = Problem::new(body, material, Recipe::with_spacing(between(3e-3, 5e-3)));
+        if number % 3 == 0 {
+            problem.dimension = Dimension::PlaneStrain { thickness: 1.0, z: 0.5 * edges.z };
+        }
+        let beyond = Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::x() };
+        let end = Selector::Inside { shape: beyond, tolerance: 1e-6 };
+        let ramp = Amplitude::Smooth { duration: 1.0 };
+        problem.conditions =
+            vec![EssentialCondition::on_surface("end", end, Vector3::zeros(), ramp.clone())];
+        let acceleration = Vector3::new(between(-1.0, 1.0), between(-0.5, 0.5), 0.0).into();
+        problem.loads.body_forces =
+            vec![BodyForce { part: Selector::All, acceleration, amplitude: ramp }];
+        problem.motion = Motion::Newton(Newton::default());
+        problem
+    }
+
+    /// The displacement \[component of node\] \[m\], and products with the tangent.
+    fn solved(problem: &Problem, switched_off: bool) -> (Vec<f64>, usize) {
+        let mut simulation = Simulation::new(problem).unwrap();
+        SWITCHED_OFF.set(switched_off);
+        let summary = simulation.run(&mut Unobserved);
+        SWITCHED_OFF.set(false);
+        (simulation.state.displacement, summary.unwrap().newton.unwrap().products)
+    }
+
+    #[test]
+    fn factors_lead_random_bars_where_iterations_without_them_do() {
+        let mut random = Random(5);
+        let mut factored = 0;
+        for number in 0..24 {
+            let problem = bar(&mut random, number);
+            let (with, products) = solved(&problem, false);
+            let (without, more) = solved(&problem, true);
+            factored += usize::from(products < more);
+            let largest = without.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+            let difference =
+                with.iter().zip(&without).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            assert!(difference <= 1e-6 * largest, "bar {number}: {difference} of {largest} m");
+        }
+        assert!(factored >= 8, "factors were made for {factored} bars only");
     }
 }
