@@ -22,6 +22,11 @@ const TURNED: f64 = 0.4;
 const FACING: f64 = -0.3;
 /// Where between two places the outside beside one of them is looked at \[half of the way across\].
 const BEFORE: f64 = 0.1;
+/// Depth of the way below the boundary that is looked along where both of its ends are on the
+/// boundary; half of it is a shortest step, so that steps end at gaps only \[length\].
+const BELOW: f64 = 0.2;
+/// Faces that may meet at a place on the boundary.
+const FACES: usize = 3;
 /// Steps along a way outside \[length\].
 const FINE: f64 = 0.01;
 /// Farther outside than this is straight between two faces \[half of the way across\].
@@ -89,7 +94,8 @@ impl Shape {
     /// faces that do not look the same way, however narrow the gap, or farther than along the wall
     /// of a hollow and by more than 2 % of a `length` \[m\], the local nodal spacing. Steps are no longer than the distance to the
     /// boundary, or a tenth of the length; across such a step the distance is looked at where
-    /// it would be 0 if it rose and fell evenly.
+    /// it would be 0 if it rose and fell evenly. A way along a face passes the mouth of a narrow gap
+    /// between two looks: where both places are on the boundary the way below it counts too.
     pub(crate) fn parts(&self, a: &Place, b: &Place, length: f64) -> bool {
         let (a, b) = if b.comes_before(a, TIE * length) { (b, a) } else { (a, b) };
         let way = Way::new(self, a, b, length);
@@ -98,7 +104,30 @@ impl Shape {
         if depths[0] + depths[1] >= way.total {
             return false;
         }
-        way.is_parted()
+        way.is_parted() || self.parts_below(a, b, length)
+    }
+
+    /// Whether a gap lies between two places on the boundary on the way below it.
+    fn parts_below(&self, a: &Place, b: &Place, length: f64) -> bool {
+        if [a, b].iter().any(|place| place.distance.abs() > THIN * length) {
+            return false;
+        }
+        let ends = self.below(a, length).zip(self.below(b, length));
+        ends.is_some_and(|(a, b)| Way::new(self, &a, &b, length).is_parted())
+    }
+
+    /// The place below one on the boundary, below all faces that meet there; none in what is
+    /// thinner.
+    fn below(&self, place: &Place, length: f64) -> Option<Place> {
+        let depth = BELOW * length;
+        let mut found = *place;
+        for _ in 0..FACES {
+            if found.distance > -0.5 * depth {
+                let way = (depth + found.distance) * self.gradient(&found.X);
+                found = self.place(&(found.X - way));
+            }
+        }
+        (found.distance <= -0.5 * depth).then_some(found)
     }
 }
 
@@ -298,6 +327,34 @@ mod tests {
                         let (a, b) = ([0.1, 0.0, below], [0.1 + aside, 0.02, gap + above]);
                         assert!(is_parted(&body, a, b), "gap {gap}: {a:?} to {b:?}");
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_narrow_gap_parts_places_on_one_outer_face_or_edge() {
+        for gap in [1e-3, 0.003, 0.01, 0.04, 0.3] {
+            let body = two_blocks(gap);
+            for y in [0.0, 0.7, 2.0] {
+                for (below, above) in [(-0.5, 0.4), (-1.0, 1.0), (-0.03, 0.9), (0.0, 0.6)] {
+                    for aside in [0.0, -0.3, -0.9] {
+                        let (a, b) = ([2.0, y, below], [2.0, y + aside, gap + above]);
+                        assert!(is_parted(&body, a, b), "gap {gap}: {a:?} to {b:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn places_on_a_common_face_of_blocks_that_touch_see_each_other() {
+        for gap in [0.0, -1e-3, -0.3] {
+            let body = two_blocks(gap);
+            for y in [0.0, 2.0] {
+                for aside in [0.0, -0.3] {
+                    let (a, b) = ([2.0, y, -0.5], [2.0, y + aside, 0.45]);
+                    assert!(!is_parted(&body, a, b), "gap {gap}: {a:?} to {b:?}");
                 }
             }
         }

@@ -84,6 +84,8 @@ fn solve_to(
     bar.finish_and_clear();
     match outcome {
         Ok(finished) => Ok(finish(case, &finished, out, common)),
+        // Refused before the first step: there is nothing to keep.
+        Err(failed) if failed.has_not_begun() => Err(failed.error),
         Err(failed) => match write_partial(case, &failed, out, common) {
             Ok(()) => Err(failed.error),
             Err(unwritable) => Ok(Err(unwritable)),

@@ -97,6 +97,16 @@ pub struct ConstraintForces {
 }
 
 impl Constraints {
+    /// What is held, whatever the times and displacements: of each stage and component the nodes,
+    /// and whether their parameters are set directly.
+    pub fn held(&self) -> Vec<(usize, bool, Vec<u32>)> {
+        let of_set = |set: &ConstraintSet| {
+            let nodes = set.rows.iter().map(|row| row.node).collect();
+            (set.component, set.collocation.is_none(), nodes)
+        };
+        self.stages.iter().flat_map(|stage| stage.sets.iter().map(of_set)).collect()
+    }
+
     /// Selects nodes and factors the collocation systems with the masses `mass`
     /// \[node\] \[kg\]. Where two active conditions prescribe the same component of
     /// a node, the first stated has the force.

@@ -133,6 +133,12 @@ impl Finished {
 }
 
 impl Failed {
+    /// Whether the run was refused before its first step.
+    pub fn has_not_begun(&self) -> bool {
+        let refused = matches!(self.error, Error::UnstableStep { .. } | Error::NoTimeStep { .. });
+        refused || self.record.samples.is_empty()
+    }
+
     /// How it ended, as in `result.json`: not_converged, diverged or failed.
     pub fn outcome(&self) -> &'static str {
         outcome_of(&self.error)

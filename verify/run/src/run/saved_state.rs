@@ -70,7 +70,7 @@ impl SavedState {
         let fits = saved.body == fingerprint(model) && saved.state.misfit(model).is_none();
         ensure!(
             fits,
-            "{}: it is of another body: nodes, materials, masses and what conditions hold must be those of the run that wrote it; loads and times may differ",
+            "{}: it is of another body: nodes, materials, masses, what conditions hold and the names of obstacles, in their order, must be those of the run that wrote it; loads and times may differ",
             named()
         );
         let time = saved.time_s;
@@ -98,7 +98,7 @@ pub fn write_states(states: &[SavedState], dir: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A hash of what a state belongs to.
+/// A hash of what a state belongs to, with the obstacles that it numbers.
 fn fingerprint(model: &Model) -> String {
     let mut hash = Sha256::new();
     let mut add = |number: f64| hash.update(number.to_bits().to_le_bytes());
@@ -111,5 +111,8 @@ fn fingerprint(model: &Model) -> String {
         let material = (&block.law, &block.viscosity, &block.active);
         hash.update(format!("{material:?}").as_bytes());
     }
+    hash.update(format!("{:?}", model.constraints.held()).as_bytes());
+    let obstacles = model.contact.obstacles.iter().map(|obstacle| &obstacle.name);
+    hash.update(format!("{:?}", obstacles.collect::<Vec<_>>()).as_bytes());
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -127,6 +127,10 @@ fn a_state_that_does_not_belong_to_the_case_is_refused() {
     refused(&with("discretisation.spacing=0.006"), "it is of another body");
     refused(&with("material.muscle.prony=[{ g = 0.3, tau = 0.02 }]"), "it is of another body");
     refused(&with("material.muscle.fibres.direction=[1.0, 0.2, 0.0]"), "it is of another body");
+    refused(&with("prescribe.end.displacement={ x = 0.0, y = 0.0 }"), "it is of another body");
+    refused(&with("discretisation.enforcement=direct"), "it is of another body");
+    refused(&with("obstacle=[]"), "it is of another body");
+    refused(&with("obstacle.floor.name=ground"), "the names of obstacles");
     let ended = [&with("time.end=0.02")[..], &["--set", "output.states=[0.02]"]].concat();
     refused(&ended, "leaves nothing of the motion");
     refused(&["--from", "whole/result.json"], "this is not a state");

@@ -307,11 +307,14 @@ fn run_text(solved: &Solved) -> Vec<String> {
         ),
         match s.newton {
             Some(newton) => format!(
-                "  {}: {} in {} parts of the load, {} products with the tangent, {}, \
+                "  {}: {} in {}, {} products with the tangent, {}, \
                  residual {} of the largest nodal force",
                 s.ending(),
                 newton.corrections(),
-                newton.increments,
+                match newton.increments {
+                    1 => "one part of the load".into(),
+                    parts => format!("{parts} parts of the load"),
+                },
                 newton.products,
                 solved.smallest_jacobian_text(),
                 four_digits(newton.residual)
