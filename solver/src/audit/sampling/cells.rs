@@ -3,6 +3,7 @@
 
 use super::cost::{cost, cost_of, has_labels};
 use super::level::level;
+use super::seams::{is_seam, may_have_seams};
 use super::simplex::{Halves, OF_BOX, Tetrahedron, vector_area, volume};
 use super::surface::Facet;
 use crate::algebra::tensor::Vector3;
@@ -149,6 +150,9 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
         cells = next;
     }
     sampled.volumes.iter_mut().for_each(|part| part.doubt += part.variance.sqrt());
+    if may_have_seams(divided.body) {
+        sampled.facets.retain(|facet| !is_seam(facet, |X| divided.distance(X)));
+    }
     Ok(sampled)
 }
 

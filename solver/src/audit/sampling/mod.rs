@@ -4,6 +4,7 @@
 mod cells;
 mod cost;
 mod level;
+mod seams;
 mod simplex;
 mod surface;
 #[cfg(test)]

@@ -1,3 +1,4 @@
+use super::surface::Facet;
 use super::*;
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::{LabelField, LabelMap, Selector, Shape};
@@ -60,6 +61,34 @@ fn a_layer_that_lies_between_the_corners_of_cells_is_not_denied() {
             let found = sample(&divided).unwrap().volumes[0];
             let error = (found.size - 0.01 * thickness).abs();
             assert!(error <= found.doubt + 1e-9, "{thickness} {spacing}: {error} {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_face_in_which_two_members_touch_is_no_boundary() {
+    let block = |low: f64, high: f64| Shape::Box {
+        min: Vector3::new(low, 0.0, 0.0),
+        max: Vector3::new(high, 0.04, 0.04),
+    };
+    for border in [0.05, 0.043, 0.0712] {
+        let body = Shape::Union(vec![block(0.0, border), block(border, 0.1)]);
+        for spacing in [10e-3, 8e-3, 5e-3] {
+            let divided = Divided {
+                body: &body,
+                dimension: &Dimension::Three,
+                parts: vec![&Selector::All],
+                spacing,
+                nodes: 300,
+            };
+            let found = sample(&divided).unwrap();
+            let area: f64 = found.facets.iter().map(Facet::area).sum();
+            assert!((area - 0.0192).abs() < 0.02 * 0.0192, "{border} {spacing}: {area}");
+            let seam = found.facets.iter().filter(|facet| {
+                let X = facet.centre();
+                (X.x - border).abs() < 1e-6 && X.y.min(X.z) > 0.01 && X.y.max(X.z) < 0.03
+            });
+            assert_eq!(seam.count(), 0, "{border} {spacing}");
         }
     }
 }
