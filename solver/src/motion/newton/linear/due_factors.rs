@@ -152,7 +152,7 @@ mod tests {
         let material = Material { density: 1000.0, law };
         let body = Shape::Box { min: Vector3::zeros(), max: edges };
         let mut problem = Problem::new(body, material, Recipe::with_spacing(between(3e-3, 5e-3)));
-        if number % 3 == 0 {
+        if number.is_multiple_of(3) {
             problem.dimension = Dimension::PlaneStrain { thickness: 1.0, z: 0.5 * edges.z };
         }
         let beyond = Shape::HalfSpace { point: Vector3::zeros(), normal: Vector3::x() };
