@@ -1,5 +1,5 @@
 //! Small problems for the tests: a cube and a square in plane strain.
-#![allow(dead_code)] // Every test binary uses only a part of this.
+#![allow(dead_code)] // `allocation.rs`, a program of its own, uses only a part of this.
 #![allow(non_snake_case)]
 
 pub use mtled::algebra::tensor::vector_at;
