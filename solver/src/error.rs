@@ -53,6 +53,11 @@ pub enum Error {
     /// A simulation was run twice.
     #[error("the simulation has run already, to t = {time} s: set up another one for another run")]
     HasRun { time: f64 },
+    /// A simulation cannot go on from the state of another body.
+    #[error(
+        "the state has {found} numbers and the body needs {expected}: it is a state of another body"
+    )]
+    StateOfAnother { found: usize, expected: usize },
     #[error("the background grid gives no quadrature point inside the body: use smaller cells")]
     NoQuadraturePoints,
     #[error("no region contains the point ({}): let the last region contain everything", show(.position))]

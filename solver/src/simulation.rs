@@ -6,7 +6,9 @@ use crate::audit::{Audit, audit};
 use crate::discretisation::{Discretisation, Warning};
 use crate::error::Error;
 use crate::model::Model;
+use crate::model::contact::{ContactResult, ContactSurface};
 use crate::model::essential::Reaction;
+use crate::model::unheld::unheld;
 use crate::model::zero_energy::refuse_zero_energy_modes;
 use crate::motion::energy::{Energies, energies};
 use crate::motion::mass_scaling::raise_masses;
@@ -14,9 +16,12 @@ use crate::motion::nodal_fields::NodalFields;
 use crate::motion::observe::Observer;
 use crate::motion::simulate::simulate;
 use crate::motion::state::State;
+use crate::motion::strain::strain_warnings;
 use crate::motion::summary::Summary;
 use crate::problem::Problem;
 use crate::sensitivity::{Adjoint, Answer};
+use std::sync::OnceLock;
+use std::time::Instant;
 
 /// A problem that is set up, and the state that it has reached.
 ///
@@ -25,32 +30,85 @@ use crate::sensitivity::{Adjoint, Answer};
 /// [`refuse_zero_energy_modes`], [`State::new`], [`simulate`].
 #[derive(Debug)]
 pub struct Simulation {
+    /// What is to be solved.
+    pub problem: Problem,
     /// Nodes, quadrature points, shape functions.
     pub discretisation: Discretisation,
     /// Masses, stiffness, conditions, loads, obstacles.
     pub model: Model,
     /// Displacements and velocities.
     pub state: State,
-    problem: Problem,
+    /// Wall time of the set-up \[s\].
+    pub setup_seconds: f64,
+    continued: bool,
     has_run: bool,
+    contact_surface: OnceLock<ContactSurface>,
 }
 
 impl Simulation {
     /// Discretises the body, binds materials, conditions and loads, raises masses where the
     /// motion asks for that, and refuses a recipe whose quadrature leaves zero-energy modes.
     pub fn new(problem: &Problem) -> Result<Simulation, Error> {
-        let discretisation = Discretisation::new(problem)?;
-        let model = Model::new(problem, &discretisation)?;
-        let model = raise_masses(model, problem, &discretisation)?;
-        refuse_zero_energy_modes(problem, &discretisation, &model)?;
-        let state = State::new(&model);
-        Ok(Simulation { discretisation, model, state, problem: problem.clone(), has_run: false })
+        let simulation = Simulation::with_any_recipe(problem)?;
+        simulation.refuse_zero_energy_modes()?;
+        Ok(simulation)
     }
 
-    /// What to know before the result is trusted.
+    /// As [`Simulation::new`], for studies of recipes: one that leaves zero-energy modes is not refused.
+    pub fn with_any_recipe(problem: &Problem) -> Result<Simulation, Error> {
+        let start = Instant::now();
+        let discretisation = Discretisation::new(problem)?;
+        let model = raise_masses(Model::new(problem, &discretisation)?, problem, &discretisation)?;
+        let setup_seconds = start.elapsed().as_secs_f64();
+        Ok(Simulation { setup_seconds, ..Simulation::of_parts(problem, discretisation, model) })
+    }
+
+    /// A problem with parts that a study has made for it.
+    pub fn of_parts(problem: &Problem, discretisation: Discretisation, model: Model) -> Simulation {
+        let state = State::new(&model);
+        Simulation {
+            problem: problem.clone(),
+            discretisation,
+            model,
+            state,
+            setup_seconds: 0.0,
+            continued: false,
+            has_run: false,
+            contact_surface: OnceLock::new(),
+        }
+    }
+
+    /// Refuses a recipe whose quadrature leaves zero-energy modes.
+    pub fn refuse_zero_energy_modes(&self) -> Result<(), Error> {
+        refuse_zero_energy_modes(&self.problem, &self.discretisation, &self.model)
+    }
+
+    /// What to know before the problem is solved.
     pub fn warnings(&self) -> Vec<Warning> {
-        let of_problem = self.model.warnings.iter().cloned();
-        self.discretisation.warnings().into_iter().chain(of_problem).collect()
+        let mut warnings = self.discretisation.warnings();
+        warnings.extend(self.model.warnings.iter().cloned());
+        warnings.extend(unheld(&self.problem, &self.discretisation, &self.model));
+        warnings
+    }
+
+    /// Goes on with a motion from a state that it has reached in another run.
+    ///
+    /// # Errors
+    /// A state of another number of nodes or of other materials, and a simulation that has run.
+    pub fn continue_from(&mut self, state: State) -> Result<(), Error> {
+        if self.has_run {
+            return Err(Error::HasRun { time: self.state.time });
+        }
+        if let Some((found, expected)) = state.misfit(&self.model) {
+            return Err(Error::StateOfAnother { found, expected });
+        }
+        (self.state, self.continued) = (state, true);
+        Ok(())
+    }
+
+    /// Whether it goes on, or went on, from a state of another run.
+    pub fn is_continued(&self) -> bool {
+        self.continued
     }
 
     /// Runs to the end of the motion, or to static equilibrium, and notifies `observer`
@@ -62,6 +120,17 @@ impl Simulation {
             return Err(Error::HasRun { time: self.state.time });
         }
         simulate(&self.model, &self.problem.motion, &mut self.state, observer)
+    }
+
+    /// Reasons to doubt a run that came to its end with `summary`.
+    pub fn doubts(&self, summary: &Summary) -> Vec<String> {
+        let Simulation { discretisation, model, state, .. } = self;
+        let (t, u) = (state.time, &state.displacement);
+        let mut found = model.contact.penetrations(&model.positions, t, u);
+        found.extend(model.contact.unresolved(discretisation, t, u));
+        found.extend(strain_warnings(model, discretisation, u));
+        let found = found.iter().map(Warning::to_string);
+        summary.doubts(model).into_iter().chain(found).collect()
     }
 
     /// What the problem asked beside what the run has done, once it has come to its end.
@@ -96,6 +165,32 @@ impl Simulation {
     /// the order of the problem's conditions.
     pub fn reactions(&self, about: &Vector3) -> Vec<Reaction> {
         self.state.reactions(&self.model, about)
+    }
+
+    /// Where obstacles touch the body, made when it is first asked for; nothing without obstacles.
+    ///
+    /// # Errors
+    /// As [`ContactSurface::new`].
+    pub fn contact_surface(&self) -> Result<Option<&ContactSurface>, Error> {
+        if self.problem.obstacles.is_empty() {
+            return Ok(None);
+        }
+        if let Some(surface) = self.contact_surface.get() {
+            return Ok(Some(surface));
+        }
+        let surface = ContactSurface::new(&self.problem, &self.discretisation)?;
+        Ok(Some(self.contact_surface.get_or_init(|| surface)))
+    }
+
+    /// What each obstacle does to the body now, in the order of the problem's obstacles.
+    ///
+    /// # Errors
+    /// As [`Simulation::contact_surface`].
+    pub fn contact_results(&self) -> Result<Vec<ContactResult>, Error> {
+        let Some(surface) = self.contact_surface()? else { return Ok(Vec::new()) };
+        let (plan, state) = (&self.model.contact, &self.state);
+        let (forces, u) = (state.contact_forces(), &state.displacement);
+        surface.results((plan, state.time), &self.discretisation, &forces, u)
     }
 
     /// Energies \[J\] half a step before the time of the state.

@@ -102,9 +102,7 @@ impl Run<'_> {
             return Vec::new();
         }
         let now = energies(model, state);
-        let speeds = model.initial_velocity.iter().enumerate();
-        let start: f64 =
-            speeds.map(|(i, v)| 0.5 * model.inertia[i / model.components] * v * v).sum();
+        let start = work.start;
         let largest = [now.kinetic, now.strain, work.external.abs(), work.constraint.abs(), start];
         let largest = largest.into_iter().fold(work.damping.abs(), f64::max);
         let done = now.balance() - excess_of_mean(model, state);

@@ -188,6 +188,43 @@ pub enum Warning {
         /// Where it is now in the undeformed body.
         position: Vector3,
     },
+    /// Nothing prevents rigid motions of the body of a static problem.
+    #[error(
+        "the conditions, and contacts that are closed at the start, leave {} of the body free in a static \
+         problem: {}",
+        match .motions { 1 => "a rigid motion".to_string(), n => format!("{n} rigid motions") },
+        if *.touches {
+            "only contact that closes during the run can hold it, and without friction that may \
+             not be enough to converge"
+        } else {
+            "the result is one of many that differ by such a motion"
+        }
+    )]
+    FreeMotions {
+        /// Number of rigid motions that nothing prevents.
+        motions: usize,
+        /// Whether there are obstacles.
+        touches: bool,
+    },
+    /// Separate pieces of the body of a static problem that can move.
+    #[error(
+        "{} of {volume:.3e} m³ around ({:.4}, {:.4}, {:.4}) can move without resistance, since no condition holds \
+         it enough: under loads on it a static problem has no solution; hold it, leave it out of \
+         the body, or close the gap around it",
+        match .pieces {
+            1 => "a separate piece of the body".to_string(),
+            n => format!("{n} separate pieces of the body, the largest"),
+        },
+        .centre.x, .centre.y, .centre.z
+    )]
+    FreePieces {
+        /// How many.
+        pieces: usize,
+        /// Centre of the largest \[m\].
+        centre: Vector3,
+        /// Its volume \[m³\].
+        volume: f64,
+    },
     /// A linear law is strained by more than it is made for.
     #[error(
         "the linear law is strained by {strain:.3} at ({}), and holds for strains and rotations of a few \

@@ -13,6 +13,7 @@ pub(crate) mod projection;
 pub mod rigid_motions;
 mod stiffness;
 pub mod time_step_bound;
+pub(crate) mod unheld;
 pub mod zero_energy;
 
 pub use assembly::Model;

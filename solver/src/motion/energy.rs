@@ -4,7 +4,7 @@
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::model::Model;
 use crate::motion::internal_force::{internal_force, strain_energy};
-use crate::motion::state::State;
+use crate::motion::state::{State, kinetic_energy};
 
 /// Energies \[J\] half a step before the time of the state, like velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,17 +82,11 @@ fn displacement_before(state: &State) -> Vec<f64> {
 /// Kinetic energy ½ Σ m v² at t − Δt/2, strain energy as the mean of those at
 /// t − Δt and t, and the accumulated work.
 pub fn energies(model: &Model, state: &State) -> Energies {
-    let d = model.components;
-    let mut kinetic = 0.0;
-    for (node, mass) in model.inertia.iter().enumerate() {
-        let squares = state.velocity[d * node..d * (node + 1)].iter().map(|v| v * v);
-        kinetic += 0.5 * mass * squares.sum::<f64>();
-    }
     let before = displacement_before(state);
     let strain = 0.5 * (strain_energy(model, &before) + strain_energy(model, &state.displacement));
     let impacts = &state.contact.impacts;
     Energies {
-        kinetic,
+        kinetic: kinetic_energy(model, &state.velocity),
         strain,
         external_work: state.work.external,
         constraint_work: state.work.constraint - impacts.work,

@@ -146,7 +146,15 @@ fn integrate(
 ) -> Result<Summary, Error> {
     let mut buffers = Buffers::new(model, observer.tracks_work());
     let mut control = StepController::new(model, settings, state, &mut buffers)?;
-    let mut stopped = notify(model, state, 1.0, 0.0, observer) == Continue::Stop;
+    // J at rest is 1; a motion that goes on from a state has that of the state.
+    let jacobian = match state.step {
+        0 => 1.0,
+        _ => {
+            let (u, workspace) = (&state.displacement, &mut buffers.workspace);
+            internal_force(model, u, workspace, &mut buffers.f_int).jacobian
+        }
+    };
+    let mut stopped = notify(model, state, jacobian, 0.0, observer) == Continue::Stop;
     let began = state.time;
     let mut start = began;
     if !model.contact.obstacles.is_empty() && !state.contact.impacts.is_active() {

@@ -37,6 +37,8 @@ pub struct State {
 /// Work up to t − Δt/2 \[J\]; accumulated on request only.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Work {
+    /// Kinetic energy at the start of the motion.
+    pub start: f64,
     /// By body forces and tractions.
     pub external: f64,
     /// By prescribed displacements and by contact.
@@ -45,6 +47,13 @@ pub struct Work {
     pub damping: f64,
     /// Done against viscous branches, less what active fibres have done; up to t − Δt.
     pub extra: f64,
+}
+
+/// ½ Σ m v² \[J\].
+pub(crate) fn kinetic_energy(model: &Model, velocity: &[f64]) -> f64 {
+    let nodes = velocity.chunks(model.components);
+    let of_node = |(mass, v): (&f64, &[f64])| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>();
+    model.inertia.iter().zip(nodes).map(of_node).sum()
 }
 
 impl State {
@@ -61,7 +70,7 @@ impl State {
             residual_scratch: ConstraintForces::default(),
             contact: ContactState::default(),
             extra: ExtraState::new(model),
-            work: Work::default(),
+            work: Work { start: kinetic_energy(model, &model.initial_velocity), ..Work::default() },
         }
     }
 

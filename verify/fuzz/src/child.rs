@@ -5,13 +5,14 @@ use crate::finding::Outcome;
 use crate::target::Target;
 use anyhow::Result;
 use clap::ValueEnum;
+use mtled::Simulation;
 use mtled::discretisation::Footprint;
 use mtled::problem::Problem;
 use mtled_case::scene::read_case;
 use mtled_metamorphic::hunt::examine;
 use mtled_metamorphic::scene::Scene;
 use mtled_run::machine::peak_memory;
-use mtled_run::run::{prepare_to_run, refuse_beyond_memory};
+use mtled_run::run::refuse_beyond_memory;
 use rustix::process::{Resource, Rlimit, setrlimit};
 use serde::{Deserialize, Serialize};
 use std::io::{BufRead, Write};
@@ -134,9 +135,9 @@ fn check(file: &Path) -> (Outcome, Option<String>) {
     if pairs(&case.problem) > LARGEST_IN_LIBRARY {
         return (Outcome::LeftOut, None);
     }
-    match prepare_to_run(&case.problem) {
+    match Simulation::new(&case.problem) {
         Err(error) => located(error.to_string()),
-        Ok(prepared) => match prepared.discretisation.worst_condition.is_finite() {
+        Ok(simulation) => match simulation.discretisation.worst_condition.is_finite() {
             true => (Outcome::Succeeded, None),
             false => located("the condition is not finite, without an error".into()),
         },

@@ -1,6 +1,7 @@
 //! The configuration without loads of the body of a case, whose shape is that under its loads.
 
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::error::Error;
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::unloaded::{Distance, Unloaded, Unloading, unload};
@@ -8,7 +9,7 @@ use mtled_case::scene::Case;
 use mtled_checks::escape::printable;
 use mtled_checks::report::write_atomically;
 use mtled_run::machine::cpu_seconds;
-use mtled_run::run::{Prepared, interrupted, write_unloaded};
+use mtled_run::run::{interrupted, write_unloaded};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -17,7 +18,7 @@ use std::path::Path;
 pub struct FoundUnloaded {
     case: Case,
     /// The known shape, with the model of the body without loads.
-    prepared: Prepared,
+    simulation: Simulation,
     offsets: Vec<f64>,
     distances: Vec<Distance>,
     /// How small the last distance is to be, over the displacement \[–\].
@@ -60,7 +61,7 @@ pub fn find_unloaded(
     let volumes = (image.volume(), without);
     Ok(FoundUnloaded {
         case: case.clone(),
-        prepared: Prepared::new(image, model, 0.0),
+        simulation: Simulation::of_parts(&case.problem, image, model),
         offsets,
         distances,
         tolerance: settings.tolerance,
@@ -74,10 +75,10 @@ pub fn find_unloaded(
 
 /// What it is and how well it was found, for people.
 pub fn unloaded_text(found: &FoundUnloaded) -> String {
-    let FoundUnloaded { case, prepared, distances, volumes, .. } = found;
+    let FoundUnloaded { case, simulation, distances, volumes, .. } = found;
     let mut text = printable(&format!("{}: {}", case.name, case.title));
     text += &format!("\n  {} nodes; the shape of the case is that under its loads\n", {
-        prepared.model.positions.len()
+        simulation.model.positions.len()
     });
     if let Some(Distance { largest, mean, displacement }) = distances.last() {
         text += &format!(
@@ -111,7 +112,7 @@ pub fn unloaded_json(found: &FoundUnloaded) -> Value {
         "case": found.case.name,
         "found": found.found,
         "tolerance": found.tolerance,
-        "nodes": found.prepared.model.positions.len(),
+        "nodes": found.simulation.model.positions.len(),
         "distances": found.distances.iter().map(row).collect::<Vec<_>>(),
         "volume_m3": found.volumes.0,
         "unloaded_volume_m3": found.volumes.1,
@@ -122,7 +123,7 @@ pub fn unloaded_json(found: &FoundUnloaded) -> Value {
 
 /// Writes `unloaded.json`, VTU files and the surface to a folder.
 pub fn write_unloaded_of(found: &FoundUnloaded, folder: &Path) -> Result<()> {
-    write_unloaded(&found.case.problem, &found.prepared, &found.offsets, folder)?;
+    write_unloaded(&found.simulation, &found.offsets, folder)?;
     let text = format!("{}\n", unloaded_json(found));
     write_atomically(&folder.join("unloaded.json"), text.as_bytes())
 }

@@ -6,9 +6,10 @@ use crate::errors::{case_error, exception, set_up_error, solve_error};
 use crate::functions;
 use crate::result::Result;
 use mtled::Shape;
+use mtled::Simulation;
 use mtled::problem::Prescribed;
 use mtled_case::scene::{self, Mistakes, Override, parse_overridden, with_absolute_paths};
-use mtled_run::run::{ensure_fits, load, located, prepare, prepare_to_run, solve_recorded};
+use mtled_run::run::{ensure_fits, load, located, solve_recorded, warnings};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
@@ -160,13 +161,13 @@ impl Case {
     fn discretise(&self, py: Python) -> PyResult<Discretisation> {
         let watch = Arc::new(Watch::default());
         let case = self.effective(py, &watch);
-        let (prepared, warnings) = in_background(py, &watch, None, move |_| {
-            let prepared =
-                prepare(&case.problem).map_err(|error| set_up_error(&located(&case, &error)))?;
-            let warnings = prepared.doubts(&case.problem);
-            PyResult::Ok((prepared, warnings))
+        let (simulation, warnings) = in_background(py, &watch, None, move |_| {
+            let simulation = Simulation::with_any_recipe(&case.problem)
+                .map_err(|error| set_up_error(&located(&case, &error)))?;
+            let warnings = warnings(&case, &simulation);
+            PyResult::Ok((simulation, warnings))
         })??;
-        Discretisation::new(py, prepared, warnings)
+        Discretisation::new(py, simulation, warnings)
     }
 
     /// Sets the case up and runs it.
@@ -176,9 +177,9 @@ impl Case {
         let stated = !self.has_functions();
         let run = case.clone();
         let finished = in_background(py, &watch, progress.as_ref(), move |watch| {
-            let prepared = prepare_to_run(&run.problem)
+            let simulation = Simulation::new(&run.problem)
                 .map_err(|error| set_up_error(&located(&run, &error)))?;
-            solve_recorded(&run, prepared, error_bars, &|done, step| watch.report(done, step))
+            solve_recorded(&run, simulation, error_bars, &|done, step| watch.report(done, step))
                 .map_err(|failed| solve_error(&located(&run, &failed.error), failed.outcome()))
         })??;
         Result::new(py, case, finished, stated)

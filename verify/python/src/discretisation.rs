@@ -1,7 +1,7 @@
 //! The discretisation of a case as arrays.
 
 use crate::arrays::{Rows, rows, vectors};
-use mtled_run::run::Prepared;
+use mtled::Simulation;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -45,8 +45,12 @@ pub struct Discretisation {
 
 impl Discretisation {
     /// Takes over the memory of the solver.
-    pub fn new(py: Python, prepared: Prepared, warnings: Vec<String>) -> PyResult<Discretisation> {
-        let Prepared { discretisation, model, setup_seconds, .. } = prepared;
+    pub fn new(
+        py: Python,
+        simulation: Simulation,
+        warnings: Vec<String>,
+    ) -> PyResult<Discretisation> {
+        let Simulation { discretisation, model, setup_seconds, .. } = simulation;
         let (cloud, approximation) = (discretisation.cloud, discretisation.approximation);
         let (quadrature, supports) = (discretisation.quadrature, discretisation.supports);
         let gradients = supports.grad_phi;

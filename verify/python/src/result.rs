@@ -36,10 +36,11 @@ pub struct Result {
 impl Result {
     /// Of a finished run; `stated` says whether the text of the case states all of the problem.
     pub fn new(py: Python, case: Arc<Case>, finished: Finished, stated: bool) -> PyResult<Result> {
-        let prepared = &finished.solved.prepared;
-        let field = py.detach(|| field_at_nodes(prepared, &finished.solved.state.displacement));
+        let simulation = &finished.solved.simulation;
+        let field = py
+            .detach(|| field_at_nodes(simulation, &finished.solved.simulation.state.displacement));
         Ok(Result {
-            nodes_m: vectors(py, prepared.discretisation.cloud.positions.clone())?,
+            nodes_m: vectors(py, simulation.discretisation.cloud.positions.clone())?,
             displacement_m: rows(py, field.map_err(exception)?, 3)?,
             case,
             finished: Arc::new(finished),
@@ -93,8 +94,9 @@ impl Result {
         let points = positions(&points_m)?;
         let solved = &self.finished.solved;
         let displacement = py.detach(|| {
-            let rows = solved.prepared.discretisation.rows_at(&points)?;
-            let (u, components) = (&solved.state.displacement, solved.prepared.model.components);
+            let rows = solved.simulation.discretisation.rows_at(&points)?;
+            let (u, components) =
+                (&solved.simulation.state.displacement, solved.simulation.model.components);
             Ok((0..points.len()).map(|i| rows.interpolate(i, u, components)).collect::<Vec<_>>())
         });
         let displacement =
@@ -154,8 +156,8 @@ impl Result {
         let how = if labels { Interpolation::Nearest } else { Interpolation::Linear };
         let warped = py.detach(|| -> anyhow::Result<_> {
             let (case, solved) = (&self.case, &self.finished.solved);
-            let u = &solved.state.displacement;
-            let stored = StoredField::new(case, &solved.prepared, u, solved.summary.stopped);
+            let u = &solved.simulation.state.displacement;
+            let stored = StoredField::new(case, &solved.simulation, u, solved.summary.stopped);
             let field = DisplacementField::new(&stored, &case.problem, decay_m)?;
             let read = read_image(&image, unit)?;
             let outside = nodes_outside(&field, &read.grid, &image)?;

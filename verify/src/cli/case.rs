@@ -6,11 +6,12 @@ use super::messages::place;
 use super::streams::{print_data, print_json, print_text};
 use anyhow::{Result, bail};
 use clap::Subcommand;
+use mtled::Simulation;
 use mtled_case::bundled::{CASES, TEMPLATES, Template};
 use mtled_case::scene::{Diagnostic, Mistakes, Override, schema};
 use mtled_checks::escape::printable;
 use mtled_checks::report::write_atomically;
-use mtled_run::run::{load, prepare_to_run};
+use mtled_run::run::{load, warnings};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -125,8 +126,8 @@ fn check(files: &[PathBuf], overrides: &[Override], common: &Common) -> Result<u
 /// The mistakes of a case file. It is discretised, since empty selections and poor supports
 /// show only then.
 fn examine<'a>(file: &'a Path, overrides: &[Override]) -> Result<Checked<'a>> {
-    let warnings = load(file, overrides).and_then(|case| match prepare_to_run(&case.problem) {
-        Ok(prepared) => Ok([case.notes.clone(), prepared.doubts(&case.problem)].concat()),
+    let warnings = load(file, overrides).and_then(|case| match Simulation::new(&case.problem) {
+        Ok(simulation) => Ok(warnings(&case, &simulation)),
         Err(error) => Err(located(&case, &error)),
     });
     match warnings {

@@ -4,13 +4,14 @@ use super::common::{Common, INCONCLUSIVE, STOPPED};
 use super::load::{SetArgs, located};
 use super::progress::progress_bar;
 use clap::Args;
+use mtled::Simulation;
 use mtled::error::Error;
 use mtled::motion::observe::Continue;
 use mtled_case::scene::Case;
 use mtled_checks::escape::file_name;
 use mtled_checks::report::ensure_writable;
 use mtled_run::run::{
-    Failed, Finished, PAGE_FILE, SavedState, audit_doubts, load, prepare_to_run, solve_recorded,
+    Failed, Finished, PAGE_FILE, SavedState, audit_doubts, load, solve_recorded, warnings,
 };
 use std::path::{Path, PathBuf};
 
@@ -61,14 +62,13 @@ fn solve_to(
     arguments: &SolveArgs,
     common: &Common,
 ) -> Result<anyhow::Result<u8>, Error> {
-    let mut prepared = prepare_to_run(&case.problem)?;
+    let mut simulation = Simulation::new(&case.problem)?;
     if let Some(file) = &arguments.from {
-        match SavedState::read(file, &case.problem, &prepared.model) {
-            Ok(state) => prepared.start = Some(state),
-            Err(error) => return Ok(Err(error)),
+        if let Err(error) = SavedState::read(file, &mut simulation) {
+            return Ok(Err(error));
         }
     }
-    for doubt in case.notes.iter().cloned().chain(prepared.doubts(&case.problem)) {
+    for doubt in warnings(case, &simulation) {
         common.warn(doubt);
     }
     let bar = progress_bar(common);
@@ -80,7 +80,7 @@ fn solve_to(
         }
         Continue::Yes
     };
-    let outcome = solve_recorded(case, prepared, !arguments.no_error_bar, &show);
+    let outcome = solve_recorded(case, simulation, !arguments.no_error_bar, &show);
     bar.finish_and_clear();
     match outcome {
         Ok(finished) => Ok(finish(case, &finished, out, common)),
@@ -123,7 +123,7 @@ fn finish(case: &Case, finished: &Finished, out: &Path, common: &Common) -> anyh
     if solved.summary.stopped {
         common.complain(format!(
             "stopped at t = {:.6} s; the files contain the run up to then",
-            solved.state.time
+            solved.simulation.state.time
         ));
         return Ok(STOPPED);
     }

@@ -39,7 +39,6 @@ mod runs {
     mod restart;
     mod run_store;
     mod sensitivity;
-    mod simulation;
 }
 mod commands {
     mod command_line;

@@ -3,6 +3,7 @@
 
 use crate::studies::workbench::Workbench;
 use anyhow::{Context, Result};
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{LabelField, Shape};
 use mtled::problem::{Dimension, Motion};
@@ -10,7 +11,7 @@ use mtled_case::scene::Case;
 use mtled_checks::study::{
     Bound, Cell, Check, Column, Drawing, Figure, Kind, Layer, LayerStyle, Study, Table, number,
 };
-use mtled_run::run::{MassCentre, Recorder, Solved, centres_of_mass, integrate, prepare};
+use mtled_run::run::{MassCentre, Recorder, Solved, centres_of_mass, integrate};
 use mtled_run::specimens::spacing::{respaced, spacing_of};
 
 /// One solution of the slice.
@@ -50,7 +51,7 @@ pub fn brain(bench: &Workbench, study: &mut Study) -> Result<()> {
         study.figures.push(Figure::Drawing(drawing(&run, moment, when)?));
     }
     study.leading = study.figures.len();
-    let discretisation = &run.solved.prepared.discretisation;
+    let discretisation = &run.solved.simulation.discretisation;
     study.notes.push(format!(
         "{} nodes, {} quadrature points, {} steps of {:.1} µs; damping, push and skull gap are those of \
          the case file. Coordinates are RAS in the frame of the template.",
@@ -71,11 +72,11 @@ fn with_half_steps(case: &Case) -> Case {
 }
 
 fn solve(case: Case) -> Result<SliceRun> {
-    let prepared = prepare(&case.problem)?;
-    let centres = centres_of_mass(&case.problem, &prepared.discretisation);
+    let simulation = Simulation::with_any_recipe(&case.problem)?;
+    let centres = centres_of_mass(&case.problem, &simulation.discretisation);
     // Two frames per second of the case: start, release and end among them.
-    let mut recorder = Recorder::new(&case, &prepared, 2)?;
-    let solved = integrate(&case.problem, prepared, &mut recorder)?;
+    let mut recorder = Recorder::new(&case, &simulation, 2)?;
+    let solved = integrate(simulation, &mut recorder)?;
     let record = recorder.finish();
     let at = |time: f64| -> Result<Moment> {
         let frame = record
@@ -104,7 +105,7 @@ fn solve(case: Case) -> Result<SliceRun> {
 
 impl SliceRun {
     fn moved(&self, region: usize, moment: usize) -> Vector3 {
-        let d = self.solved.prepared.model.components;
+        let d = self.solved.simulation.model.components;
         self.centres[region].displacement(&self.moments[moment].displacement, d)
     }
 
@@ -118,7 +119,7 @@ impl SliceRun {
 
     /// Largest penetration of a boundary node into the skull \[m\].
     fn penetration(&self) -> f64 {
-        let model = &self.solved.prepared.model;
+        let model = &self.solved.simulation.model;
         let depth = |moment: &Moment, node: u32| {
             let x = model.contact.place(node, &model.positions, &moment.displacement);
             let gaps = model.contact.all_placed(0.0).map(|(_, skull)| skull.gap(&x));
@@ -250,7 +251,7 @@ fn changes_table(run: &SliceRun, finer: &SliceRun, smaller_step: &SliceRun) -> T
     let row = |name: &str, other: &SliceRun| {
         vec![
             Cell::Text(name.into()),
-            Cell::Number(other.solved.prepared.discretisation.cloud.positions.len() as f64),
+            Cell::Number(other.solved.simulation.discretisation.cloud.positions.len() as f64),
             Cell::Number(other.solved.summary.steps as f64),
             Cell::Number(1e3 * run.difference(other, 1)),
             Cell::Number(1e3 * run.difference(other, 2)),
@@ -288,7 +289,7 @@ fn drawing(run: &SliceRun, moment: usize, when: &str) -> Result<Drawing> {
     };
     let parts =
         [("brain", part(&[1, 2, 3])?), ("ventricles", part(&[2])?), ("tumour", part(&[3])?)];
-    let skull = &run.solved.prepared.model.contact.obstacles[0];
+    let skull = &run.solved.simulation.model.contact.obstacles[0];
     let mut layers = vec![Layer {
         name: "skull".into(),
         style: LayerStyle::Outline,
@@ -330,7 +331,7 @@ fn drawing(run: &SliceRun, moment: usize, when: &str) -> Result<Drawing> {
 
 /// Positions of the nodes of the craniotomy at a moment \[m\].
 fn pushed_nodes(run: &SliceRun, moment: usize) -> Vec<[f64; 2]> {
-    let model = &run.solved.prepared.model;
+    let model = &run.solved.simulation.model;
     let u = &run.moments[moment].displacement;
     let sets = model.constraints.active(0.0);
     let rows = sets.first().map_or(&[][..], |set| set.rows.as_slice());
@@ -348,13 +349,13 @@ fn displaced(
     moment: usize,
     z: f64,
 ) -> Result<Vec<Vec<[f64; 2]>>> {
-    let prepared = &run.solved.prepared;
+    let simulation = &run.solved.simulation;
     let u = &run.moments[moment].displacement;
     let displace = |line: &Vec<[f64; 2]>| -> Result<Vec<[f64; 2]>> {
         let positions: Vec<Vector3> = line.iter().map(|p| Vector3::new(p[0], p[1], z)).collect();
-        let rows = prepared.discretisation.rows_at(&positions)?;
+        let rows = simulation.discretisation.rows_at(&positions)?;
         let moved = positions.iter().enumerate().map(|(i, position)| {
-            let x = position + rows.interpolate(i, u, prepared.model.components);
+            let x = position + rows.interpolate(i, u, simulation.model.components);
             [x.x, x.y]
         });
         Ok(moved.collect())

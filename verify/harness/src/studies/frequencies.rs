@@ -4,13 +4,13 @@ use crate::exact::beam::Beam;
 use crate::studies::comparison::published::numbers::{case, problems};
 use crate::studies::workbench::{Workbench, exact, relative_error};
 use anyhow::{Context, Result, ensure};
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::frequencies::{MassKind, NaturalModes, body_at_rest};
 use mtled::geometry::{Extent, Selector, Shape};
 use mtled::problem::{Amplitude, Dimension, EssentialCondition, Prescribed, Problem, Recipe};
 use mtled_checks::measure::larger;
 use mtled_checks::study::{Bound, Cell, Check, Kind, Study, Table, number, text};
-use mtled_run::run::{Prepared, prepare};
 use mtled_run::specimens::simple::{PLANE, SIZE, block_shape, bonded_face, free_body, tissue};
 use mtled_run::specimens::spacing::respaced;
 use std::path::Path;
@@ -67,7 +67,7 @@ impl Results {
 
 fn search(problem: &Problem, count: usize, kind: MassKind) -> Result<NaturalModes> {
     let rest = body_at_rest(problem);
-    let Prepared { discretisation, model, .. } = prepare(&rest)?;
+    let Simulation { discretisation, model, .. } = Simulation::with_any_recipe(&rest)?;
     Ok(NaturalModes::find(&rest, &discretisation, &model, (count, kind), &mut |_| true)?)
 }
 

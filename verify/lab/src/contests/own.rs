@@ -1,6 +1,7 @@
 //! The door of the protocol to this solver.
 
 use anyhow::{Context, Result, bail};
+use mtled::Simulation;
 use mtled_case::protocol::{
     Answer, Job, PROTOCOL, Refusal, RefusalReason, Refused, Reply, SolverName,
 };
@@ -10,7 +11,7 @@ use mtled_case::scene::{
 };
 use mtled_run::accuracy::{SAMPLES, values};
 use mtled_run::machine::{cpu_seconds, peak_memory};
-use mtled_run::run::{Prepared, Recorder, integrate, prepare_to_run, refuse_beyond_memory};
+use mtled_run::run::{Recorder, integrate, refuse_beyond_memory};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -24,13 +25,13 @@ pub fn solve_job(job: &Job, overrides: &[Override]) -> Result<Reply> {
     if let Err(shortage) = refuse_beyond_memory(&case) {
         return Ok(refusal(RefusalReason::Resolution, shortage.to_string()));
     }
-    let prepared = match prepare_to_run(&case.problem) {
-        Ok(prepared) => prepared,
+    let simulation = match Simulation::new(&case.problem) {
+        Ok(simulation) => simulation,
         Err(error) => return Ok(refusal(RefusalReason::Resolution, error.to_string())),
     };
-    let unknowns = unknowns(&case, &prepared);
-    let mut recorder = Recorder::new(&case, &prepared, 0)?;
-    match integrate(&case.problem, prepared, &mut recorder) {
+    let unknowns = unknowns(&case, &simulation);
+    let mut recorder = Recorder::new(&case, &simulation, 0)?;
+    match integrate(simulation, &mut recorder) {
         Ok(solved) if solved.summary.stopped => bail!("stopped"),
         Ok(_) => {}
         Err(error) => return Ok(refusal(RefusalReason::NotConverged, error.to_string())),
@@ -40,11 +41,11 @@ pub fn solve_job(job: &Job, overrides: &[Override]) -> Result<Reply> {
 }
 
 /// Components of all nodes without those that are prescribed at the end.
-fn unknowns(case: &Case, prepared: &Prepared) -> u64 {
+fn unknowns(case: &Case, simulation: &Simulation) -> u64 {
     let mut prescribed = 0;
     let end = case.problem.motion.end();
-    prepared.model.constraints.for_each_row(end, |_, _| prescribed += 1);
-    (prepared.model.size() as u64).saturating_sub(prescribed).max(1)
+    simulation.model.constraints.for_each_row(end, |_, _| prescribed += 1);
+    (simulation.model.size() as u64).saturating_sub(prescribed).max(1)
 }
 
 /// The case at the wanted spacing, or why there is none.

@@ -1,10 +1,11 @@
 //! The answers of a case whose sensitivities are asked for.
 
+use mtled::Simulation;
 use mtled::error::Error;
 use mtled::{Answer, Vector3};
 use mtled_case::reference::{Family, Quantity, quantities};
 use mtled_case::scene::{Case, Probe, ProbeKind};
-use mtled_run::run::{Prepared, centres_of_mass};
+use mtled_run::run::centres_of_mass;
 
 /// An answer below this part of the largest of its kind is round-off \[–\].
 const NOTHING: f64 = 1e-6;
@@ -40,11 +41,11 @@ pub struct NoAnswer {
 /// of all probes and supports without moments.
 pub fn asked(
     case: &Case,
-    prepared: &Prepared,
+    simulation: &Simulation,
     names: &[String],
     values: &Values,
 ) -> Result<Vec<Asked>, AskedError> {
-    let all = all(case, prepared, values)?;
+    let all = all(case, simulation, values)?;
     if names.is_empty() {
         let is_preset =
             |asked: &Asked| asked.family != Family::Moment && stem(&asked.name) == asked.name;
@@ -83,16 +84,16 @@ fn stem(name: &str) -> &str {
 type Along = Box<dyn Fn(Vector3) -> Answer>;
 
 /// All answers: of vectors the length, then the components.
-fn all(case: &Case, prepared: &Prepared, values: &Values) -> Result<Vec<Asked>, Error> {
+fn all(case: &Case, simulation: &Simulation, values: &Values) -> Result<Vec<Asked>, Error> {
     let mut vectors: Vec<(Quantity, Along, Vec<Vector3>)> = Vec::new();
     for quantity in quantities(case) {
         let name = quantity.name.split_once('/').map_or("", |(_, name)| name);
-        let axes = match (quantity.family, prepared.model.components) {
+        let axes = match (quantity.family, simulation.model.components) {
             (Family::Moment, 2) => 2..3,
             (_, components) => 0..components,
         };
         let axes = axes.map(|axis| Vector3::ith(axis, 1.0)).collect();
-        if let Some(along) = vector(case, prepared, quantity.family, name)? {
+        if let Some(along) = vector(case, simulation, quantity.family, name)? {
             vectors.push((quantity, along, axes));
         }
     }
@@ -130,7 +131,7 @@ fn all(case: &Case, prepared: &Prepared, values: &Values) -> Result<Vec<Asked>, 
 /// An answer along any direction of what is named; `None` where it is no vector.
 fn vector(
     case: &Case,
-    prepared: &Prepared,
+    simulation: &Simulation,
     family: Family,
     name: &str,
 ) -> Result<Option<Along>, Error> {
@@ -141,7 +142,7 @@ fn vector(
             let Some(probe) = case.probes.iter().find(|probe| probe.name == name) else {
                 return Ok(None);
             };
-            let weights = weights(case, prepared, probe)?;
+            let weights = weights(case, simulation, probe)?;
             Some(Box::new(move |along| Answer::Displacement { weights: weights.clone(), along }))
         }
         (Family::Force, Some(condition)) => {
@@ -155,15 +156,15 @@ fn vector(
 }
 
 /// What the displacement of a probe is a sum of; of a lattice the mean.
-fn weights(case: &Case, prepared: &Prepared, probe: &Probe) -> Result<Vec<(u32, f64)>, Error> {
+fn weights(case: &Case, simulation: &Simulation, probe: &Probe) -> Result<Vec<(u32, f64)>, Error> {
     if let ProbeKind::CentreOfMass { region } = &probe.kind {
         let index = case.problem.regions.iter().position(|own| own.name == *region);
-        let centres = centres_of_mass(&case.problem, &prepared.discretisation);
+        let centres = centres_of_mass(&case.problem, &simulation.discretisation);
         let weights = index.map(|index| centres[index].weights()).unwrap_or_default();
         let weights = weights.iter().enumerate().map(|(node, weight)| (node as u32, *weight));
         return Ok(weights.filter(|(_, weight)| *weight != 0.0).collect());
     }
-    let rows = prepared.discretisation.rows_at(&probe.kind.positions())?;
+    let rows = simulation.discretisation.rows_at(&probe.kind.positions())?;
     let part = 1.0 / rows.len().max(1) as f64;
     let of_row =
         |row: usize| rows.row(row).map(|entry| (rows.nodes[entry], part * rows.phi[entry]));

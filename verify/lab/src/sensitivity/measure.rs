@@ -3,16 +3,15 @@
 use super::answers::{Asked, AskedError, NoAnswer, asked};
 use super::numbers::{Number, numbers};
 use crate::lab::store::Source;
-use mtled::audit::{Audit, audit};
+use mtled::Answer;
+use mtled::Simulation;
+use mtled::audit::Audit;
 use mtled::error::Error;
 use mtled::motion::observe::Unobserved;
-use mtled::motion::simulate::simulate;
-use mtled::motion::state::State;
 use mtled::problem::{Friction, Motion, Obstacle, Problem};
-use mtled::{Adjoint, Answer};
 use mtled_case::scene::{Case, Diagnostic, NotAnOverride, Override, parse_overridden};
 use mtled_run::machine::cpu_seconds;
-use mtled_run::run::{Prepared, interrupted, located, prepare_to_run};
+use mtled_run::run::{interrupted, located};
 use std::path::Path;
 
 /// A sensitivity below this part of its answer per part of the number is one of none \[–\].
@@ -106,13 +105,6 @@ pub enum Unmeasured {
     Stopped,
 }
 
-/// A solved case.
-struct Solved {
-    prepared: Prepared,
-    state: State,
-    doubts: Vec<String>,
-}
-
 /// Solves a static case and finds the sensitivities of the answers that `names` name. Where
 /// `checks`, it is solved again on both sides of each number. `notify` is called before every
 /// part of this.
@@ -127,15 +119,12 @@ pub fn measure(
     let of_solver = |error: Error| Unmeasured::Case(vec![located(&source.case, &error)]);
     notify("the case");
     let cpu = cpu_seconds();
-    let Solved { prepared, state, doubts } = solve(&case.problem).map_err(of_solver)?;
-    let Prepared { discretisation, model, .. } = &prepared;
+    let (simulation, doubts) = solve(&case.problem).map_err(of_solver)?;
     let run_cpu_s = cpu_seconds() - cpu;
-    let audit = audit(&case.problem, discretisation, model, &state).map_err(of_solver)?;
+    let audit = simulation.audit().map_err(of_solver)?;
     let cpu = cpu_seconds();
-    let values = |answers: &[Answer]| {
-        Ok(Adjoint::new(&case.problem, discretisation, model, &state, answers)?.values())
-    };
-    let chosen = asked(&case, &prepared, names, &values).map_err(|error| match error {
+    let values = |answers: &[Answer]| Ok(simulation.adjoint(answers)?.values());
+    let chosen = asked(&case, &simulation, names, &values).map_err(|error| match error {
         AskedError::Name(name) => Unmeasured::Answer(name),
         AskedError::Solver(error) => of_solver(error),
     })?;
@@ -143,8 +132,7 @@ pub fn measure(
         chosen.into_iter().partition(|asked| !asked.is_nothing);
     let values: Vec<f64> = chosen.iter().map(|asked| asked.value).collect();
     let questions: Vec<Answer> = chosen.iter().map(|asked| asked.answer.clone()).collect();
-    let mut adjoint = Adjoint::new(&case.problem, discretisation, model, &state, &questions)
-        .map_err(of_solver)?;
+    let mut adjoint = simulation.adjoint(&questions).map_err(of_solver)?;
     let mut rows = Vec::new();
     for number in numbers(&case) {
         if interrupted() {
@@ -196,13 +184,13 @@ fn by_newton(case: &mut Case) -> Result<(), Unmeasured> {
     Err(Unmeasured::Case(vec![case.diagnostic(&key, reason.into())]))
 }
 
-fn solve(problem: &Problem) -> Result<Solved, Error> {
-    let prepared = prepare_to_run(problem)?;
-    let mut state = State::new(&prepared.model);
-    let summary = simulate(&prepared.model, &problem.motion, &mut state, &mut Unobserved)?;
-    let mut doubts = prepared.doubts(problem);
-    doubts.extend(summary.doubts(&prepared.model));
-    Ok(Solved { prepared, state, doubts })
+/// A solved problem, with the reasons to doubt it.
+fn solve(problem: &Problem) -> Result<(Simulation, Vec<String>), Error> {
+    let mut simulation = Simulation::new(problem)?;
+    let mut doubts: Vec<String> = simulation.warnings().iter().map(ToString::to_string).collect();
+    let summary = simulation.run(&mut Unobserved)?;
+    doubts.extend(simulation.doubts(&summary));
+    Ok((simulation, doubts))
 }
 
 /// The problem on both sides of a number.
@@ -230,11 +218,7 @@ fn by_solutions(
     row: &Row,
     of_solver: &dyn Fn(Error) -> Unmeasured,
 ) -> Result<Vec<f64>, Unmeasured> {
-    let value = |problem: &Problem| {
-        let Solved { prepared, state, .. } = solve(problem)?;
-        let Prepared { discretisation, model, .. } = &prepared;
-        Ok(Adjoint::new(problem, discretisation, model, &state, questions)?.values())
-    };
+    let value = |problem: &Problem| Ok(solve(problem)?.0.adjoint(questions)?.values());
     let [below, above] = sides(source, &row.number)?;
     let (below, above) = (value(&below).map_err(of_solver)?, value(&above).map_err(of_solver)?);
     let scale = row.number.value / (2.0 * row.number.step());

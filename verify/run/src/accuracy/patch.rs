@@ -2,7 +2,7 @@
 //! affine displacement field to their tolerance on any cloud.
 #![allow(non_snake_case)]
 
-use crate::run::Prepared;
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::{Extent, Selector};
 use mtled::problem::{Amplitude, EssentialCondition, Field, Prescribed};
@@ -62,8 +62,8 @@ impl AffineField {
     }
 
     /// Errors of the nodal parameters `u` \[m\], component by component of each node.
-    pub fn errors(&self, prepared: &Prepared, u: &[f64]) -> AffineErrors {
-        let (discretisation, model) = (&prepared.discretisation, &prepared.model);
+    pub fn errors(&self, simulation: &Simulation, u: &[f64]) -> AffineErrors {
+        let (discretisation, model) = (&simulation.discretisation, &simulation.model);
         let (rows, components) = (&discretisation.supports, model.components);
         let mut worst = AffineErrors::default();
         for (X, nodal) in model.positions.iter().zip(u.chunks(components)) {

@@ -10,6 +10,6 @@ use std::path::Path;
 /// Writes `frequencies.json` and the modes as VTU files to a folder.
 pub fn write_modes_of(found: &Found, folder: &Path) -> Result<()> {
     let motions: Vec<&[f64]> = found.modes.modes.iter().map(|mode| &mode.motion[..]).collect();
-    write_modes(&found.rest, &found.prepared, &motions, folder)?;
+    write_modes(&found.simulation, &motions, folder)?;
     write_atomically(&folder.join("frequencies.json"), format!("{}\n", to_json(found)).as_bytes())
 }

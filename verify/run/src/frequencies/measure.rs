@@ -1,7 +1,8 @@
 //! The lowest natural frequencies of the body of a case.
 
 use crate::machine::cpu_seconds;
-use crate::run::{Prepared, interrupted, prepare_to_run};
+use crate::run::interrupted;
+use mtled::Simulation;
 use mtled::error::Error;
 use mtled::frequencies::{MassKind, NaturalModes, body_at_rest};
 use mtled::problem::{Cavity, Motion, Problem};
@@ -13,9 +14,7 @@ pub struct Found {
     /// The case.
     pub case: Case,
     /// The body without its loads and obstacles.
-    pub rest: Problem,
-    /// Its nodes and model.
-    pub prepared: Prepared,
+    pub simulation: Simulation,
     /// Rigid motions, frequencies and modes.
     pub modes: NaturalModes,
     /// The masses.
@@ -47,13 +46,13 @@ pub fn find_modes(
     notify: &dyn Fn(usize),
 ) -> Result<Found, Unfound> {
     let rest = body_at_rest(&case.problem);
-    let prepared = prepare_to_run(&rest)?;
+    let simulation = Simulation::new(&rest)?;
     let cpu = cpu_seconds();
     let mut go_on = |found: usize| {
         notify(found);
         !interrupted()
     };
-    let Prepared { discretisation, model, .. } = &prepared;
+    let Simulation { discretisation, model, .. } = &simulation;
     let modes = NaturalModes::find(&rest, discretisation, model, (count, masses), &mut go_on)?;
     if modes.stopped {
         return Err(Unfound::Stopped);
@@ -62,7 +61,7 @@ pub fn find_modes(
     let doubts = warnings.map(|warning| warning.to_string()).collect();
     let left_out = left_out(&case.problem, masses);
     let (case, cpu_s) = (case.clone(), cpu_seconds() - cpu);
-    Ok(Found { case, rest, prepared, modes, masses, left_out, doubts, cpu_s })
+    Ok(Found { case, simulation, modes, masses, left_out, doubts, cpu_s })
 }
 
 /// What a problem has beside what natural frequencies depend on.

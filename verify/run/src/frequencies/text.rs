@@ -8,15 +8,15 @@ use serde_json::{Value, json};
 
 /// A table of them, and what they are.
 pub fn to_text(found: &Found) -> String {
-    let Found { case, prepared, modes, .. } = found;
-    let components = prepared.model.size();
+    let Found { case, simulation, modes, .. } = found;
+    let components = simulation.model.size();
     let mut text = printable(&format!("{}: {}", case.name, case.title));
     text += &format!(
         "\n  natural frequencies of small vibrations about the undeformed body, undamped, with {} masses\n  {} nodes; \
          {} of {components} components are held; {}\n\n{}\n\n",
         name(found.masses),
-        prepared.model.positions.len(),
-        found.prepared.model.constraints.count(0.0),
+        simulation.model.positions.len(),
+        found.simulation.model.constraints.count(0.0),
         rigid_motions(modes.rigid_motions),
         table(&modes.modes)
     );
@@ -94,9 +94,9 @@ pub fn to_json(found: &Found) -> Value {
         "problem_hash": found.case.problem_hash,
         "about": "undeformed body",
         "masses": name(found.masses),
-        "nodes": found.prepared.model.positions.len(),
-        "components": found.prepared.model.size(),
-        "held_components": found.prepared.model.constraints.count(0.0),
+        "nodes": found.simulation.model.positions.len(),
+        "components": found.simulation.model.size(),
+        "held_components": found.simulation.model.constraints.count(0.0),
         "rigid_motions": found.modes.rigid_motions,
         "modes": (1..).zip(&found.modes.modes).map(mode).collect::<Vec<_>>(),
         "converged": found.modes.converged(),

@@ -1,28 +1,12 @@
 //! What obstacles do to the body, as JSON and as text, and its distance from them.
 #![allow(non_snake_case)]
 
-use super::prepare::Prepared;
 use mtled::algebra::tensor::Vector3;
-use mtled::error::Error;
 use mtled::model::contact::{ContactPlan, ContactResult};
-use mtled::motion::state::State;
-use mtled::problem::Problem;
 use mtled_case::scene::Case;
 use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
 use serde_json::{Value, json};
-
-/// What each obstacle does at the end of a run; nothing without obstacles.
-pub fn contact_results(
-    problem: &Problem,
-    prepared: &Prepared,
-    state: &State,
-) -> Result<Vec<ContactResult>, Error> {
-    let (discretisation, plan) = (&prepared.discretisation, &prepared.model.contact);
-    let Some(surface) = prepared.contact_surface(problem)? else { return Ok(Vec::new()) };
-    let forces = state.contact_forces();
-    surface.results((plan, state.time), discretisation, &forces, &state.displacement)
-}
 
 /// `contacts` of `result.json`.
 pub fn contacts_json(case: &Case, results: &[ContactResult]) -> Vec<Value> {

@@ -1,21 +1,19 @@
 //! A run with all that its files are written from.
 
 use super::audit::{audit_json, audit_line};
-use super::contact::contact_results;
 use super::error_bar::{Estimated, error_bars};
 use super::output::{body_at_end, write_failed, write_outputs};
-use super::prepare::Prepared;
 use super::record::{Recorder, Recording};
 use super::result::{outcome_of, result_json, summary_text};
-use super::solve::{Solved, integrate_prepared};
+use super::solved::Solved;
 use crate::machine::cpu_seconds;
 use crate::picture::Body;
 use anyhow::Result;
-use mtled::audit::{Audit, audit};
+use mtled::Simulation;
+use mtled::audit::Audit;
 use mtled::error::Error;
 use mtled::model::contact::ContactResult;
 use mtled::motion::observe::Continue;
-use mtled::problem::Problem;
 use mtled_case::scene::Case;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -42,59 +40,52 @@ pub struct Finished {
 pub struct Failed {
     /// Why.
     pub error: Error,
-    /// The model.
-    pub prepared: Prepared,
+    /// The model, and the last state that it reached.
+    pub simulation: Simulation,
     /// Samples and frames up to the last good one.
     pub record: Recording,
 }
 
-/// Runs a prepared case as `mtled solve` does; `report(progress, step)` can end it.
+/// Runs a case as `mtled solve` does; `report(progress, step)` can end it.
 pub fn solve_recorded(
     case: &Case,
-    prepared: Prepared,
+    simulation: Simulation,
     with_bars: bool,
     report: &dyn Fn(f64, usize) -> Continue,
 ) -> Result<Finished, Box<Failed>> {
-    let failed = |error, prepared, record| Box::new(Failed { error, prepared, record });
-    let mut recorder = match Recorder::new(case, &prepared, case.outputs.frames) {
+    let failed = |error, simulation, record| Box::new(Failed { error, simulation, record });
+    // Coarser clouds have no state to go on from.
+    let with_bars = with_bars && !simulation.is_continued();
+    let mut recorder = match Recorder::new(case, &simulation, case.outputs.frames) {
         Ok(recorder) => recorder.with_progress(report),
-        Err(error) => return Err(failed(error, prepared, Recording::default())),
+        Err(error) => return Err(failed(error, simulation, Recording::default())),
     };
-    let solution = integrate_prepared(&case.problem, &prepared, &mut recorder);
+    let solution = Solved::of(simulation, &mut recorder);
     let mut record = recorder.finish();
     record.unstable_mode = match &solution {
-        Ok(solution) => solution.summary.instability.as_ref(),
-        Err(error) => error.instability(),
+        Ok(solved) => solved.summary.instability.as_ref(),
+        Err(ended) => ended.0.instability(),
     }
     .map(|found| found.mode.clone());
     let solved = match solution {
-        Ok(solution) => Solved::new(prepared, solution),
-        Err(error) => return Err(failed(error, prepared, record)),
+        Ok(solved) => solved,
+        Err(ended) => return Err(failed(ended.0, ended.1, record)),
     };
-    let contacts = match contact_results(&case.problem, &solved.prepared, &solved.state) {
-        Ok(contacts) => contacts,
-        Err(error) => return Err(failed(error, solved.prepared, record)),
+    let (contacts, audit, audit_seconds) = match compared(&solved) {
+        Ok(compared) => compared,
+        Err(error) => return Err(failed(error, solved.simulation, record)),
     };
-    let cpu = cpu_seconds();
-    let audit = match audited(&case.problem, &solved) {
-        Ok(audit) => audit,
-        Err(error) => return Err(failed(error, solved.prepared, record)),
-    };
-    let audit_seconds = cpu_seconds() - cpu;
-    // Coarser clouds have no state to go on from.
-    let with_bars = with_bars && solved.prepared.start.is_none();
     let bars = with_bars.then(|| error_bars(case, &solved, &record, !record.frames.is_empty()));
     Ok(Finished { solved, record, contacts, bars, audit, audit_seconds })
 }
 
-/// What was asked beside what was done, unless the user stopped the run before its end.
-fn audited(problem: &Problem, solved: &Solved) -> Result<Option<Audit>, Error> {
-    let Solved { prepared, state, summary, .. } = solved;
-    if summary.stopped {
-        Ok(None)
-    } else {
-        audit(problem, &prepared.discretisation, &prepared.model, state).map(Some)
-    }
+/// What obstacles do, the audit, unless the user stopped the run before its end, and the processor
+/// time of the audit \[s\].
+fn compared(solved: &Solved) -> Result<(Vec<ContactResult>, Option<Audit>, f64), Error> {
+    let contacts = solved.simulation.contact_results()?;
+    let cpu = cpu_seconds();
+    let audit = (!solved.summary.stopped).then(|| solved.simulation.audit()).transpose()?;
+    Ok((contacts, audit, cpu_seconds() - cpu))
 }
 
 impl Finished {
@@ -122,7 +113,7 @@ impl Finished {
     /// The body at the end with its fields, if the case has frames.
     pub fn body(&self, case: &Case) -> Result<Option<Body>> {
         let indicator = self.bars.as_ref().and_then(|bars| bars.as_ref().ok()?.indicator.as_ref());
-        body_at_end(case, &self.solved.prepared, &self.record, indicator)
+        body_at_end(case, &self.solved.simulation, &self.record, indicator)
     }
 
     /// Writes all files of the run to `dir` and returns the text of `result.json`.
@@ -146,6 +137,6 @@ impl Failed {
 
     /// Writes what the run had recorded to `dir` and returns the text of `result.json`.
     pub fn write(&self, case: &Case, dir: &Path) -> Result<String> {
-        write_failed(case, &self.prepared, &self.record, &self.error, dir)
+        write_failed(case, &self.simulation, &self.record, &self.error, dir)
     }
 }

@@ -99,6 +99,7 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
             "geometry"
         }
         Error::HasRun { .. }
+        | Error::StateOfAnother { .. }
         | Error::Diverged { .. }
         | Error::Inverted { .. }
         | Error::NotConverged { .. }

@@ -3,7 +3,7 @@
 use crate::display::expected_boxes;
 use crate::machine::{available_memory, peak_memory};
 use crate::run::record::Sample;
-use crate::run::solve::Solved;
+use crate::run::solved::Solved;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::{Discretisation, Footprint};
 use mtled::model::essential::Reaction;
@@ -88,7 +88,7 @@ fn refuse_beyond(footprint: Footprint, available: f64) -> Result<(), MemoryShort
 /// Peak memory, in total, per point and per node, beside the estimate.
 pub fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
     let peak = peak_memory()? as f64;
-    let (d, model) = (&solved.prepared.discretisation, &solved.prepared.model);
+    let (d, model) = (&solved.simulation.discretisation, &solved.simulation.model);
     let (nodes, points) = (model.positions.len() as f64, d.supports.len() as f64);
     let estimate = estimated_memory(case, d);
     Some(format!(
@@ -105,7 +105,7 @@ pub fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::prepare::prepare;
+    use mtled::Simulation;
     use mtled::problem::Problem;
     use mtled_case::scene::read_case;
 
@@ -127,7 +127,7 @@ mod tests {
         ] {
             let problem = bundled(name);
             let footprint = Footprint::of(&problem).unwrap();
-            let made = prepare(&problem).unwrap();
+            let made = Simulation::with_any_recipe(&problem).unwrap();
             let nodes = made.model.positions.len() as f64;
             let points = made.model.point_positions.len() as f64;
             let neighbours = made.discretisation.mean_support();

@@ -10,17 +10,15 @@ mod memory;
 mod numbers;
 mod output;
 mod page;
-mod prepare;
 mod probes;
 mod record;
 mod result;
 mod saved_state;
-mod solve;
+mod solved;
 mod stored_field;
 mod work;
 
 pub use audit::audit_doubts;
-pub use contact::contact_results;
 pub use error_bar::{
     CoarserCloud, ErrorBar, ErrorBars, Estimated, Indicator, NoErrorBar, error_bars,
 };
@@ -32,11 +30,10 @@ pub use numbers::numbers;
 pub use output::{
     PAGE_FILE, field_at_nodes, history, last_body_frame, vtu, write_modes, write_unloaded,
 };
-pub use prepare::{Prepared, prepare, prepare_to_run};
 pub use probes::{MassCentre, centres_of_mass};
 pub use record::{Recorder, Recording, Sample};
 pub use result::{result_json, summary_text};
 pub use saved_state::SavedState;
-pub use solve::{Integrated, Solved, integrate, integrate_prepared, solve_case};
+pub use solved::{Solved, integrate, solve_case, warnings};
 pub use stored_field::{FIELD_FILE, FieldError, SolvedCase, StoredField};
 pub use work::Work;

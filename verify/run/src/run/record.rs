@@ -1,9 +1,9 @@
 //! The observer that samples probes, reactions, energies and frames.
 
 use super::interrupt::interrupted;
-use super::prepare::Prepared;
 use super::probes::{MassCentre, centres_of_mass};
 use super::saved_state::SavedState;
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
 use mtled::error::Error;
@@ -144,8 +144,8 @@ pub struct Recorder<'a> {
 
 impl<'a> Recorder<'a> {
     /// Prepares the probes of a case; at most `frames` frames are recorded after the first.
-    pub fn new(case: &Case, prepared: &Prepared, frames: usize) -> Result<Recorder<'a>, Error> {
-        let discretisation = &prepared.discretisation;
+    pub fn new(case: &Case, simulation: &Simulation, frames: usize) -> Result<Recorder<'a>, Error> {
+        let discretisation = &simulation.discretisation;
         let centres = centres_of_mass(&case.problem, discretisation);
         let mut probes = Vec::new();
         let mut references = Vec::new();
@@ -167,14 +167,14 @@ impl<'a> Recorder<'a> {
                 }
             }
         }
-        let start = prepared.start.as_ref().map_or(0.0, |saved| saved.time);
+        let start = simulation.state.time;
         let left = |times: &[f64]| -> Vec<f64> {
             times.iter().copied().filter(|time| start < FULL * time).collect()
         };
         Ok(Recorder {
             probes,
-            components: prepared.model.components,
-            obstacles: prepared.model.contact.obstacles.len(),
+            components: simulation.model.components,
+            obstacles: simulation.model.contact.obstacles.len(),
             moment_about: case.outputs.moment_about,
             regions: (case.outputs.volumes)
                 .then(|| (discretisation.quadrature.regions.clone(), case.problem.regions.len())),

@@ -2,16 +2,16 @@
 #![allow(non_snake_case)]
 
 use anyhow::{Context, Result, ensure};
-use mtled::Model;
 use mtled::motion::state::State;
-use mtled::problem::{Motion, Problem};
+use mtled::problem::Motion;
+use mtled::{Model, Simulation};
 use mtled_checks::report::write_atomically;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// Version of the file.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What a file of a state holds; `S` is a state, or a reference to one.
 #[derive(Serialize, Deserialize)]
@@ -19,9 +19,11 @@ struct Saved<S> {
     mtled_state: u32,
     /// Version of the program.
     program: String,
-    /// Of nodes, masses and stiffnesses.
+    /// A hash of nodes, materials, masses and what else must be the same.
     body: String,
     time_s: f64,
+    /// Of the state.
+    digest: String,
     state: S,
 }
 
@@ -44,42 +46,45 @@ impl SavedState {
             program: env!("CARGO_PKG_VERSION").to_string(),
             body: self.body.clone(),
             time_s: self.state.time,
+            digest: digest(&self.state)?,
             state: &self.state,
         };
         Ok(serde_json::to_string(&saved)? + "\n")
     }
 
-    /// The state in a file, for a motion that goes on from it.
+    /// Has a motion go on from the state in a file.
     ///
     /// # Errors
     /// A file that cannot be read, of another body, or of a time at which nothing is left of the
     /// motion.
-    pub fn read(path: &Path, problem: &Problem, model: &Model) -> Result<State> {
+    pub fn read(path: &Path, simulation: &mut Simulation) -> Result<()> {
         let named = || path.display().to_string();
         let text = std::fs::read_to_string(path).with_context(named)?;
         let saved: Saved<State> = serde_json::from_str(&text)
             .with_context(|| format!("{}: this is not a state that mtled has written", named()))?;
         let known = saved.mtled_state;
         ensure!(known == VERSION, "{}: version {known} is not known; write it again", named());
-        let Motion::Dynamic { end, .. } = problem.motion else {
+        let Motion::Dynamic { end, .. } = simulation.problem.motion else {
             anyhow::bail!(
                 "{}: only a motion goes on from a state, and the case is static",
                 named()
             );
         };
-        let fits = saved.body == fingerprint(model) && saved.state.misfit(model).is_none();
+        let fits = saved.body == fingerprint(&simulation.model);
         ensure!(
             fits,
-            "{}: it is of another body: nodes, materials, masses, what conditions hold and the names of obstacles, in their order, must be those of the run that wrote it; loads and times may differ",
+            "{}: it is of another body: nodes, materials, masses, initial velocities, what conditions hold and the names of obstacles, in their order, must be those of the run that wrote it; loads and times may differ",
             named()
         );
         let time = saved.time_s;
+        let kept = time == saved.state.time && saved.digest == digest(&saved.state)?;
+        ensure!(kept, "{}: its numbers are not those that mtled has written", named());
         ensure!(
-            time == saved.state.time && time < end,
+            time < end,
             "{}: it is at {time} s, and time.end = {end} s leaves nothing of the motion",
             named()
         );
-        Ok(saved.state)
+        simulation.continue_from(saved.state).with_context(named)
     }
 }
 
@@ -98,12 +103,22 @@ pub fn write_states(states: &[SavedState], dir: &Path) -> Result<()> {
     Ok(())
 }
 
+/// A hash of all numbers of a state.
+fn digest(state: &State) -> Result<String> {
+    Ok(hex(Sha256::new().chain_update(serde_json::to_string(state)?)))
+}
+
+fn hex(hash: Sha256) -> String {
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// A hash of what a state belongs to, with the obstacles that it numbers.
 fn fingerprint(model: &Model) -> String {
     let mut hash = Sha256::new();
     let mut add = |number: f64| hash.update(number.to_bits().to_le_bytes());
     model.positions.iter().flat_map(|X| X.iter()).for_each(|number| add(*number));
-    model.inertia.iter().chain(&model.stiffness).for_each(|number| add(*number));
+    let of_nodes = model.inertia.iter().chain(&model.stiffness).chain(&model.initial_velocity);
+    of_nodes.for_each(|number| add(*number));
     for block in &model.blocks {
         block.frames.iter().flatten().flat_map(|entry| entry.0).for_each(&mut add);
     }
@@ -114,5 +129,5 @@ fn fingerprint(model: &Model) -> String {
     hash.update(format!("{:?}", model.constraints.held()).as_bytes());
     let obstacles = model.contact.obstacles.iter().map(|obstacle| &obstacle.name);
     hash.update(format!("{:?}", obstacles.collect::<Vec<_>>()).as_bytes());
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(hash)
 }

@@ -1,8 +1,8 @@
 //! The displacement field of a run in a file: what evaluates it anywhere, beside the case.
 #![allow(non_snake_case)]
 
-use super::prepare::Prepared;
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled_case::scene::{Case, Override};
 use mtled_checks::escape::printable_json;
@@ -86,8 +86,8 @@ fn short(hash: &str) -> &str {
 
 impl StoredField {
     /// The field with nodal parameters `u` \[component of node\] \[m\].
-    pub fn new(case: &Case, prepared: &Prepared, u: &[f64], stopped: bool) -> StoredField {
-        let approximation = &prepared.discretisation.approximation;
+    pub fn new(case: &Case, simulation: &Simulation, u: &[f64], stopped: bool) -> StoredField {
+        let approximation = &simulation.discretisation.approximation;
         let file = Path::new(case.file());
         let file = if file.is_file() {
             std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf())

@@ -1,6 +1,6 @@
 //! Work of a run in counts that do not depend on the machine.
 
-use super::solve::Solved;
+use super::solved::Solved;
 use serde::{Deserialize, Serialize};
 
 /// Counts of a run.
@@ -25,17 +25,17 @@ pub struct Work {
 impl Work {
     /// The counts of a solved problem.
     pub fn of(solved: &Solved) -> Work {
-        let (summary, prepared) = (&solved.summary, &solved.prepared);
-        let supports = &prepared.discretisation.supports;
+        let (summary, simulation) = (&solved.summary, &solved.simulation);
+        let supports = &simulation.discretisation.supports;
         let evaluations = summary.force_evaluations;
         Work {
             steps: summary.steps,
             force_evaluations: evaluations,
             lanczos_evaluations: summary.lanczos_evaluations,
-            correction_iterations: prepared.discretisation.correction.map_or(0, |c| c.iterations),
+            correction_iterations: simulation.discretisation.correction.map_or(0, |c| c.iterations),
             point_evaluations: evaluations * supports.len(),
             neighbour_visits: evaluations * supports.nodes.len(),
-            bytes_streamed: evaluations * prepared.model.bytes_per_step(),
+            bytes_streamed: evaluations * simulation.model.bytes_per_step(),
         }
     }
 }

@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use clap::ValueEnum;
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
 use mtled::model::zero_energy::{ZeroEnergyModes, zero_energy_modes};
@@ -10,7 +11,6 @@ use mtled::motion::internal_force::Workspace;
 use mtled::motion::newton::{InfSup, inf_sup};
 use mtled_case::scene::Case;
 use mtled_run::machine::peak_memory;
-use mtled_run::run::Prepared;
 use rayon::prelude::*;
 
 /// Bodies with more nodes than this are searched for zero-energy modes only on request.
@@ -37,7 +37,7 @@ pub struct Place {
 /// What is known about a case before it is run.
 pub struct Inspection<'a> {
     pub case: &'a Case,
-    pub prepared: &'a Prepared,
+    pub simulation: &'a Simulation,
     /// Smallest and largest number of nodes per support.
     pub support: (usize, usize),
     /// Largest condition numbers of the moment matrices, the largest first \[–\].
@@ -62,10 +62,10 @@ pub struct Inspection<'a> {
 /// Examines a case without running it.
 pub fn examine<'a>(
     case: &'a Case,
-    prepared: &'a Prepared,
+    simulation: &'a Simulation,
     search: Search,
 ) -> Result<Inspection<'a>, Error> {
-    let Prepared { discretisation, model, .. } = prepared;
+    let Simulation { discretisation, model, .. } = simulation;
     let sizes = || (0..discretisation.supports.len()).map(|q| discretisation.supports.row(q).len());
     let critical =
         critical_time_step(model, &vec![0.0; model.size()], 0.0, None, &mut Workspace::new(model));
@@ -82,13 +82,13 @@ pub fn examine<'a>(
     };
     Ok(Inspection {
         case,
-        prepared,
+        simulation,
         support: (sizes().min().unwrap_or(0), sizes().max().unwrap_or(0)),
-        conditions: worst_conditions(prepared),
+        conditions: worst_conditions(simulation),
         largest_condition: discretisation.approximation.largest_condition(),
         masses: ends(&model.lumped_mass, &model.positions),
         spacings: ends(&discretisation.cloud.spacing, &model.positions),
-        weakest: weakest(prepared, &critical),
+        weakest: weakest(simulation, &critical),
         critical,
         peak,
         modes,
@@ -96,8 +96,8 @@ pub fn examine<'a>(
     })
 }
 
-fn worst_conditions(prepared: &Prepared) -> Vec<Place> {
-    let discretisation = &prepared.discretisation;
+fn worst_conditions(simulation: &Simulation) -> Vec<Place> {
+    let discretisation = &simulation.discretisation;
     let positions = &discretisation.quadrature.positions;
     let place = |(index, X): (usize, &Vector3)| {
         let support = discretisation.approximation.evaluate(X).ok()?;
@@ -120,15 +120,15 @@ fn ends(values: &[f64], positions: &[Vector3]) -> [Place; 2] {
 }
 
 /// The mode is M^(1/2) u, whose squares are fractions of the kinetic energy.
-fn weakest(prepared: &Prepared, critical: &CriticalStep) -> Place {
-    let d = prepared.model.components;
+fn weakest(simulation: &Simulation, critical: &CriticalStep) -> Place {
+    let d = simulation.model.components;
     let fractions: Vec<f64> =
         critical.mode.chunks_exact(d).map(|part| part.iter().map(|x| x * x).sum()).collect();
     let index =
         (0..fractions.len()).max_by(|&a, &b| fractions[a].total_cmp(&fractions[b])).unwrap_or(0);
     Place {
-        value: prepared.discretisation.cloud.spacing[index],
+        value: simulation.discretisation.cloud.spacing[index],
         index,
-        position: prepared.model.positions[index],
+        position: simulation.model.positions[index],
     }
 }

@@ -8,7 +8,8 @@ use super::load::{SetArgs, located};
 use super::streams::{print_json, print_text};
 use clap::Args;
 use inspection::{Search, examine};
-use mtled_run::run::{load, prepare};
+use mtled::Simulation;
+use mtled_run::run::load;
 use std::path::PathBuf;
 use text::{advice, to_json, to_text};
 
@@ -26,9 +27,10 @@ pub struct InspectArgs {
 
 pub fn inspect(arguments: &InspectArgs, common: &Common) -> anyhow::Result<u8> {
     let case = load(&arguments.case, &arguments.set.overrides)?;
-    let prepared = prepare(&case.problem).map_err(|error| located(&case, &error))?;
+    let simulation =
+        Simulation::with_any_recipe(&case.problem).map_err(|error| located(&case, &error))?;
     let inspection =
-        examine(&case, &prepared, arguments.modes).map_err(|error| located(&case, &error))?;
+        examine(&case, &simulation, arguments.modes).map_err(|error| located(&case, &error))?;
     match common.format {
         Format::Json => print_json(&format!("{}\n", to_json(&inspection)))?,
         _ if common.quiet => print_text(&(advice(&inspection).join("\n") + "\n"))?,

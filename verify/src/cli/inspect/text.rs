@@ -3,12 +3,12 @@
 use super::inspection::{Inspection, LARGEST_SEARCH, Place};
 use mtled::algebra::tensor::{Vector3, bounding_box};
 use mtled::discretisation::Footprint;
-use mtled::discretisation::Warning;
 use mtled::model::zero_energy::{CapturedMotion, ZERO_ENERGY_FRACTION, ZeroEnergyModes};
 use mtled::motion::newton::InfSup;
-use mtled::problem::{Dimension, Motion};
+use mtled::problem::Dimension;
 use mtled_checks::escape::printable;
 use mtled_checks::report::four_digits;
+use mtled_run::run::warnings;
 use serde_json::{Value, json};
 
 /// A support is called poor above this fraction of the largest accepted condition number \[–\].
@@ -35,8 +35,8 @@ pub fn to_text(inspection: &Inspection) -> String {
 }
 
 fn discretisation_text(inspection: &Inspection) -> Vec<String> {
-    let Inspection { case, prepared, .. } = inspection;
-    let (discretisation, model) = (&prepared.discretisation, &prepared.model);
+    let Inspection { case, simulation, .. } = inspection;
+    let (discretisation, model) = (&simulation.discretisation, &simulation.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let (few, many) = inspection.support;
     let (lower, upper) = bounding_box(&model.positions);
@@ -88,9 +88,9 @@ fn discretisation_text(inspection: &Inspection) -> Vec<String> {
 
 /// The critical time step and the memory that a step reads.
 fn step_text(inspection: &Inspection) -> [String; 2] {
-    let model = &inspection.prepared.model;
+    let model = &inspection.simulation.model;
     let bytes = model.bytes_per_step() as f64;
-    let entries = inspection.prepared.discretisation.supports.nodes.len();
+    let entries = inspection.simulation.discretisation.supports.nodes.len();
     let single = inspection.case.problem.recipe.gradient_storage.is_single(entries);
     [
         format!(
@@ -114,12 +114,12 @@ fn step_text(inspection: &Inspection) -> [String; 2] {
 
 /// Memory of set-up and run without what is recorded \[bytes\].
 fn estimate(inspection: &Inspection) -> f64 {
-    Footprint::counted(&inspection.case.problem, &inspection.prepared.discretisation).bytes
+    Footprint::counted(&inspection.case.problem, &inspection.simulation.discretisation).bytes
 }
 
 /// Peak of the memory during the set-up, and its estimate.
 fn memory_text(inspection: &Inspection) -> Option<String> {
-    let (peak, model) = (inspection.peak? as f64, &inspection.prepared.model);
+    let (peak, model) = (inspection.peak? as f64, &inspection.simulation.model);
     let (nodes, points) = (model.positions.len() as f64, model.point_positions.len() as f64);
     let estimate = estimate(inspection);
     Some(format!(
@@ -161,32 +161,17 @@ fn modes_text(modes: Option<&ZeroEnergyModes>) -> Vec<String> {
     lines
 }
 
-/// Doubts about the discretisation and about the problem.
-fn warnings(inspection: &Inspection) -> impl Iterator<Item = Warning> {
-    let prepared = inspection.prepared;
-    prepared.discretisation.warnings().into_iter().chain(prepared.model.warnings.clone())
-}
-
 /// What the user should change, in sentences.
 pub fn advice(inspection: &Inspection) -> Vec<String> {
     let problem = &inspection.case.problem;
     let mut advice: Vec<String> = Vec::new();
-    if let Some(modes) = &inspection.modes {
-        if modes.at_least() > 0 {
-            advice.push(
-                "There are motions without strain energy, which grow without any warning: use smaller cells \
-                 where they are largest. discretisation.grid.cells_per_spacing = 1.26 without cell and \
-                 refine gives two points per node in 3-D, also where the nodes are refined."
-                    .into(),
-            );
-        }
-        if modes.rigid > 0 && !matches!(problem.motion, Motion::Dynamic { .. }) {
-            advice.push(format!(
-                "{} rigid motions are not constrained: a static solution exists only if the loads balance; \
-                 constrain the body, or use time.method = \"dynamic\".",
-                modes.rigid
-            ));
-        }
+    if inspection.modes.as_ref().is_some_and(|modes| modes.at_least() > 0) {
+        advice.push(
+            "There are motions without strain energy, which grow without any warning: use smaller cells \
+             where they are largest. discretisation.grid.cells_per_spacing = 1.26 without cell and \
+             refine gives two points per node in 3-D, also where the nodes are refined."
+                .into(),
+        );
     }
     if inspection.inf_sup.is_some_and(|found| found.value < STIFF) {
         advice.push(
@@ -196,10 +181,11 @@ pub fn advice(inspection: &Inspection) -> Vec<String> {
                 .into(),
         );
     }
-    advice.extend(inspection.case.notes.iter().map(|note| format!("{note}.")));
-    advice.extend(warnings(inspection).map(|warning| {
-        let text = warning.to_string();
-        text[..1].to_uppercase() + &text[1..] + "."
+    let warnings = warnings(inspection.case, inspection.simulation);
+    advice.extend(warnings.iter().map(|warning| {
+        let mut letters = warning.chars();
+        let first = letters.next().into_iter().flat_map(char::to_uppercase);
+        first.chain(letters).chain(['.']).collect::<String>()
     }));
     let worst = inspection.conditions.first();
     if let Some(place) = worst.filter(|place| place.value > POOR * inspection.largest_condition) {
@@ -226,8 +212,8 @@ pub fn advice(inspection: &Inspection) -> Vec<String> {
 }
 
 pub fn to_json(inspection: &Inspection) -> Value {
-    let Inspection { case, prepared, .. } = inspection;
-    let (discretisation, model) = (&prepared.discretisation, &prepared.model);
+    let Inspection { case, simulation, .. } = inspection;
+    let (discretisation, model) = (&simulation.discretisation, &simulation.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());
     let [smallest, largest] = &inspection.spacings;
     let (lower, upper) = bounding_box(&model.positions);
@@ -277,9 +263,7 @@ pub fn to_json(inspection: &Inspection) -> Value {
             "products": found.products,
         })),
         "zero_energy_modes": inspection.modes.as_ref().map(modes_json),
-        "warnings": (inspection.case.notes.iter().cloned())
-            .chain(warnings(inspection).map(|warning| warning.to_string()))
-            .collect::<Vec<_>>(),
+        "warnings": warnings(inspection.case, inspection.simulation),
         "advice": advice(inspection),
     })
 }

@@ -1,8 +1,9 @@
 //! Label maps made for the occasion: bodies that rest in a mould of themselves.
 #![allow(non_snake_case)]
 
+use mtled::Simulation;
 use mtled_case::scene::read_case;
-use mtled_run::run::{contact_results, prepare, solve_case};
+use mtled_run::run::solve_case;
 use std::path::Path;
 
 /// Writes a label map of `SIZE`³ voxels of 2 mm and a case in which the body of all its labels
@@ -44,12 +45,12 @@ fn weight_and_force(label: impl Fn([f64; 3]) -> u8) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
     let case = read_case(&write_case(folder.path(), label)).unwrap();
     let (solved, _) = solve_case(&case).unwrap();
-    let results = contact_results(&case.problem, &solved.prepared, &solved.state).unwrap();
+    let results = solved.simulation.contact_results().unwrap();
     assert!(results[0].nodes > 20 && results[0].area > 0.0 && results[0].largest_pressure > 0.0);
     assert!(results[0].force.xy().norm() < 1e-3 * results[0].force.z);
     // The mould is a millimetre away, and nodes are 4 mm apart.
     assert!((0.0..0.6e-3).contains(&results[0].depth), "{}", results[0].depth);
-    (3.0 * solved.prepared.model.lumped_mass.iter().sum::<f64>(), results[0].force.z)
+    (3.0 * solved.simulation.model.lumped_mass.iter().sum::<f64>(), results[0].force.z)
 }
 
 fn carries_its_weight(label: impl Fn([f64; 3]) -> u8) {
@@ -87,7 +88,7 @@ fn a_voxel_apart_from_the_body_is_refused_with_its_place() {
         _ => u8::from(distance(at, [17.0, 16.0, 15.0]) < 8.0),
     };
     let case = read_case(&write_case(folder.path(), body)).unwrap();
-    let message = prepare(&case.problem).unwrap_err().to_string();
+    let message = Simulation::with_any_recipe(&case.problem).unwrap_err().to_string();
     assert!(message.contains("support") && message.contains("m)"), "{message}");
 }
 

@@ -2,12 +2,13 @@
 #![allow(non_snake_case)]
 
 use super::image::{Kind, Place, SIZE, around, nifti, voxels};
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled_case::scene::parse_case;
 use mtled_io::files::image::{
     Image, ImageFormat, Interpolation, field_bytes, image_bytes, read_image,
 };
-use mtled_run::run::{StoredField, prepare};
+use mtled_run::run::StoredField;
 use mtled_run::warp::{
     DisplacementField, TOLERANCE, deform, forward_field, nodes_outside, source_of,
 };
@@ -25,10 +26,10 @@ const MIDDLE: Vector3 = Vector3::new(0.05, 0.05, 0.05);
 /// The block with this displacement \[m\] at its nodes.
 fn field(u: impl Fn(&Vector3) -> Vector3, decay: Option<f64>) -> DisplacementField {
     let case = parse_case(BLOCK, "block.toml", Path::new(".")).unwrap();
-    let prepared = prepare(&case.problem).unwrap();
-    let nodes = &prepared.discretisation.cloud.positions;
+    let simulation = Simulation::with_any_recipe(&case.problem).unwrap();
+    let nodes = &simulation.discretisation.cloud.positions;
     let parameters: Vec<f64> = nodes.iter().flat_map(|X| <[f64; 3]>::from(u(X))).collect();
-    let stored = StoredField::new(&case, &prepared, &parameters, false);
+    let stored = StoredField::new(&case, &simulation, &parameters, false);
     DisplacementField::new(&stored, &case.problem, decay).unwrap()
 }
 

@@ -103,6 +103,12 @@ fn a_motion_that_goes_on_from_a_state_ends_with_the_same_bits() {
         assert_eq!(solve(path, &["--from", &state, "--out", &run]).0, 0);
         let (whole, part) = (history(path, "whole"), history(path, &run));
         assert_eq!(whole.last(), part.last());
+        // It begins with the state that it goes on from, not with a body at rest.
+        let at = |rows: &[String], row: usize| {
+            rows[row].split(',').map(String::from).collect::<Vec<_>>()
+        };
+        let jacobian = at(&part, 0).iter().position(|name| name == "smallest_jacobian").unwrap();
+        assert_ne!(at(&part, 1)[jacobian], "1", "{}", part[1]);
         assert!(file("whole", "displacement_field.json") == file(&run, "displacement_field.json"));
     }
     // The second state of the run from the first one is that of the whole run.
@@ -130,10 +136,16 @@ fn a_state_that_does_not_belong_to_the_case_is_refused() {
     refused(&with("prescribe.end.displacement={ x = 0.0, y = 0.0 }"), "it is of another body");
     refused(&with("discretisation.enforcement=direct"), "it is of another body");
     refused(&with("obstacle=[]"), "it is of another body");
+    refused(&with("initial_velocity[0].velocity=[0.0, 0.0, 0.3]"), "initial velocities");
     refused(&with("obstacle.floor.name=ground"), "the names of obstacles");
     let ended = [&with("time.end=0.02")[..], &["--set", "output.states=[0.02]"]].concat();
     refused(&ended, "leaves nothing of the motion");
     refused(&["--from", "whole/result.json"], "this is not a state");
+    let text = std::fs::read_to_string(path.join("whole/state_1.json")).unwrap();
+    let mut edited: serde_json::Value = serde_json::from_str(&text).unwrap();
+    edited["state"]["velocity"][5] = 1.25.into();
+    std::fs::write(path.join("edited.json"), edited.to_string()).unwrap();
+    refused(&["--from", "edited.json"], "its numbers are not those that mtled has written");
     refused(&["--from", "whole/nothing.json"], "nothing.json");
     let (code, text) = solve(path, &[&state[..], &["--out", "whole"]].concat());
     assert_eq!(code, 2, "{text}");

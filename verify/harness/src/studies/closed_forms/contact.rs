@@ -6,6 +6,7 @@ use super::results::Results;
 use crate::exact::hertz;
 use crate::studies::workbench::Workbench;
 use anyhow::{Context, Result};
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Extent, Selector, Shape};
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
@@ -15,7 +16,7 @@ use mtled::problem::{
     Amplitude, BodyForce, Cloud, Dimension, EssentialCondition, Field, Gradients, Motion, Newton,
     Obstacle, ObstacleSide, Prescribed, Problem, Recipe, Refinement, Relaxation, defaults,
 };
-use mtled_run::run::{Solved, contact_results, integrate, prepare};
+use mtled_run::run::{Solved, integrate};
 use mtled_run::specimens::simple::{free_body, recipe, tissue};
 use std::f64::consts::PI;
 
@@ -68,18 +69,18 @@ struct Rest {
 
 impl Rest {
     fn of(problem: &Problem) -> Result<Rest> {
-        let solved = integrate(problem, prepare(problem)?, &mut Unobserved)?;
-        let contact = contact_results(problem, &solved.prepared, &solved.state)?.into_iter().next();
+        let solved = integrate(Simulation::with_any_recipe(problem)?, &mut Unobserved)?;
+        let contact = solved.simulation.contact_results()?.into_iter().next();
         Ok(Rest { contact: contact.context("there is no obstacle")?, solved })
     }
 
     fn moved(&self, X: Vector3) -> Result<Vector3> {
-        let rows = self.solved.prepared.discretisation.rows_at(&[X])?;
-        Ok(rows.interpolate(0, &self.solved.state.displacement, 3))
+        let rows = self.solved.simulation.discretisation.rows_at(&[X])?;
+        Ok(rows.interpolate(0, &self.solved.simulation.state.displacement, 3))
     }
 
     fn weight(&self, gravity: f64) -> f64 {
-        gravity * self.solved.prepared.model.lumped_mass.iter().sum::<f64>()
+        gravity * self.solved.simulation.model.lumped_mass.iter().sum::<f64>()
     }
 }
 

@@ -4,6 +4,7 @@
 use crate::exact::inclusion::Inclusion;
 use crate::studies::workbench::Workbench;
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::{Selector, Shape};
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
@@ -13,7 +14,7 @@ use mtled::problem::{
     Prescribed, Problem, Recipe, Region,
 };
 use mtled_checks::study::{Cell, Study, Table, number, text};
-use mtled_run::run::{integrate, prepare};
+use mtled_run::run::integrate;
 use mtled_run::specimens::simple::free_body;
 
 /// Edge of the cube \[m\]; the radius of the ball is a quarter of it.
@@ -139,17 +140,17 @@ fn errors(
     spacings: usize,
 ) -> Result<Errors> {
     let problem = problem(bench, ball, borders, spacings)?;
-    let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
+    let solved = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
     let at = |i: usize| (i as f64 + 0.5) * EDGE / PLACES as f64;
     let place =
         |i: usize| Vector3::new(at(i % PLACES), at(i / PLACES % PLACES), at(i / (PLACES * PLACES)));
     let places: Vec<Vector3> = (0..PLACES.pow(3)).map(place).collect();
-    let rows = solved.prepared.discretisation.rows_at(&places)?;
+    let rows = solved.simulation.discretisation.rows_at(&places)?;
     let (mut inside, mut outside) = (Sums::default(), Sums::default());
     for (i, X) in places.iter().enumerate() {
         let offset = X - centre();
         let exact = ball.displacement(&offset);
-        let error = rows.interpolate(i, &solved.state.displacement, 3) - exact;
+        let error = rows.interpolate(i, &solved.simulation.state.displacement, 3) - exact;
         let sums = if offset.norm() <= ball.radius { &mut inside } else { &mut outside };
         sums.error += error.norm_squared();
         sums.exact += exact.norm_squared();

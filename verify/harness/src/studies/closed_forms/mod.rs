@@ -15,6 +15,7 @@ use crate::studies::closed_forms::motion::{swing, wave};
 use crate::studies::closed_forms::results::Results;
 use crate::studies::workbench::Workbench;
 use anyhow::{Context, Result};
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::{Extent, Selector};
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
@@ -26,7 +27,7 @@ use mtled::problem::{
 use mtled_case::scene::Case;
 use mtled_checks::measure::larger;
 use mtled_checks::study::{Study, Table, number, text};
-use mtled_run::run::{integrate, prepare, solve_case};
+use mtled_run::run::{integrate, solve_case};
 use mtled_run::specimens::simple::relaxation;
 use mtled_run::specimens::spacing::spacing_of;
 
@@ -100,8 +101,8 @@ fn stretch(case: &Case, study: &mut Study, results: &mut Results) -> Result<()> 
     );
     study.notes.push(format!(
         "Pulled bar: {} nodes, {} quadrature points, {} steps.",
-        solved.prepared.discretisation.cloud.positions.len(),
-        solved.prepared.discretisation.supports.len(),
+        solved.simulation.discretisation.cloud.positions.len(),
+        solved.simulation.discretisation.supports.len(),
         solved.summary.steps
     ));
     Ok(())
@@ -191,13 +192,13 @@ fn stress_inside(case: &Case, prescribed: Prescribed, motion: Motion) -> Result<
         release: None,
     };
     let problem = Problem { conditions: vec![boundary], motion, ..case.problem.clone() };
-    let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
-    let discretisation = &solved.prepared.discretisation;
+    let solved = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
+    let discretisation = &solved.simulation.discretisation;
     let law = problem.regions[0].material.law;
     let (mut mean, mut volume, mut largest) = (Matrix3::zeros(), 0.0, 0.0);
     for (point, weight) in discretisation.quadrature.weights.iter().enumerate() {
         let rows = &discretisation.supports;
-        let gradient = rows.deformation_gradient(point, &solved.state.displacement, 3);
+        let gradient = rows.deformation_gradient(point, &solved.simulation.state.displacement, 3);
         let stress = law.first_piola_kirchhoff(&gradient);
         mean += stress * *weight;
         volume += weight;
@@ -241,11 +242,12 @@ fn column(case: &Case, results: &mut Results) -> Result<()> {
     let (density, gravity) = (1000.0, 0.1);
     let problem = column_problem(&case.problem, constants, density, gravity);
     let (min, max) = problem.body.bounding_box().context("the column has no bounds")?;
-    let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
+    let solved = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
     let exact = bar::ConfinedColumn { height: max.x - min.x, density, gravity, constants };
-    let discretisation = &solved.prepared.discretisation;
+    let discretisation = &solved.simulation.discretisation;
     let top = Vector3::new(max.x, 0.5 * (min.y + max.y), 0.5 * (min.z + max.z));
-    let computed = discretisation.rows_at(&[top])?.interpolate(0, &solved.state.displacement, 3).x;
+    let computed =
+        discretisation.rows_at(&[top])?.interpolate(0, &solved.simulation.state.displacement, 3).x;
     let source = "Timoshenko and Goodier, column with lateral strain zero";
     results.value(
         ("column/top", "confined column, sag of its top", "m"),

@@ -4,13 +4,14 @@ use crate::exact::bar::ConfinedColumn;
 use crate::exact::beam::Beam;
 use crate::studies::closed_forms::results::{BOUND, Results};
 use anyhow::{Context, Result};
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
 use mtled::geometry::{Selector, Shape};
 use mtled::material::{ElasticConstants, Law, LinearElastic, Material};
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::{Amplitude, BackgroundGrid, BodyForce, Motion, Problem, StepControl};
-use mtled_run::run::{integrate, prepare};
+use mtled_run::run::integrate;
 use mtled_run::specimens::simple::{PLANE, bonded_face, free_body, recipe};
 
 /// A fifth below the stability limit, without damping.
@@ -46,10 +47,10 @@ pub fn wave(
     let period = 4.0 * exact.height / exact.wave_speed();
     problem.motion = Motion::Dynamic { end: period, step: UNDAMPED, damping: 0.0 };
     problem.loads.body_forces[0].amplitude = Amplitude::Constant;
-    let prepared = prepare(&problem)?;
-    let row = prepared.discretisation.rows_at(&[top])?;
+    let simulation = Simulation::with_any_recipe(&problem)?;
+    let row = simulation.discretisation.rows_at(&[top])?;
     let mut history = History { row, samples: Vec::new() };
-    integrate(&problem, prepared, &mut history)?;
+    integrate(simulation, &mut history)?;
     let (mut error, mut size) = (0.0, 0.0);
     for (t, u) in &history.samples {
         let exact = exact.top_after_release(*t);
@@ -108,11 +109,11 @@ pub fn swing(results: &mut Results) -> Result<()> {
     }];
     let end = 0.55 / beam.cantilever_frequency();
     problem.motion = Motion::Dynamic { end, step: UNDAMPED, damping: 0.0 };
-    let prepared = prepare(&problem)?;
-    let positions = &prepared.model.positions;
+    let simulation = Simulation::with_any_recipe(&problem)?;
+    let positions = &simulation.model.positions;
     let shape = positions.iter().map(|at| beam.cantilever_mode(at.x)).collect();
     let mut mode = Mode { shape, samples: Vec::new() };
-    integrate(&problem, prepared, &mut mode)?;
+    integrate(simulation, &mut mode)?;
     let turn = mode.samples.windows(2).skip(2).find(|pair| pair[0].1 < 0.0 && pair[1].1 >= 0.0);
     let [(t0, p0), (t1, p1)] = turn.context("the velocity of the beam does not change its sign")?
     else {

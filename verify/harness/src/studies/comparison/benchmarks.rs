@@ -56,8 +56,8 @@ fn tip(
         rows.push(vec![
             Cell::Text(name.into()),
             Cell::Number(spacing),
-            Cell::Number(solved.prepared.discretisation.cloud.positions.len() as f64),
-            Cell::Number(solved.prepared.discretisation.supports.len() as f64),
+            Cell::Number(solved.simulation.discretisation.cloud.positions.len() as f64),
+            Cell::Number(solved.simulation.discretisation.supports.len() as f64),
             Cell::Number(solved.summary.steps as f64),
             Cell::Number(computed),
             Cell::Number(published.value),

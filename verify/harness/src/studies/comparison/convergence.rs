@@ -137,7 +137,7 @@ fn level(series: &RefinementSeries, case: &Case) -> Result<Level> {
         _ => last.displacements[0][0].y,
     };
     let spacing = spacing_of(&case.problem)?;
-    let discretisation = &solved.prepared.discretisation;
+    let discretisation = &solved.simulation.discretisation;
     Ok(Level {
         spacing,
         cells_per_spacing: spacing / case.problem.recipe.grid.cell,

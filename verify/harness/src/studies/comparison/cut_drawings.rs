@@ -40,7 +40,8 @@ pub fn cut_panels(case: &Case, solved: &Solved) -> Result<Option<Panels>> {
         return Ok(None);
     };
     let Some((plane, through)) = Plane::of(&case.problem) else { return Ok(None) };
-    let stored = StoredField::new(case, &solved.prepared, &solved.state.displacement, false);
+    let stored =
+        StoredField::new(case, &solved.simulation, &solved.simulation.state.displacement, false);
     let field = DisplacementField::new(&stored, &case.problem, None)?;
     let reach = case.problem.obstacles.first().map_or(field.largest_displacement, |o| o.offset);
     let cut = Cut::new(&field, &case.problem.body, plane, reach, labels.voxel());
@@ -61,7 +62,7 @@ pub fn cut_panels(case: &Case, solved: &Solved) -> Result<Option<Panels>> {
              of the head on the right. After: each point of the plane has the label of the place \
              where it came from; dashed: outlines before. Outside: the skull; {last}.",
             case.name,
-            solved.prepared.discretisation.cloud.positions.len(),
+            solved.simulation.discretisation.cloud.positions.len(),
         ),
         panels: [shown.before(), shown.after(), shown.displacement()].map(Figure::Drawing).to_vec(),
     }))

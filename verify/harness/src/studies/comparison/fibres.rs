@@ -50,7 +50,7 @@ pub fn fibres(bench: &Workbench, study: &mut Study) -> Result<()> {
         for part in bench.pick(vec![1.0], vec![1.0, 2.0 / 3.0]) {
             let spacing = part * spacing_of(&case.problem)?;
             let (solved, record) = solve_case(&respaced(&case, spacing)?)?;
-            let nodes = solved.prepared.discretisation.cloud.positions.len();
+            let nodes = solved.simulation.discretisation.cloud.positions.len();
             compare(body, &case, (spacing, nodes), &record, &reference, (study, &mut rows))?;
         }
     }

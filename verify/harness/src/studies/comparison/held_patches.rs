@@ -4,13 +4,14 @@
 
 use crate::studies::workbench::Workbench;
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
 use mtled::motion::internal_force::strain_energy;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{Amplitude, Cloud, Dimension, EssentialCondition, Problem, Recipe};
 use mtled_checks::study::{Cell, Study, Table, number, text};
-use mtled_run::run::{integrate, prepare};
+use mtled_run::run::integrate;
 use mtled_run::specimens::simple::{bonded_face, free_body, relaxation, tissue};
 use rayon::prelude::*;
 
@@ -95,9 +96,9 @@ fn problem(patch: &Patch, spacing: f64, poisson_ratio: f64, seed: u64) -> Result
 /// Strain energy \[J\].
 fn energy(patch: &Patch, spacing: f64, poisson_ratio: f64, seed: u64) -> Result<f64> {
     let problem = problem(patch, spacing, poisson_ratio, seed)?;
-    let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
-    let model = &solved.prepared.model;
-    Ok(strain_energy(model, &solved.state.displacement))
+    let solved = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
+    let model = &solved.simulation.model;
+    Ok(strain_energy(model, &solved.simulation.state.displacement))
 }
 
 /// Energies of several clouds against one another and against that of a finer cloud.

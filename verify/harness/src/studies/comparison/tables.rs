@@ -10,7 +10,7 @@ pub fn differences_table(compared: &[Compared]) -> Table {
     for case in compared {
         for group in Group::ALL {
             let Some(Difference { rms, max, bar }) = case.of(group) else { continue };
-            let nodes = case.solved.prepared.discretisation.cloud.positions.len();
+            let nodes = case.solved.simulation.discretisation.cloud.positions.len();
             rows.push(vec![
                 Cell::Text(case.case.name.clone()),
                 Cell::Number(nodes as f64),

@@ -4,6 +4,7 @@
 use crate::studies::hard::bodies::{SMOOTH, hard_recipe, rubber, turn};
 use crate::studies::workbench::{Workbench, exact};
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
 use mtled::discretisation::Discretisation;
 use mtled::discretisation::mls::Approximation;
@@ -13,7 +14,7 @@ use mtled::motion::observe::Unobserved;
 use mtled::problem::{Dimension, EssentialCondition, Field, Prescribed, Problem};
 use mtled_checks::measure::relative_max;
 use mtled_checks::study::{Cell, Study, Table, number, text};
-use mtled_run::run::{Prepared, integrate, prepare};
+use mtled_run::run::integrate;
 use mtled_run::specimens::simple::{SIZE, free_body, relaxation};
 
 /// A change of unit and a translation: X → scale · X + offset.
@@ -33,7 +34,7 @@ pub fn invariance(bench: &Workbench, study: &mut Study) -> Result<()> {
     let home = Frame { scale: 1.0, offset: Vector3::zeros() };
     let problem_in = |frame| problem_in(frame, bench.seed(7));
     let base = problem_in(home)?;
-    let solution = solve(&base, prepare(&base)?)?;
+    let solution = solve(Simulation::with_any_recipe(&base)?)?;
     let mut rows = Vec::new();
     let mut add = |id: &str, label: &str, paired: Vec<f64>| {
         let difference = relative_max(&paired, &solution);
@@ -54,14 +55,14 @@ pub fn invariance(bench: &Workbench, study: &mut Study) -> Result<()> {
         ("far_away", "10 m from the origin", Frame { offset: far, ..home }),
     ] {
         let problem = problem_in(frame)?;
-        let u = solve(&problem, prepare(&problem)?)?;
+        let u = solve(Simulation::with_any_recipe(&problem)?)?;
         add(id, label, u.iter().map(|u| u / frame.scale).collect());
     }
     let R = rotation(&(Vector3::new(1.0, 2.0, 3.0) / 14.0_f64.sqrt()), 1.1);
     let problem = rotated_conditions(&base, R);
     let discretisation = rotated(&Discretisation::new(&base)?, R);
     let model = Model::new(&problem, &discretisation)?;
-    let u = solve(&problem, Prepared::new(discretisation, model, 0.0))?;
+    let u = solve(Simulation::of_parts(&problem, discretisation, model))?;
     add("turned", "everything rotated", rotated_field(&u, &R.transpose()));
     study.tables.push(Table {
         title: "Paired runs of a sheared and compressed block".into(),
@@ -103,8 +104,8 @@ fn problem_in(frame: Frame, seed: u64) -> Result<Problem> {
     Ok(problem)
 }
 
-fn solve(problem: &Problem, prepared: Prepared) -> Result<Vec<f64>> {
-    Ok(integrate(problem, prepared, &mut Unobserved)?.state.displacement)
+fn solve(simulation: Simulation) -> Result<Vec<f64>> {
+    Ok(integrate(simulation, &mut Unobserved)?.simulation.state.displacement)
 }
 
 /// The conditions of a problem after X → R X.

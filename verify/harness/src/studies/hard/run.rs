@@ -3,6 +3,7 @@
 
 use crate::studies::hard::case::{Expected, HardCase};
 use crate::studies::workbench::relative_error;
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
 use mtled::model::Model;
@@ -12,9 +13,9 @@ use mtled::motion::energy::Energies;
 use mtled::motion::internal_force::Workspace;
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::motion::summary::CollapsedPoint;
-use mtled::problem::{Motion, Problem};
+use mtled::problem::Motion;
 use mtled_checks::measure::larger;
-use mtled_run::run::{Prepared, Solved, integrate, prepare, prepare_to_run};
+use mtled_run::run::{Solved, integrate};
 
 /// Outcome of a case.
 #[derive(Debug)]
@@ -80,24 +81,24 @@ pub fn name_of(error: &Error) -> String {
 
 /// Runs a case until it finishes or is refused.
 pub fn run(case: &HardCase) -> CaseOutcome {
-    let prepared = match prepare_to_run(&case.problem) {
-        Ok(prepared) => prepared,
+    let simulation = match Simulation::new(&case.problem) {
+        Ok(simulation) => simulation,
         Err(error) => return CaseOutcome::Refused { during: "set-up", error },
     };
-    match finish(case, prepared) {
+    match finish(case, simulation) {
         Ok(measures) => CaseOutcome::Finished(Box::new(measures)),
         Err(error) => CaseOutcome::Refused { during: "run", error },
     }
 }
 
-fn finish(case: &HardCase, prepared: Prepared) -> Result<CaseResult, Error> {
-    let problem = with_steps(case, &prepared);
-    let mut monitor = Monitor::new(matches!(problem.motion, Motion::Dynamic { .. }));
-    let solved = integrate(&problem, prepared, &mut monitor)?;
+fn finish(case: &HardCase, mut simulation: Simulation) -> Result<CaseResult, Error> {
+    set_duration(case, &mut simulation);
+    let mut monitor = Monitor::new(matches!(simulation.problem.motion, Motion::Dynamic { .. }));
+    let solved = integrate(simulation, &mut monitor)?;
     let finer = match &case.expected {
         Expected::Finer(problem) => {
             let mut monitor = Monitor::default();
-            integrate(problem, prepare(problem)?, &mut monitor)?;
+            integrate(Simulation::with_any_recipe(problem)?, &mut monitor)?;
             monitor.force()
         }
         _ => f64::NAN,
@@ -105,16 +106,14 @@ fn finish(case: &HardCase, prepared: Prepared) -> Result<CaseResult, Error> {
     Ok(measure(case, &solved, &monitor, finer))
 }
 
-/// The problem with the duration of its motion.
-fn with_steps(case: &HardCase, prepared: &Prepared) -> Problem {
-    let mut problem = case.problem.clone();
+/// Ends a motion after the number of steps that its case asks for.
+fn set_duration(case: &HardCase, simulation: &mut Simulation) {
+    let Simulation { problem, model, .. } = simulation;
     if let (Some(steps), Motion::Dynamic { end, step, .. }) = (case.steps, &mut problem.motion) {
-        let model = &prepared.model;
         let rest = vec![0.0; model.size()];
         let critical = critical_time_step(model, &rest, 0.0, None, &mut Workspace::new(model));
         *end = step.safety_factor * critical.time_step * steps as f64;
     }
-    problem
 }
 
 /// Records energies of a motion and the last reactions.
@@ -181,8 +180,8 @@ impl Observer for Monitor {
 }
 
 fn measure(case: &HardCase, solved: &Solved, monitor: &Monitor, finer: f64) -> CaseResult {
-    let u = &solved.state.displacement;
-    let (model, discretisation) = (&solved.prepared.model, &solved.prepared.discretisation);
+    let u = &solved.simulation.state.displacement;
+    let (model, discretisation) = (&solved.simulation.model, &solved.simulation.discretisation);
     let rows = &discretisation.supports;
     let smallest = |a: f64, J: f64| if J.is_nan() || J < a { J } else { a };
     let last = (0..rows.len())
@@ -212,10 +211,10 @@ fn measure(case: &HardCase, solved: &Solved, monitor: &Monitor, finer: f64) -> C
 
 /// Largest |FᵀF − C| over the quadrature points \[–\].
 fn deviation(solved: &Solved, C: &Matrix3) -> f64 {
-    let rows = &solved.prepared.discretisation.supports;
-    let components = solved.prepared.model.components;
+    let rows = &solved.simulation.discretisation.supports;
+    let components = solved.simulation.model.components;
     let at = |q: usize| {
-        let F = rows.deformation_gradient(q, &solved.state.displacement, components);
+        let F = rows.deformation_gradient(q, &solved.simulation.state.displacement, components);
         (F.transpose() * F - C).amax()
     };
     (0..rows.len()).map(at).fold(0.0, larger)
@@ -225,8 +224,8 @@ fn deviation(solved: &Solved, C: &Matrix3) -> f64 {
 /// that the field does not show: 0 for an affine field, O(h²) for a smooth one, nearly all of one
 /// that changes its sign from node to node, as spurious modes do.
 fn noise(solved: &Solved) -> f64 {
-    let (model, u) = (&solved.prepared.model, &solved.state.displacement);
-    let Ok(rows) = solved.prepared.discretisation.rows_at(&model.positions) else {
+    let (model, u) = (&solved.simulation.model, &solved.simulation.state.displacement);
+    let Ok(rows) = solved.simulation.discretisation.rows_at(&model.positions) else {
         return f64::NAN;
     };
     let hidden = (0..model.positions.len()).flat_map(|node| {

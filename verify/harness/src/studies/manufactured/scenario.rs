@@ -8,6 +8,7 @@ use crate::manufactured::{
 };
 use crate::studies::workbench::Workbench;
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Discretisation;
 use mtled::material::{ElasticConstants, Law};
@@ -15,7 +16,7 @@ use mtled::motion::internal_force::projected_mean_stress;
 use mtled::motion::nodal_fields::NodalFields;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::Problem;
-use mtled_run::run::{Solved, integrate, prepare};
+use mtled_run::run::{Solved, integrate};
 
 /// Clouds per size, which differ in the random seed of their jitter.
 pub const CLOUDS: u64 = 5;
@@ -163,9 +164,10 @@ pub fn errors(
     if scenario.boundary == Boundary::Mixed {
         free_three_faces(&mut problem, oriented);
     }
-    let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
-    let discretisation = &solved.prepared.discretisation;
-    let displacement = displacement_error(&oriented, discretisation, &solved.state.displacement)?;
+    let solved = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
+    let discretisation = &solved.simulation.discretisation;
+    let displacement =
+        displacement_error(&oriented, discretisation, &solved.simulation.state.displacement)?;
     let interpolation = match scenario.orientation {
         Orientation::Along => {
             let parameters = through_nodes(&oriented, discretisation)?;
@@ -225,15 +227,16 @@ fn displacement_error(
 /// ‖F_h − F‖/‖F − I‖, ‖p_h − p‖/‖p‖ and the parts of p_h − p by the quadrature of the solver; the
 /// errors of displacements are left NaN.
 fn errors_at_points(solution: &Oriented, problem: &Problem, solved: &Solved) -> Errors {
-    let discretisation = &solved.prepared.discretisation;
+    let discretisation = &solved.simulation.discretisation;
     let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
     let law = problem.regions[0].material.law;
     let pressure = pressure_of(&law);
-    let projected = projected_mean_stress(&solved.prepared.model, &solved.state.displacement);
+    let projected =
+        projected_mean_stress(&solved.simulation.model, &solved.simulation.state.displacement);
     let (mut error, mut size, mut pressure_error, mut pressure_size) = (0.0, 0.0, 0.0, 0.0);
     let (mut surplus, mut gain, mut volume) = (0.0, 0.0, 0.0);
     for (i, (X, weight)) in quadrature.positions.iter().zip(&quadrature.weights).enumerate() {
-        let computed = rows.deformation_gradient(i, &solved.state.displacement, 3);
+        let computed = rows.deformation_gradient(i, &solved.simulation.state.displacement, 3);
         let exact = solution.deformation_gradient(X);
         error += weight * (computed - exact).norm_squared();
         size += weight * (exact - Matrix3::identity()).norm_squared();
@@ -264,8 +267,8 @@ fn pressure_of(law: &Law) -> impl Fn(&Matrix3) -> f64 {
 
 /// ‖p_h − p‖/‖p‖ over the nodes, each with the volume Σ w φ.
 fn nodal_pressure_error(solution: &Oriented, problem: &Problem, solved: &Solved) -> f64 {
-    let (prepared, u) = (&solved.prepared, &solved.state.displacement);
-    let discretisation = &prepared.discretisation;
+    let (simulation, u) = (&solved.simulation, &solved.simulation.state.displacement);
+    let discretisation = &simulation.discretisation;
     let (rows, positions) = (&discretisation.supports, &discretisation.cloud.positions);
     let mut volumes = vec![0.0; positions.len()];
     for (point, weight) in discretisation.quadrature.weights.iter().enumerate() {
@@ -274,7 +277,7 @@ fn nodal_pressure_error(solution: &Oriented, problem: &Problem, solved: &Solved)
         }
     }
     let pressure = pressure_of(&problem.regions[0].material.law);
-    let fields = NodalFields::new(problem, discretisation, &prepared.model, u, &[]);
+    let fields = NodalFields::new(problem, discretisation, &simulation.model, u, &[]);
     let (mut error, mut size) = (0.0, 0.0);
     for ((X, volume), found) in positions.iter().zip(volumes).zip(fields.at_nodes()) {
         let exact = pressure(&solution.deformation_gradient(X));

@@ -21,7 +21,7 @@ struct Counters {
 pub fn work(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let count = |case: &&'static str| -> anyhow::Result<Counters> {
         let (solved, _) = solve_case(&bench.unvaried_case(case)?)?;
-        let supports = &solved.prepared.discretisation.supports;
+        let supports = &solved.simulation.discretisation.supports;
         let (points, neighbours) = (supports.len(), supports.nodes.len());
         Ok(Counters { case, points, neighbours, work: Work::of(&solved) })
     };

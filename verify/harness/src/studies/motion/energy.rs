@@ -3,6 +3,7 @@
 
 use crate::studies::motion::vibration::{Log, Vibration, vibrate};
 use crate::studies::workbench::{Workbench, exact};
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
 use mtled::motion::energy::Energies;
@@ -15,7 +16,7 @@ use mtled_checks::study::{
     Bound, Cell, Check, Figure, Kind, Plot, Study, Table, axis, curve, line, number,
 };
 use mtled_run::machine::on_threads;
-use mtled_run::run::{integrate, prepare};
+use mtled_run::run::integrate;
 use mtled_run::specimens::simple::{SIZE, block_shape, bonded_face, free_body, recipe, tissue};
 
 const THREADS: [usize; 5] = [1, 2, 3, 4, 8];
@@ -208,7 +209,7 @@ fn balance(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     for seed in 0..bench.pick(2, 10) {
         let problem = loaded(bench.seed(seed), 0.6)?;
         let mut log = Log::of_what_is_kept(2);
-        integrate(&problem, prepare(&problem)?, &mut log)?;
+        integrate(Simulation::with_any_recipe(&problem)?, &mut log)?;
         anyhow::ensure!(log.touched > 0, "no node has touched the wall");
         let imbalance = log.imbalance().iter().map(|(_, e)| e.abs()).fold(0.0, larger);
         worst = larger(worst, imbalance);
@@ -279,10 +280,10 @@ fn determinism(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
 /// Bits of the final displacements after a short run, and the number of blocks.
 fn final_bits(problem: &Problem, threads: usize) -> anyhow::Result<(usize, Vec<u64>)> {
     on_threads(threads, || {
-        let prepared = prepare(problem)?;
-        let blocks = prepared.model.blocks.len();
-        let solved = integrate(problem, prepared, &mut Unobserved)?;
-        let bits = solved.state.displacement.iter().map(|u| u.to_bits()).collect();
+        let simulation = Simulation::with_any_recipe(problem)?;
+        let blocks = simulation.model.blocks.len();
+        let solved = integrate(simulation, &mut Unobserved)?;
+        let bits = solved.simulation.state.displacement.iter().map(|u| u.to_bits()).collect();
         Ok((blocks, bits))
     })?
 }

@@ -4,13 +4,14 @@
 
 use crate::studies::workbench::{Workbench, exact};
 use anyhow::{Context, Result, bail};
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::motion::internal_force::{Workspace, stiffness_times};
 use mtled::motion::observe::{Continue, Observer, Unobserved, View};
 use mtled::problem::{Cloud, Motion, Newton, Problem, Relaxation, RelaxationMass};
 use mtled_case::scene::Case;
 use mtled_checks::study::{Cell, Figure, Plot, Study, Table, axis, line, number, text};
-use mtled_run::run::{Solved, Work, integrate, prepare};
+use mtled_run::run::{Solved, Work, integrate};
 use mtled_run::specimens::spacing::{respaced, spacing_of};
 use rayon::prelude::*;
 
@@ -123,18 +124,18 @@ fn compare(case: &Case, name: &'static str, label: &'static str) -> Result<Compa
         ..Newton::default()
     });
     let problem = Problem { motion, ..case.problem.clone() };
-    let newton = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
+    let newton = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
     let preset = Motion::Static(Relaxation { tolerance: PRESET, ..settings });
     let problem = Problem { motion: preset, ..case.problem.clone() };
-    let automatic = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
+    let automatic = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
     let relax = |mass| -> Result<Relaxed> {
         let mut settings = settings;
         settings.tolerance = TOLERANCE;
         settings.load_steps = LOAD_STEPS;
         settings.mass = mass;
         let problem = Problem { motion: Motion::Relaxed(settings), ..case.problem.clone() };
-        let mut trace = Trace { exact: &newton.state.displacement, history: Vec::new() };
-        let solved = integrate(&problem, prepare(&problem)?, &mut trace)?;
+        let mut trace = Trace { exact: &newton.simulation.state.displacement, history: Vec::new() };
+        let solved = integrate(Simulation::with_any_recipe(&problem)?, &mut trace)?;
         Ok(Relaxed { solved, history: trace.history })
     };
     let (relaxed, lumped) = (relax(RelaxationMass::Stiffness)?, relax(RelaxationMass::Lumped)?);
@@ -150,7 +151,7 @@ fn difference(u: &[f64], v: &[f64]) -> f64 {
 /// Largest difference of a reaction force over the largest reaction force.
 fn reaction_difference(a: &Solved, b: &Solved) -> f64 {
     let reactions = |solved: &Solved| -> Vec<Vector3> {
-        let (model, state) = (&solved.prepared.model, &solved.state);
+        let (model, state) = (&solved.simulation.model, &solved.simulation.state);
         let (forces, factor) = (&state.constraint_forces, state.force_factor);
         let (about, u) = (Vector3::zeros(), &state.displacement);
         let all = model.constraints.reactions(forces, factor, &about, &model.positions, u);
@@ -163,7 +164,7 @@ fn reaction_difference(a: &Solved, b: &Solved) -> f64 {
 
 /// |v·Kw − w·Kv|/(|v||Kw|) of two irregular directions.
 fn asymmetry(solved: &Solved) -> f64 {
-    let (model, u) = (&solved.prepared.model, &solved.state.displacement);
+    let (model, u) = (&solved.simulation.model, &solved.simulation.state.displacement);
     let irregular = |factor: f64| -> Vec<f64> {
         // Fractional parts of multiples of an irrational number are distributed evenly.
         (1..=u.len()).map(|i| (i as f64 * factor).fract() - 0.5).collect()
@@ -180,9 +181,9 @@ fn asymmetry(solved: &Solved) -> f64 {
 }
 
 fn add_checks(study: &mut Study, one: &Compared) {
-    let u = &one.newton.state.displacement;
-    let error = |relaxed: &Relaxed| difference(&relaxed.solved.state.displacement, u);
-    let automatic = difference(&one.automatic.state.displacement, u);
+    let u = &one.newton.simulation.state.displacement;
+    let error = |relaxed: &Relaxed| difference(&relaxed.solved.simulation.state.displacement, u);
+    let automatic = difference(&one.automatic.simulation.state.displacement, u);
     let residual = one.newton.summary.newton.map_or(f64::NAN, |counts| counts.residual);
     let relaxed = one.relaxed.solved.summary.relaxation;
     let tolerance = "the requested tolerance";
@@ -237,12 +238,14 @@ fn steps_to(history: &[(usize, f64)], level: f64) -> Cell {
 
 fn steps_table(compared: &[Compared]) -> Table {
     let row = |one: &Compared, relaxed: &Relaxed, mass: &str| {
-        let u = &one.newton.state.displacement;
+        let u = &one.newton.simulation.state.displacement;
         let mut row = vec![Cell::Text(one.label.into()), Cell::Text(mass.into())];
         row.extend(LEVELS.map(|level| steps_to(&relaxed.history, level)));
         row.push(Cell::Number(relaxed.solved.summary.steps as f64));
         row.push(Cell::Number(Work::of(&relaxed.solved).force_evaluations as f64));
-        row.push(Cell::Number(difference(&relaxed.solved.state.displacement, u) / TOLERANCE));
+        row.push(Cell::Number(
+            difference(&relaxed.solved.simulation.state.displacement, u) / TOLERANCE,
+        ));
         row
     };
     Table {
@@ -272,7 +275,7 @@ fn newton_table(compared: &[Compared]) -> Table {
         let relaxed = Work::of(&one.relaxed.solved).force_evaluations as f64;
         vec![
             Cell::Text(one.label.into()),
-            Cell::Number(one.newton.prepared.model.positions.len() as f64),
+            Cell::Number(one.newton.simulation.model.positions.len() as f64),
             Cell::Number(counts.increments as f64),
             Cell::Number(counts.iterations as f64),
             Cell::Number(counts.products as f64),

@@ -1,5 +1,6 @@
 //! The energies of a run over time, and a free vibration of finite amplitude.
 
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
 use mtled::model::Model;
@@ -11,7 +12,6 @@ use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
 use mtled::problem::{Dimension, Motion, StepControl};
 use mtled_checks::measure::larger;
-use mtled_run::run::prepare;
 use mtled_run::specimens::simple::{SIZE, block_shape, free_body, recipe, tissue};
 
 /// Records the energies every few steps.
@@ -108,7 +108,7 @@ pub fn vibrate(steps: usize, fraction: f64, seed: u64) -> anyhow::Result<Vibrati
     let recipe = recipe(SIZE / 4.0, 0.3, seed);
     let mut problem = free_body(Dimension::Three, block_shape(), tissue(0.49)?, recipe);
     problem.motion = Motion::Dynamic { end: 1.0, step: StepControl::default(), damping: 0.0 };
-    let model = prepare(&problem)?.model;
+    let model = Simulation::with_any_recipe(&problem)?.model;
     let at_rest = vec![0.0; model.size()];
     let critical = critical_time_step(&model, &at_rest, 0.0, None, &mut Workspace::new(&model));
     let time_step = fraction * critical.time_step;

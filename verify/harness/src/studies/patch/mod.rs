@@ -7,6 +7,7 @@ mod problem;
 use crate::studies::patch::identities::identities;
 use crate::studies::patch::problem::{Body, EXACT, JITTER, PatchRecipe, bodies, problem};
 use crate::studies::workbench::{Workbench, exact};
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::Selector;
 use mtled::motion::observe::Unobserved;
@@ -14,7 +15,7 @@ use mtled::problem::{Amplitude, Enforcement, Gradients, Problem, Traction};
 use mtled_checks::measure::larger;
 use mtled_checks::study::{Cell, Figure, Plot, Study, Table, axis, curve, number, text};
 use mtled_run::accuracy::patch::{AffineField, affine_gradient};
-use mtled_run::run::{integrate, prepare};
+use mtled_run::run::integrate;
 use mtled_run::specimens::simple::{SIZE, relaxation};
 
 /// Bounds where all of the boundary is prescribed, and where it is free under traction \[–\].
@@ -94,12 +95,12 @@ fn stretch_error(bench: &Workbench, poisson_ratio: f64, body: &Body) -> anyhow::
     push_faces(&mut problem, body);
     // An unconstrained body oscillates more.
     problem.motion = relaxation(1000, 1e-12);
-    let prepared = prepare(&problem)?;
-    let solved = integrate(&problem, prepared, &mut Unobserved)?;
-    let rows = &solved.prepared.discretisation.supports;
+    let simulation = Simulation::with_any_recipe(&problem)?;
+    let solved = integrate(simulation, &mut Unobserved)?;
+    let rows = &solved.simulation.discretisation.supports;
     let F = Matrix3::identity() + body.field.H;
     let error = |point: usize| {
-        let computed = rows.deformation_gradient(point, &solved.state.displacement, 3);
+        let computed = rows.deformation_gradient(point, &solved.simulation.state.displacement, 3);
         (computed.transpose() * computed - F.transpose() * F).norm() / body.field.H.norm()
     };
     Ok((0..rows.len()).map(error).fold(0.0, larger))
@@ -115,9 +116,9 @@ fn solve(
 ) -> anyhow::Result<[f64; 2]> {
     let mut problem = problem(bench, body, poisson_ratio, choice)?;
     problem.conditions = vec![body.field.on_boundary()];
-    let prepared = prepare(&problem)?;
-    let solved = integrate(&problem, prepared, &mut Unobserved)?;
-    let errors = body.field.errors(&solved.prepared, &solved.state.displacement);
+    let simulation = Simulation::with_any_recipe(&problem)?;
+    let solved = integrate(simulation, &mut Unobserved)?;
+    let errors = body.field.errors(&solved.simulation, &solved.simulation.state.displacement);
     let displacement = larger(errors.nodal, errors.displacement) / errors.largest_nodal;
     Ok([displacement, errors.gradient / body.field.H.norm()])
 }

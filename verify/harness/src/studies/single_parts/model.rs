@@ -2,6 +2,7 @@
 
 use crate::studies::workbench::{Workbench, exact};
 use anyhow::{Context, Result};
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
 use mtled::geometry::Selector;
@@ -13,7 +14,7 @@ use mtled::problem::{
 };
 use mtled_checks::measure::larger;
 use mtled_checks::study::Study;
-use mtled_run::run::{Prepared, integrate, prepare};
+use mtled_run::run::integrate;
 use mtled_run::specimens::simple::{
     PLANE, SIZE, block_shape, bonded_face, free_body, recipe, relaxation, tissue,
 };
@@ -30,9 +31,9 @@ pub fn masses(bench: &Workbench, study: &mut Study) -> Result<()> {
         let mut problem = cube(bench)?;
         problem.recipe.mass = rule;
         problem.recipe.dilation = 2.0;
-        let prepared = prepare(&problem)?;
+        let simulation = Simulation::with_any_recipe(&problem)?;
         let mass = problem.regions[0].material.density * SIZE.powi(3);
-        let total: f64 = prepared.model.lumped_mass.iter().sum();
+        let total: f64 = simulation.model.lumped_mass.iter().sum();
         study.checks.push(exact(
             &format!("parts/{name}/total"),
             "sum of the lumped masses against density times volume, relative error",
@@ -44,7 +45,7 @@ pub fn masses(bench: &Workbench, study: &mut Study) -> Result<()> {
             study.checks.push(exact(
                 "parts/row_sum/centre",
                 "centre of the lumped masses against that of the points, over the size",
-                centre_error(&prepared),
+                centre_error(&simulation),
                 1e-12,
                 "Σ_a m_a X_a = Σ_q ρ w_q Σ_a φ_a X_a, and linear fields are reproduced",
             ));
@@ -53,14 +54,14 @@ pub fn masses(bench: &Workbench, study: &mut Study) -> Result<()> {
     Ok(())
 }
 
-fn centre_error(prepared: &Prepared) -> f64 {
+fn centre_error(simulation: &Simulation) -> f64 {
     let centre = |positions: &[Vector3], masses: &[f64]| -> Vector3 {
         let sum: Vector3 = positions.iter().zip(masses).map(|(at, mass)| at * *mass).sum();
         sum / masses.iter().sum::<f64>()
     };
-    let quadrature = &prepared.discretisation.quadrature;
+    let quadrature = &simulation.discretisation.quadrature;
     let points = centre(&quadrature.positions, &quadrature.weights);
-    (centre(&prepared.model.positions, &prepared.model.lumped_mass) - points).norm() / SIZE
+    (centre(&simulation.model.positions, &simulation.model.lumped_mass) - points).norm() / SIZE
 }
 
 /// The smooth amplitude starts and ends without velocity and acceleration.
@@ -109,8 +110,8 @@ pub fn thickness(bench: &Workbench, study: &mut Study) -> Result<()> {
         amplitude,
     });
     problem.motion = relaxation(400, 1e-8);
-    let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
-    let (model, state) = (&solved.prepared.model, &solved.state);
+    let solved = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
+    let (model, state) = (&solved.simulation.model, &solved.simulation.state);
     let (forces, about) = (&state.constraint_forces, Vector3::zeros());
     let reactions = model.constraints.reactions(
         forces,
@@ -138,7 +139,7 @@ pub fn not_a_number(bench: &Workbench, study: &mut Study) -> Result<()> {
     problem.conditions = vec![bonded_face(2, 0.0, 0.0, Amplitude::Constant)];
     let moving = |step| Motion::Dynamic { end: 0.01, step, damping: 0.0 };
     problem.motion = moving(StepControl::default());
-    let model = prepare(&problem)?.model;
+    let model = Simulation::with_any_recipe(&problem)?.model;
     let fixed = StepControl { fixed: Some(0.5 * model.per_point_bound), ..StepControl::default() };
     let last = model.size() - 1;
     let mut undetected = 0;

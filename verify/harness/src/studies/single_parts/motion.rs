@@ -5,6 +5,7 @@
 use crate::studies::single_parts::model::cube;
 use crate::studies::workbench::{Workbench, exact};
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::algebra::random::Random;
 use mtled::algebra::tensor::Vector3;
 use mtled::geometry::{Selector, Shape};
@@ -21,7 +22,7 @@ use mtled::problem::{
 use mtled_checks::measure::larger;
 use mtled_checks::study::Study;
 use mtled_run::machine::on_threads;
-use mtled_run::run::{integrate, prepare};
+use mtled_run::run::integrate;
 use mtled_run::specimens::simple::{SIZE, bonded_face, recipe};
 
 /// A step far below the critical one \[s\].
@@ -32,7 +33,7 @@ pub fn threads(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut problem = cube(bench)?;
     problem.recipe = recipe(SIZE / 10.0, 0.3, bench.seed(3));
     problem.recipe.grid = BackgroundGrid::with_cell(SIZE / 20.0);
-    let model = prepare(&problem)?.model;
+    let model = Simulation::with_any_recipe(&problem)?.model;
     anyhow::ensure!(model.blocks.len() > 4, "too few blocks to show a dependence on threads");
     let mut random = Random(bench.seed(5));
     let u: Vec<f64> = (0..model.size()).map(|_| 1e-3 * SIZE * random.symmetric()).collect();
@@ -68,11 +69,11 @@ pub fn components(bench: &Workbench, study: &mut Study) -> Result<()> {
         problem.conditions =
             vec![EssentialCondition { prescribed: Prescribed::Displacement(alone), ..face }];
         problem.motion = steps(1, 0.0);
-        let solved = integrate(&problem, prepare(&problem)?, &mut Unobserved)?;
+        let solved = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
         let at: Vec<Vector3> =
-            solved.prepared.model.positions.iter().copied().filter(|X| X[k] == 0.0).collect();
-        let rows = solved.prepared.discretisation.rows_at(&at)?;
-        let u = &solved.state.displacement;
+            solved.simulation.model.positions.iter().copied().filter(|X| X[k] == 0.0).collect();
+        let rows = solved.simulation.discretisation.rows_at(&at)?;
+        let u = &solved.simulation.state.displacement;
         let miss = |q: usize| {
             let there: f64 =
                 rows.row(q).map(|e| rows.phi[e] * u[3 * rows.nodes[e] as usize + k]).sum();
@@ -96,7 +97,7 @@ pub fn contact(bench: &Workbench, study: &mut Study) -> Result<()> {
     let centre = Vector3::new(0.5 * SIZE, 0.5 * SIZE, -SIZE + DEPTH);
     problem.obstacles.push(Obstacle::new("ball", Shape::Sphere { centre, radius: SIZE }));
     problem.motion = steps(1, 0.0);
-    let model = prepare(&problem)?.model;
+    let model = Simulation::with_any_recipe(&problem)?.model;
     let mut contact = ContactState::default();
     let mut u = vec![0.0; model.size()];
     let mut velocity = vec![0.0; model.size()];
@@ -133,7 +134,7 @@ pub fn damping(bench: &Workbench, study: &mut Study) -> Result<()> {
     });
     let damping = 1.0 / STEP;
     problem.motion = steps(STEPS, damping);
-    let model = prepare(&problem)?.model;
+    let model = Simulation::with_any_recipe(&problem)?.model;
     let mut state = State::new(&model);
     simulate(&model, &problem.motion, &mut state, &mut Unobserved)?;
     let terminal = acceleration.z / damping;

@@ -16,8 +16,8 @@ const PANEL: f64 = 0.4;
 /// surface is constrained at the end. Where a constrained part ends between two nodes,
 /// its rim counts as constrained but is not.
 pub fn boundary_misfit(problem: &Problem, solved: &Solved) -> Result<Option<f64>, Error> {
-    let (discretisation, state) = (&solved.prepared.discretisation, &solved.state);
-    let components = solved.prepared.model.components;
+    let (discretisation, state) = (&solved.simulation.discretisation, &solved.simulation.state);
+    let components = solved.simulation.model.components;
     let t = state.time;
     let active: Vec<&EssentialCondition> = (problem.conditions.iter())
         .filter(|condition| condition.extent == Extent::Surface)

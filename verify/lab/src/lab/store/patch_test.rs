@@ -2,12 +2,13 @@
 #![allow(non_snake_case)]
 
 use super::record::Figures;
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{Fibres, Loads, Motion, Newton, Problem, Region};
 use mtled_run::accuracy::patch::{AffineField, affine_gradient};
-use mtled_run::run::{integrate, prepare_to_run};
+use mtled_run::run::integrate;
 
 /// The body and recipe of a case, all of its first material, whose whole boundary
 /// follows u = H X, reached at t = 1 s.
@@ -35,10 +36,10 @@ pub fn with_affine_boundary(problem: &Problem, H: Matrix3) -> Problem {
 pub fn patch_errors(problem: &Problem) -> Result<Figures, Error> {
     let H = affine_gradient(problem.dimension.components());
     let problem = with_affine_boundary(problem, H);
-    let prepared = prepare_to_run(&problem)?;
-    let solved = integrate(&problem, prepared, &mut Unobserved)?;
+    let simulation = Simulation::new(&problem)?;
+    let solved = integrate(simulation, &mut Unobserved)?;
     let field = AffineField { H, centre: Vector3::zeros() };
-    let errors = field.errors(&solved.prepared, &solved.state.displacement);
+    let errors = field.errors(&solved.simulation, &solved.simulation.state.displacement);
     Ok(Figures::from([
         ("patch_displacement_error".into(), errors.displacement / errors.largest),
         ("patch_gradient_error".into(), errors.gradient / H.norm()),

@@ -7,6 +7,7 @@ use super::record::{Figures, RunOutcome, RunRecord, SCHEMA_VERSION, Stage, Timin
 use super::task::{Job, Task, solver_identity};
 use anyhow::Result;
 use cpu_time::ThreadTime;
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
 use mtled::motion::critical_time_step::critical_time_step;
@@ -16,8 +17,7 @@ use mtled_case::scene::Case;
 use mtled_run::accuracy::{SAMPLES, values};
 use mtled_run::machine::provenance;
 use mtled_run::run::{
-    Prepared, Recorder, Solved, Work, estimated_memory, integrate, prepare_to_run,
-    refuse_beyond_memory,
+    Recorder, Solved, Work, estimated_memory, integrate, refuse_beyond_memory, warnings,
 };
 use mtled_run::specimens::stable_step::{largest_stable_step, trial_velocity};
 
@@ -38,15 +38,15 @@ pub fn perform(task: &Task) -> Result<Option<Performed>> {
     let mut set_up_cpu_s = None;
     let fits = refuse_beyond_memory(&case);
     let lasts = fits.is_ok();
-    let prepared = match fits {
+    let simulation = match fits {
         Err(shortage) => Err(shortage.to_string()),
-        Ok(()) => prepare_to_run(&case.problem).map_err(|error| error.to_string()),
+        Ok(()) => Simulation::new(&case.problem).map_err(|error| error.to_string()),
     };
-    let outcome = match prepared {
+    let outcome = match simulation {
         Err(reason) => Some(RunOutcome::Failed { stage: Stage::Refused, reason }),
-        Ok(prepared) => {
+        Ok(simulation) => {
             set_up_cpu_s = Some(start.elapsed().as_secs_f64());
-            run_job(task, &case, prepared)?
+            run_job(task, &case, simulation)?
         }
     };
     let cpu_s = start.elapsed().as_secs_f64();
@@ -81,30 +81,30 @@ fn with_finite_figures(mut outcome: RunOutcome) -> RunOutcome {
     outcome
 }
 
-fn run_job(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOutcome>> {
+fn run_job(task: &Task, case: &Case, simulation: Simulation) -> Result<Option<RunOutcome>> {
     let (stage, more) = match task.job {
-        Job::Solve => return solve(task, case, prepared),
+        Job::Solve => return solve(task, case, simulation),
         Job::Consistency => (Stage::Refused, Ok(Figures::new())),
-        Job::TimeStep => (Stage::Refused, step_figures(case, &prepared)),
+        Job::TimeStep => (Stage::Refused, step_figures(case, &simulation)),
         Job::Patch => (Stage::Running, patch_errors(&case.problem)),
     };
     Ok(Some(match more {
         Err(error) => RunOutcome::Failed { stage, reason: error.to_string() },
         Ok(mut more) => {
-            let mut figures = discretisation_figures(case, &prepared);
+            let mut figures = discretisation_figures(case, &simulation);
             figures.append(&mut more);
-            let warnings = prepared.doubts(&case.problem);
+            let warnings = warnings(case, &simulation);
             let (quantities, values) = (Vec::new(), Vec::new());
             RunOutcome::Done { figures, quantities, values, work: None, warnings }
         }
     }))
 }
 
-fn solve(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOutcome>> {
-    let mut recorder = Recorder::new(case, &prepared, 0)?;
-    let mut figures = discretisation_figures(case, &prepared);
-    let mut warnings = prepared.doubts(&case.problem);
-    let solved = match integrate(&case.problem, prepared, &mut recorder) {
+fn solve(task: &Task, case: &Case, simulation: Simulation) -> Result<Option<RunOutcome>> {
+    let mut recorder = Recorder::new(case, &simulation, 0)?;
+    let mut figures = discretisation_figures(case, &simulation);
+    let mut warnings = warnings(case, &simulation);
+    let solved = match integrate(simulation, &mut recorder) {
         Ok(solved) => solved,
         Err(error) => {
             let reason = error.to_string();
@@ -129,8 +129,8 @@ fn solve(task: &Task, case: &Case, prepared: Prepared) -> Result<Option<RunOutco
     }))
 }
 
-fn discretisation_figures(case: &Case, prepared: &Prepared) -> Figures {
-    let Prepared { discretisation, model, .. } = prepared;
+fn discretisation_figures(case: &Case, simulation: &Simulation) -> Figures {
+    let Simulation { discretisation, model, .. } = simulation;
     let points = discretisation.supports.len() as f64;
     let nodes = model.positions.len() as f64;
     let spacing = discretisation.cloud.spacing.iter().copied().fold(0.0, f64::max);
@@ -172,16 +172,17 @@ pub const COMPRESSIONS: [f64; 3] = [0.0, 0.25, 0.5];
 /// Per-point bound, Lanczos estimate and largest stable step \[s\] of the case at rest;
 /// then of its body with the whole boundary prescribed, compressed along its last axis at
 /// constant volume.
-fn step_figures(case: &Case, prepared: &Prepared) -> Result<Figures, Error> {
-    let mut figures = Figures::from([("per_point_bound_s".into(), prepared.model.per_point_bound)]);
-    let at_rest = vec![0.0; prepared.model.size()];
-    let (lanczos, stable, products) = steps(prepared, &at_rest, 0.0);
+fn step_figures(case: &Case, simulation: &Simulation) -> Result<Figures, Error> {
+    let mut figures =
+        Figures::from([("per_point_bound_s".into(), simulation.model.per_point_bound)]);
+    let at_rest = vec![0.0; simulation.model.size()];
+    let (lanczos, stable, products) = steps(simulation, &at_rest, 0.0);
     figures.insert("lanczos_s".into(), lanczos);
     figures.insert("largest_stable_step_s".into(), stable);
     figures.insert("lanczos_products".into(), products as f64);
     for compression in COMPRESSIONS {
-        let H = compressed(prepared.model.components, compression);
-        let confined = prepare_to_run(&with_affine_boundary(&case.problem, H))?;
+        let H = compressed(simulation.model.components, compression);
+        let confined = Simulation::new(&with_affine_boundary(&case.problem, H))?;
         let model = &confined.model;
         let displacement = |X: &Vector3| (0..model.components).map(|k| H[(k, k)] * X[k]).collect();
         let u: Vec<f64> =
@@ -196,10 +197,10 @@ fn step_figures(case: &Case, prepared: &Prepared) -> Result<Figures, Error> {
 
 /// Critical step by Lanczos \[s\], largest stable step by trial \[s\] and number of Lanczos
 /// products.
-fn steps(prepared: &Prepared, u: &[f64], t: f64) -> (f64, f64, usize) {
-    let model = &prepared.model;
+fn steps(simulation: &Simulation, u: &[f64], t: f64) -> (f64, f64, usize) {
+    let model = &simulation.model;
     let critical = critical_time_step(model, u, t, None, &mut Workspace::new(model));
-    let velocity = trial_velocity(model, &prepared.discretisation.cloud.spacing);
+    let velocity = trial_velocity(model, &simulation.discretisation.cloud.spacing);
     let stable = largest_stable_step(model, u, t, &velocity, critical.time_step);
     (critical.time_step, stable, critical.products)
 }

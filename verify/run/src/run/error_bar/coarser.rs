@@ -1,14 +1,14 @@
 //! The same case on a coarser cloud.
 
 use super::super::interrupt::interrupted;
-use super::super::prepare::{Prepared, prepare};
 use super::super::record::{Recorder, Recording};
-use super::super::solve::{Solved, integrate_prepared};
+use super::super::solved::integrate;
 use super::super::work::Work;
 use super::no_error_bar::NoErrorBar;
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::model::zero_energy::{refuse_zero_energy_modes, tested_points};
+use mtled::model::zero_energy::tested_points;
 use mtled::problem::{Motion, Newton, Problem};
 use mtled_case::scene::Case;
 
@@ -85,51 +85,46 @@ pub fn solve_coarser(
     coarser.problem.recipe.scale_lengths(factor);
     coarser.problem.motion = by_newton(&case.problem).unwrap_or(coarser.problem.motion);
     coarser.outputs.history = 1;
-    let prepared = fitted(&mut coarser.problem).map_err(refused)?;
+    let simulation = fitted(&mut coarser.problem).map_err(refused)?;
     // Lattices have whole numbers of spacings along an edge.
-    let ratio = prepared.discretisation.cloud.mean_spacing() / spacing;
+    let ratio = simulation.discretisation.cloud.mean_spacing() / spacing;
     if ratio < LEAST_RATIO {
         return Err(NoErrorBar::NotCoarser);
     }
-    let mut recorder = Recorder::new(&coarser, &prepared, 0).map_err(refused)?;
-    let end = integrate_prepared(&coarser.problem, &prepared, &mut recorder).map_err(refused)?;
-    if end.summary.stopped || interrupted() {
+    let mut recorder = Recorder::new(&coarser, &simulation, 0).map_err(refused)?;
+    let solved = integrate(simulation, &mut recorder).map_err(refused)?;
+    if solved.summary.stopped || interrupted() {
         return Err(NoErrorBar::CoarserStopped);
     }
-    if let Some(doubt) = end.summary.doubts(&prepared.model).first() {
+    let model = &solved.simulation.model;
+    if let Some(doubt) = solved.summary.doubts(model).first() {
         return Err(NoErrorBar::Coarser(doubt.clone()));
     }
-    let nodes = prepared.model.positions.len();
-    let solved = Solved::new(prepared, end);
+    let nodes = model.positions.len();
     let cloud = CoarserCloud { ratio, nodes, work: Work::of(&solved) };
-    let displacement = positions.and_then(|positions| displacement_at(&solved, positions));
+    let at = |positions: &[Vector3]| solved.simulation.displacements_at(positions).ok();
+    let displacement = positions
+        .and_then(at)
+        .map(|values| values.iter().flat_map(|value| value.iter().copied()).collect());
     Ok(CoarserRun { cloud, recording: recorder.finish(), displacement })
 }
 
 /// A discretisation without zero-energy modes.
-fn fitted(problem: &mut Problem) -> Result<Prepared, Error> {
-    let first = prepare(problem)?;
+fn fitted(problem: &mut Problem) -> Result<Simulation, Error> {
+    let first = Simulation::with_any_recipe(problem)?;
     if tested_points(&first.discretisation) == 0.0 {
         return Ok(first);
     }
     let mut other = problem.clone();
     other.recipe.scale_lengths(OTHER_FIT);
-    match prepare(&other) {
+    match Simulation::with_any_recipe(&other) {
         Ok(second) if tested_points(&second.discretisation) == 0.0 => {
             *problem = other;
             Ok(second)
         }
         _ => {
-            refuse_zero_energy_modes(problem, &first.discretisation, &first.model)?;
+            first.refuse_zero_energy_modes()?;
             Ok(first)
         }
     }
-}
-
-fn displacement_at(solved: &Solved, positions: &[Vector3]) -> Option<Vec<f64>> {
-    let Prepared { discretisation, model, .. } = &solved.prepared;
-    let rows = discretisation.rows_at(positions).ok()?;
-    let u = &solved.state.displacement;
-    let value = |i| <[f64; 3]>::from(rows.interpolate(i, u, model.components));
-    Some((0..rows.len()).flat_map(value).collect())
 }

@@ -1,7 +1,7 @@
 //! Where differences between clouds tell nothing.
 
 use super::super::record::Recording;
-use super::super::solve::Solved;
+use super::super::solved::Solved;
 use super::no_error_bar::NoErrorBar;
 use mtled::problem::Cloud;
 use mtled_case::reference::Family;
@@ -18,10 +18,10 @@ pub fn doubt_of_run(case: &Case, solved: &Solved) -> Option<NoErrorBar> {
     if matches!(case.problem.recipe.cloud, Cloud::Given { .. }) {
         return Some(NoErrorBar::GivenNodes);
     }
-    if solved.prepared.discretisation.bridged.is_some_and(|gap| gap.matters()) {
+    if solved.simulation.discretisation.bridged.is_some_and(|gap| gap.matters()) {
         return Some(NoErrorBar::BridgedGap);
     }
-    let doubts = solved.summary.doubts(&solved.prepared.model);
+    let doubts = solved.summary.doubts(&solved.simulation.model);
     (!doubts.is_empty()).then_some(NoErrorBar::InDoubt)
 }
 

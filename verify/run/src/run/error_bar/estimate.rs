@@ -10,14 +10,14 @@
 //! singular.
 
 use super::super::numbers::numbers;
-use super::super::prepare::Prepared;
 use super::super::record::Recording;
-use super::super::solve::Solved;
+use super::super::solved::Solved;
 use super::bars::{ErrorBar, ErrorBars, Indicator};
 use super::coarser::{CoarserRun, factors, is_by_newton, solve_coarser};
 use super::doubts::{doubt_of_forces, doubt_of_run, judged};
 use super::no_error_bar::NoErrorBar;
 use crate::machine::cpu_seconds;
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::problem::{Dimension, Problem};
 use mtled_case::reference::agreement::rms_of_points;
@@ -84,7 +84,7 @@ fn weight(ratio: f64) -> f64 {
 
 /// Whether every node of the boundary is held in all directions.
 fn held_all_around(solved: &Solved) -> bool {
-    let Prepared { discretisation, model, .. } = &solved.prepared;
+    let Simulation { discretisation, model, .. } = &solved.simulation;
     let boundary = discretisation.cloud.on_boundary.iter().enumerate().filter(|(_, on)| **on);
     let mut components =
         boundary.flat_map(|(node, _)| (0..model.components).map(move |k| (node, k)));
@@ -105,7 +105,7 @@ pub fn error_bars(
     }
     let start = cpu_seconds();
     let calibration = Calibration::of(&case.problem, solved);
-    let cloud = &solved.prepared.discretisation.cloud;
+    let cloud = &solved.simulation.discretisation.cloud;
     let mut runs = coarser_runs(case, cloud.mean_spacing(), indicates.then_some(&cloud.positions))?;
     let indicator = runs.iter_mut().find_map(|run| {
         let coarser_displacement = run.displacement.take()?;

@@ -6,9 +6,9 @@ use super::vtu::{PointArray, Stored, VtuCells, VtuFrame};
 use crate::display::{DisplayMesh, Mesh, display_mesh};
 use crate::picture::{Body, Field};
 use crate::run::contact::contact_gaps;
-use crate::run::prepare::Prepared;
 use crate::run::record::Frame;
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Rows;
 use mtled::discretisation::mls::{Approximation, Support};
@@ -57,8 +57,8 @@ fn fibres(problem: &Problem, mesh: &Mesh) -> Option<Vec<f64>> {
 impl BodyFrames {
     /// The display mesh of a body, and what interpolates to its vertices; `None` where it has no
     /// cells.
-    pub fn new(problem: &Problem, prepared: &Prepared) -> Result<Option<BodyFrames>> {
-        let discretisation = &prepared.discretisation;
+    pub fn new(simulation: &Simulation) -> Result<Option<BodyFrames>> {
+        let Simulation { problem, discretisation, .. } = simulation;
         let nodes = discretisation.cloud.positions.len();
         let display = display_mesh(problem, nodes, discretisation.volume())?;
         if display.mesh.is_empty() {
@@ -76,14 +76,14 @@ impl BodyFrames {
     /// material of their regions, and others interpolated from those at the nodes.
     pub fn frame(
         &self,
-        prepared: &Prepared,
+        simulation: &Simulation,
         frame: &Frame,
         fields: &NodeFields,
         mode: Option<&Vec<f64>>,
         mut numbers: Vec<(&'static str, f64)>,
     ) -> VtuFrame<'_> {
         let DisplayMesh { mesh, on_boundary, edge } = &self.display;
-        let components = prepared.model.components;
+        let components = simulation.model.components;
         let displacement = vectors(&self.rows, &frame.displacement, components);
         let local = self.material(&fields.material);
         let stresses = || local.iter().map(|local| &local.stress);
@@ -100,8 +100,11 @@ impl BodyFrames {
         ];
         if let Some(pressures) = &fields.contact_pressure {
             let displacement = &point_data[0].values;
-            let gaps =
-                contact_gaps((&prepared.model.contact, fields.time), &mesh.vertices, displacement);
+            let gaps = contact_gaps(
+                (&simulation.model.contact, fields.time),
+                &mesh.vertices,
+                displacement,
+            );
             point_data.push(single("contact_gap", 1, gaps));
             point_data.push(single("contact_pressure", 1, self.not_negative(pressures)));
         }
@@ -120,7 +123,7 @@ impl BodyFrames {
         let regions = mesh.regions.iter().map(|region| f64::from(*region)).collect();
         let data = vec![PointArray::new("region", 1, regions).stored(Stored::Integer)];
         numbers.push(("display_mesh_edge_m", *edge));
-        if let Dimension::PlaneStrain { thickness, .. } = prepared.discretisation.dimension {
+        if let Dimension::PlaneStrain { thickness, .. } = simulation.discretisation.dimension {
             numbers.push(("slab_thickness_m", thickness));
         }
         let cells = VtuCells { corners: mesh.corners, points: &mesh.cells, data, purpose: PURPOSE };

@@ -8,9 +8,9 @@ use super::vtu::{Order, PointArray, VtuFrame, write_pvd, write_vtu};
 use crate::picture::Body;
 use crate::run::contact::contact_gaps;
 use crate::run::error_bar::Indicator;
-use crate::run::prepare::Prepared;
 use crate::run::record::{Frame, Recording};
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::motion::nodal_fields::LocalFields;
 use mtled::problem::{Motion, Problem};
 use mtled_case::scene::Case;
@@ -94,26 +94,26 @@ impl Frames {
 /// Writes the frames of a recording.
 pub fn write_frames(
     case: &Case,
-    prepared: &Prepared,
+    simulation: &Simulation,
     record: &Recording,
     indicator: Option<&Indicator>,
     dir: &Path,
 ) -> Result<Frames> {
     let problem = &case.problem;
-    let positions = &prepared.discretisation.cloud.positions;
+    let positions = &simulation.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
     let order = order(problem);
-    let body = if record.frames.is_empty() { None } else { BodyFrames::new(problem, prepared)? };
+    let body = if record.frames.is_empty() { None } else { BodyFrames::new(simulation)? };
     let (mut at, mut last) = (Vec::new(), None);
     for (number, frame) in record.frames.iter().enumerate() {
         let is_last = number + 1 == record.frames.len();
         let indicator = indicator.filter(|_| is_last);
         let mode = record.unstable_mode.as_ref().filter(|_| is_last);
-        let fields = NodeFields::new(problem, prepared, frame, indicator)?;
+        let fields = NodeFields::new(simulation, frame, indicator)?;
         let numbers = numbers(problem, frame);
         let of_body =
-            body.as_ref().map(|body| body.frame(prepared, frame, &fields, mode, numbers.clone()));
-        let of_nodes = node_frame(prepared, &points, fields, mode, numbers)?;
+            body.as_ref().map(|body| body.frame(simulation, frame, &fields, mode, numbers.clone()));
+        let of_nodes = node_frame(simulation, &points, fields, mode, numbers)?;
         write_vtu(&dir.join(frame_name(NODES, number)), &of_nodes)?;
         if let Some(of_body) = of_body {
             write_vtu(&dir.join(frame_name(BODY, number)), &of_body)?;
@@ -133,17 +133,17 @@ pub fn write_frames(
 /// is as large as a cell.
 pub fn body_at_end(
     case: &Case,
-    prepared: &Prepared,
+    simulation: &Simulation,
     record: &Recording,
     indicator: Option<&Indicator>,
 ) -> Result<Option<Body>> {
     let problem = &case.problem;
     let Some(frame) = record.frames.last() else { return Ok(None) };
-    let Some(body) = BodyFrames::new(problem, prepared)? else { return Ok(None) };
-    let fields = NodeFields::new(problem, prepared, frame, indicator)?;
+    let Some(body) = BodyFrames::new(simulation)? else { return Ok(None) };
+    let fields = NodeFields::new(simulation, frame, indicator)?;
     let mode = record.unstable_mode.as_ref();
     let numbers = numbers(problem, frame);
-    Ok(Some(body.drawn(body.frame(prepared, frame, &fields, mode, numbers))))
+    Ok(Some(body.drawn(body.frame(simulation, frame, &fields, mode, numbers))))
 }
 
 /// Time of a frame \[s\], or how far a static run had come.
@@ -158,7 +158,7 @@ fn numbers(problem: &Problem, frame: &Frame) -> Vec<(&'static str, f64)> {
 
 /// The fields at the nodes; the motion in which the body is unstable, if it is.
 fn node_frame<'a>(
-    prepared: &Prepared,
+    simulation: &Simulation,
     points: &'a [[f64; 3]],
     fields: NodeFields,
     mode: Option<&Vec<f64>>,
@@ -166,8 +166,8 @@ fn node_frame<'a>(
 ) -> Result<VtuFrame<'a>> {
     let local = fields.material.at_nodes();
     let gaps = fields.contact_pressure.as_ref().map(|_| {
-        let positions = &prepared.discretisation.cloud.positions;
-        contact_gaps((&prepared.model.contact, fields.time), positions, &fields.displacement)
+        let positions = &simulation.discretisation.cloud.positions;
+        contact_gaps((&simulation.model.contact, fields.time), positions, &fields.displacement)
     });
     let mut point_data = vec![
         PointArray::new("displacement", 3, fields.displacement),
@@ -180,7 +180,7 @@ fn node_frame<'a>(
         point_data.push(PointArray::new("contact_pressure", 1, pressures));
     }
     if let Some(mode) = mode {
-        point_data.push(PointArray::new("unstable_mode", 3, field_at_nodes(prepared, mode)?));
+        point_data.push(PointArray::new("unstable_mode", 3, field_at_nodes(simulation, mode)?));
     }
     if let Some(bars) = fields.error_bar {
         point_data.push(PointArray::new("displacement_error_bar", 1, bars));

@@ -12,11 +12,10 @@ pub mod vtu;
 
 use super::error_bar::Indicator;
 use super::page::run_page;
-use super::prepare::Prepared;
 use super::record::Recording;
 use super::result::failed_json;
 use super::saved_state::write_states;
-use super::solve::Solved;
+use super::solved::Solved;
 use super::stored_field::StoredField;
 use crate::picture::Body;
 use anyhow::Result;
@@ -32,6 +31,7 @@ pub use unloaded::write_unloaded;
 
 use frames::write_frames;
 use history::history_csv;
+use mtled::Simulation;
 use mtled::error::Error;
 use mtled_checks::escape::printable_json;
 use mtled_checks::report::write_atomically;
@@ -47,22 +47,22 @@ pub fn write_outputs(
     result: &Value,
     dir: &Path,
 ) -> Result<String> {
-    let body = write_recorded(case, &solved.prepared, record, indicator, dir)?;
-    let (u, stopped) = (&solved.state.displacement, solved.summary.stopped);
-    StoredField::new(case, &solved.prepared, u, stopped).write(dir)?;
+    let body = write_recorded(case, &solved.simulation, record, indicator, dir)?;
+    let (u, stopped) = (&solved.simulation.state.displacement, solved.summary.stopped);
+    StoredField::new(case, &solved.simulation, u, stopped).write(dir)?;
     write_result(case, record, body.as_ref(), result, dir)
 }
 
 /// Writes what a run had recorded when it ended with an error.
 pub fn write_failed(
     case: &Case,
-    prepared: &Prepared,
+    simulation: &Simulation,
     record: &Recording,
     error: &Error,
     dir: &Path,
 ) -> Result<String> {
-    let body = write_recorded(case, prepared, record, None, dir)?;
-    write_result(case, record, body.as_ref(), &failed_json(case, prepared, record, error), dir)
+    let body = write_recorded(case, simulation, record, None, dir)?;
+    write_result(case, record, body.as_ref(), &failed_json(case, simulation, record, error), dir)
 }
 
 /// Writes the page and `result.json`, and returns the text of the latter.
@@ -85,13 +85,13 @@ fn write_result(
 /// Returns the body at the end.
 fn write_recorded(
     case: &Case,
-    prepared: &Prepared,
+    simulation: &Simulation,
     record: &Recording,
     indicator: Option<&Indicator>,
     dir: &Path,
 ) -> Result<Option<Body>> {
     remove_earlier_run(dir)?;
-    let frames = write_frames(case, prepared, record, indicator, dir)?;
+    let frames = write_frames(case, simulation, record, indicator, dir)?;
     write_atomically(&dir.join("history.csv"), history_csv(case, record)?.as_bytes())?;
     write_states(&record.states, dir)?;
     frames.write_collections(case, dir)?;

@@ -4,25 +4,19 @@
 use super::body::BodyFrames;
 use super::node_fields::field_at_nodes;
 use super::vtu::{PointArray, VtuFrame, write_vtu};
-use crate::run::prepare::Prepared;
 use anyhow::Result;
-use mtled::problem::Problem;
+use mtled::Simulation;
 use std::path::Path;
 
 /// Writes `nodes_modes.vtu` and, unless nothing of the body is as large as a cell, `body_modes.vtu`,
 /// with a field for each mode whose largest displacement of a node is 1.
-pub fn write_modes(
-    problem: &Problem,
-    prepared: &Prepared,
-    motions: &[&[f64]],
-    dir: &Path,
-) -> Result<()> {
-    let positions = &prepared.discretisation.cloud.positions;
+pub fn write_modes(simulation: &Simulation, motions: &[&[f64]], dir: &Path) -> Result<()> {
+    let positions = &simulation.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
     let width = motions.len().to_string().len().max(2);
     let (mut point_data, mut scaled) = (Vec::new(), Vec::new());
     for (number, motion) in (1..).zip(motions) {
-        let values = field_at_nodes(prepared, motion)?;
+        let values = field_at_nodes(simulation, motion)?;
         let squares = values.chunks(3).map(|u| u.iter().map(|x| x * x).sum::<f64>());
         let largest = squares.fold(f64::MIN_POSITIVE, f64::max).sqrt();
         let unit = |values: &[f64]| -> Vec<f64> { values.iter().map(|u| u / largest).collect() };
@@ -32,8 +26,8 @@ pub fn write_modes(
     }
     let frame = VtuFrame { numbers: Vec::new(), points: &points, cells: None, point_data };
     write_vtu(&dir.join("nodes_modes.vtu"), &frame)?;
-    if let Some(body) = BodyFrames::new(problem, prepared)? {
-        let frame = body.motions(&scaled, prepared.model.components);
+    if let Some(body) = BodyFrames::new(simulation)? {
+        let frame = body.motions(&scaled, simulation.model.components);
         write_vtu(&dir.join("body_modes.vtu"), &frame)?;
     }
     Ok(())

@@ -1,11 +1,10 @@
 //! Fields at the nodes.
 
 use crate::run::error_bar::Indicator;
-use crate::run::prepare::Prepared;
 use crate::run::record::Frame;
 use anyhow::Result;
+use mtled::Simulation;
 use mtled::motion::nodal_fields::NodalFields;
-use mtled::problem::Problem;
 
 /// Displacement of the approximation (not the nodal parameters), and J, Cauchy stress and strain of
 /// the material.
@@ -26,18 +25,17 @@ pub struct NodeFields {
 impl NodeFields {
     /// Of a frame, with the error bars of `indicator`.
     pub fn new(
-        problem: &Problem,
-        prepared: &Prepared,
+        simulation: &Simulation,
         frame: &Frame,
         indicator: Option<&Indicator>,
     ) -> Result<NodeFields> {
         let u = &frame.displacement;
-        let displacement = field_at_nodes(prepared, u)?;
-        let (model, discretisation) = (&prepared.model, &prepared.discretisation);
+        let displacement = field_at_nodes(simulation, u)?;
+        let Simulation { problem, model, discretisation, .. } = simulation;
         let material = NodalFields::new(problem, discretisation, model, u, &frame.extra_stress);
         let plan = &model.contact;
-        let contact_pressure = prepared
-            .contact_surface(problem)?
+        let contact_pressure = simulation
+            .contact_surface()?
             .map(|surface| surface.pressures((plan, frame.time), discretisation, &frame.contact, u))
             .transpose()?;
         let error_bar = indicator.map(|indicator| indicator.sizes(&displacement));
@@ -47,8 +45,8 @@ impl NodeFields {
 }
 
 /// Values at the nodes of the field with nodal parameters `u` \[node\]\[x, y, z\].
-pub fn field_at_nodes(prepared: &Prepared, u: &[f64]) -> Result<Vec<f64>> {
-    let rows = prepared.discretisation.rows_at(&prepared.discretisation.cloud.positions)?;
-    let value = |i| <[f64; 3]>::from(rows.interpolate(i, u, prepared.model.components));
+pub fn field_at_nodes(simulation: &Simulation, u: &[f64]) -> Result<Vec<f64>> {
+    let rows = simulation.discretisation.rows_at(&simulation.discretisation.cloud.positions)?;
+    let value = |i| <[f64; 3]>::from(rows.interpolate(i, u, simulation.model.components));
     Ok((0..rows.len()).flat_map(value).collect())
 }

@@ -9,12 +9,12 @@ use crate::run::error_bar::{
     Estimated, error_bars_json, error_bars_text, no_bars_text, plus_minus,
 };
 use crate::run::memory::{estimated_memory, memory_text};
-use crate::run::prepare::Prepared;
 use crate::run::probes::left_out_text;
 use crate::run::record::Recording;
-use crate::run::solve::Solved;
+use crate::run::solved::{Solved, warnings};
 use crate::run::work::Work;
 use loads::{cavities_json, loads_text, region_volumes_json, springs_json};
+use mtled::Simulation;
 use mtled::error::Error;
 use mtled::model::contact::ContactResult;
 use mtled::motion::summary::Summary;
@@ -40,9 +40,9 @@ pub fn result_json(
     contacts: &[ContactResult],
     bars: Option<&Estimated>,
 ) -> Value {
-    let doubts = [solved.prepared.doubts(&case.problem), solved.doubts()];
-    let mut result = recorded_json(case, &solved.prepared, record);
-    result["warnings"] = json!([case.notes.clone(), doubts.concat()].concat());
+    let warnings = [warnings(case, &solved.simulation), solved.doubts()].concat();
+    let mut result = recorded_json(case, &solved.simulation, record);
+    result["warnings"] = json!(warnings);
     result["motion"] = motion_json(case, solved);
     result["contacts"] = json!(contacts_json(case, contacts));
     result["work_counters"] = json!(Work::of(solved));
@@ -58,9 +58,14 @@ pub fn result_json(
 }
 
 /// `result.json` of a run that ended with an error: what it had reached, marked as such.
-pub fn failed_json(case: &Case, prepared: &Prepared, record: &Recording, error: &Error) -> Value {
-    let mut result = recorded_json(case, prepared, record);
-    result["warnings"] = json!([case.notes.clone(), prepared.doubts(&case.problem)].concat());
+pub fn failed_json(
+    case: &Case,
+    simulation: &Simulation,
+    record: &Recording,
+    error: &Error,
+) -> Value {
+    let mut result = recorded_json(case, simulation, record);
+    result["warnings"] = json!(warnings(case, simulation));
     result["motion"] = json!({
         "method": method(case),
         "outcome": outcome_of(error),
@@ -74,8 +79,8 @@ pub fn failed_json(case: &Case, prepared: &Prepared, record: &Recording, error: 
 }
 
 /// What every run has.
-fn recorded_json(case: &Case, prepared: &Prepared, record: &Recording) -> Value {
-    let (discretisation, model) = (&prepared.discretisation, &prepared.model);
+fn recorded_json(case: &Case, simulation: &Simulation, record: &Recording) -> Value {
+    let (discretisation, model) = (&simulation.discretisation, &simulation.model);
     let quadrature = &discretisation.quadrature;
     json!({
         "schema_version": SCHEMA_VERSION,
@@ -106,7 +111,7 @@ fn recorded_json(case: &Case, prepared: &Prepared, record: &Recording) -> Value 
         "region_volumes_m3": region_volumes_json(case, record),
         "energies": energies_json(record),
         "timings": {
-            "setup_wall_s": prepared.setup_seconds,
+            "setup_wall_s": simulation.setup_seconds,
             "peak_memory_bytes": peak_memory(),
             "estimated_memory_bytes": estimated_memory(case, discretisation).round(),
             "provenance": provenance(),
@@ -211,7 +216,7 @@ fn motion_json(case: &Case, solved: &Solved) -> Value {
         "largest_time_step_s": moves.then_some(summary.time_steps.1),
         "critical_time_step_s": moves.then_some(summary.critical_time_step),
         // Of the lumped masses, which a static run does not have.
-        "per_point_bound_s": dynamic.then_some(solved.prepared.model.per_point_bound),
+        "per_point_bound_s": dynamic.then_some(solved.simulation.model.per_point_bound),
         "smallest_jacobian": summary.smallest_jacobian.jacobian,
         "smallest_patch_jacobian": solved.smallest_patch_jacobian(),
         "instability": unstable,
@@ -289,15 +294,15 @@ pub fn summary_text(
     lines.extend(memory_text(case, solved));
     lines.push(format!(
         "  set-up {:.2} s, run {:.2} s wall ({:.2} s CPU)",
-        solved.prepared.setup_seconds, solved.solve_seconds, solved.cpu_seconds
+        solved.simulation.setup_seconds, solved.solve_seconds, solved.cpu_seconds
     ));
     lines.join("\n")
 }
 
 /// The cloud and how the run ended.
 fn run_text(solved: &Solved) -> Vec<String> {
-    let (d, s) = (&solved.prepared.discretisation, &solved.summary);
-    let model = &solved.prepared.model;
+    let (d, s) = (&solved.simulation.discretisation, &solved.summary);
+    let model = &solved.simulation.model;
     let mut lines = vec![
         format!(
             "  {} nodes, {} quadrature points, {:.1} nodes per support",

@@ -83,7 +83,7 @@ pub fn solved(plan: Plan, with_bars: bool) -> Solved {
             if with_bars && is_own && is_static {
                 run.bars = bars(&run.case, &solved, &record);
             }
-            run.nodes = solved.prepared.discretisation.cloud.positions.len();
+            run.nodes = solved.simulation.discretisation.cloud.positions.len();
             run.doubts = solved.doubts();
             Ok(Found::History(record))
         }
@@ -95,7 +95,7 @@ pub fn solved(plan: Plan, with_bars: bool) -> Solved {
 fn frequencies(run: &mut Solved, modes: usize) -> Result<Found> {
     let found = find_modes(&run.case, modes, MassKind::Consistent, &|_| ())?;
     ensure!(found.modes.converged(), "the search for natural frequencies has not converged");
-    run.nodes = found.prepared.discretisation.cloud.positions.len();
+    run.nodes = found.simulation.discretisation.cloud.positions.len();
     run.doubts = found.doubts;
     Ok(Found::Frequencies(found.modes.modes.iter().map(|mode| mode.frequency).collect()))
 }

@@ -9,6 +9,7 @@ use crate::studies::motion::time_step::random_clouds::random_clouds;
 use crate::studies::motion::time_step::runs::runs;
 use crate::studies::motion::time_step::specimens::{Specimen, specimens};
 use crate::studies::workbench::Workbench;
+use mtled::Simulation;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
 use mtled::motion::observe::Unobserved;
@@ -17,7 +18,6 @@ use mtled::motion::state::State;
 use mtled_checks::study::{
     Bound, Cell, Check, Figure, Kind, Plot, SeriesStyle, Study, Table, axis, number, styled, text,
 };
-use mtled_run::run::prepare;
 use mtled_run::specimens::stable_step::{
     BISECTION, GROWTH, TRIAL_STEPS, largest_stable_step, trial_velocity,
 };
@@ -87,8 +87,8 @@ pub fn time_step(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
 }
 
 fn measure(specimen: &Specimen) -> anyhow::Result<Limits> {
-    let prepared = prepare(&specimen.problem)?;
-    let model = &prepared.model;
+    let simulation = Simulation::with_any_recipe(&specimen.problem)?;
+    let model = &simulation.model;
     let mut state = State::new(model);
     let mut workspace = Workspace::new(model);
     let rest = critical_time_step(model, &state.displacement, 0.0, None, &mut workspace);
@@ -99,7 +99,7 @@ fn measure(specimen: &Specimen) -> anyhow::Result<Limits> {
     let critical = critical_time_step(model, u, t, None, &mut workspace);
     let followed = || critical_time_step(model, u, t, Some(&rest), &mut workspace).time_step;
     let followed = specimen.deformed.then(followed);
-    let velocity = trial_velocity(model, &prepared.discretisation.cloud.spacing);
+    let velocity = trial_velocity(model, &simulation.discretisation.cloud.spacing);
     Ok(Limits {
         nodes: model.positions.len(),
         points: model.point_positions.len(),

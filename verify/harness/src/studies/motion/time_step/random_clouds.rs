@@ -2,6 +2,7 @@
 
 use crate::studies::motion::time_step::families::{FAMILIES, Family};
 use crate::studies::workbench::{Workbench, range};
+use mtled::Simulation;
 use mtled::model::time_step_bound::comparison_bounds;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::internal_force::Workspace;
@@ -9,7 +10,6 @@ use mtled::problem::StepControl;
 use mtled_checks::study::{
     Bound, Cell, Check, Figure, Kind, Plot, SeriesStyle, Study, Table, axis, number, styled, text,
 };
-use mtled_run::run::prepare;
 use mtled_run::specimens::stable_step::{largest_stable_step, trial_velocity};
 use rayon::prelude::*;
 
@@ -75,13 +75,14 @@ pub fn random_clouds(bench: &Workbench, study: &mut Study) -> anyhow::Result<()>
 fn measure(family: &Family, seed: u64) -> anyhow::Result<Ratios> {
     let located = |error: anyhow::Error| error.context(format!("{}, seed {seed}", family.label));
     let problem = family.member(seed).map_err(located)?;
-    let prepared = prepare(&problem).map_err(|error| located(error.into()))?;
-    let model = &prepared.model;
+    let simulation =
+        Simulation::with_any_recipe(&problem).map_err(|error| located(error.into()))?;
+    let model = &simulation.model;
     let u = vec![0.0; model.size()];
     let critical = critical_time_step(model, &u, 0.0, None, &mut Workspace::new(model));
-    let velocity = trial_velocity(model, &prepared.discretisation.cloud.spacing);
+    let velocity = trial_velocity(model, &simulation.discretisation.cloud.spacing);
     let largest = largest_stable_step(model, &u, 0.0, &velocity, critical.time_step);
-    let bounds = comparison_bounds(&problem, &prepared.discretisation, &model.lumped_mass);
+    let bounds = comparison_bounds(&problem, &simulation.discretisation, &model.lumped_mass);
     Ok(Ratios {
         default: StepControl::default().safety_factor * critical.time_step / largest,
         per_point: model.per_point_bound / largest,

@@ -1,6 +1,7 @@
 //! The time step of runs against the stability limit of the deforming body.
 
 use crate::studies::workbench::{Workbench, range};
+use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
@@ -10,7 +11,6 @@ use mtled::problem::{
     Amplitude, Dimension, EssentialCondition, Motion, Prescribed, Problem, Relaxation,
 };
 use mtled_checks::study::{Bound, Cell, Figure, Plot, Study, Table, axis, line, number, text};
-use mtled_run::run::{integrate_prepared, prepare};
 use mtled_run::specimens::simple::{
     SIZE, block_shape, bonded_face, free_body, recipe, relaxation, tissue,
 };
@@ -94,13 +94,14 @@ pub fn runs(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
 }
 
 fn run(id: &'static str, label: &'static str, problem: &Problem) -> anyhow::Result<SampledRun> {
-    let prepared = prepare(problem)?;
-    let mut limits = Limits::new(&prepared.model);
-    let summary = integrate_prepared(problem, &prepared, &mut limits)?.summary;
+    let mut simulation = Simulation::with_any_recipe(problem)?;
+    let mut limits = Limits::new(&simulation.model);
+    let summary = simulation.run(&mut limits)?;
     // The first Lanczos run belongs to the set-up.
-    let fresh = vec![0.0; prepared.model.size()];
-    let mut workspace = Workspace::new(&prepared.model);
-    let first = critical_time_step(&prepared.model, &fresh, 0.0, None, &mut workspace).products + 1;
+    let fresh = vec![0.0; simulation.model.size()];
+    let mut workspace = Workspace::new(&simulation.model);
+    let first =
+        critical_time_step(&simulation.model, &fresh, 0.0, None, &mut workspace).products + 1;
     let cost = (summary.lanczos_evaluations - first) as f64 / summary.steps as f64;
     Ok(SampledRun { id, label, steps: summary.steps, cost, samples: limits.samples })
 }

@@ -2,13 +2,13 @@
 
 use super::super::node_fields::NodeFields;
 use super::BodyFrames;
-use crate::run::prepare::{Prepared, prepare};
 use crate::run::record::Frame;
 use crate::specimens::simple::{free_body, recipe, sphere_shape, tissue};
+use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::geometry::{Selector, Shape};
 use mtled::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
-use mtled::problem::{Dimension, Problem, Region};
+use mtled::problem::{Dimension, Region};
 
 const H: [[f64; 3]; 3] = [[0.1, 0.05, 0.0], [-0.02, -0.1, 0.0], [0.0, 0.0, 0.2]];
 
@@ -22,28 +22,28 @@ fn gradient(dimension: &Dimension) -> Matrix3 {
 
 /// A ball or a disc with the nodal parameters of an affine displacement, with parts of other
 /// materials first.
-fn stretched(dimension: Dimension, parts: Vec<Region>) -> (Problem, Prepared, Frame) {
+fn stretched(dimension: Dimension, parts: Vec<Region>) -> (Simulation, Frame) {
     let recipe = recipe(0.02, 0.2, 7);
     let mut problem = free_body(dimension, sphere_shape(), tissue(0.3).unwrap(), recipe);
     problem.regions.splice(0..0, parts);
-    let prepared = prepare(&problem).unwrap();
+    let simulation = Simulation::with_any_recipe(&problem).unwrap();
     let components = dimension.components();
     let moved = |X: &Vector3| <[f64; 3]>::from(gradient(&dimension) * X);
-    let positions = prepared.discretisation.cloud.positions.iter();
+    let positions = simulation.discretisation.cloud.positions.iter();
     let displacement =
         positions.flat_map(|X| moved(X).into_iter().take(components)).collect::<Vec<_>>();
     let frame =
         Frame { step: 0, time: 0.0, displacement, contact: Vec::new(), extra_stress: Vec::new() };
-    (problem, prepared, frame)
+    (simulation, frame)
 }
 
 #[test]
 fn an_affine_displacement_and_its_strains_are_exact_at_the_vertices() {
     for dimension in [Dimension::Three, Dimension::PlaneStrain { thickness: 1.0, z: 0.05 }] {
-        let (problem, prepared, frame) = stretched(dimension, Vec::new());
-        let fields = NodeFields::new(&problem, &prepared, &frame, None).unwrap();
-        let body = BodyFrames::new(&problem, &prepared).unwrap().unwrap();
-        let written = body.frame(&prepared, &frame, &fields, None, Vec::new());
+        let (simulation, frame) = stretched(dimension, Vec::new());
+        let fields = NodeFields::new(&simulation, &frame, None).unwrap();
+        let body = BodyFrames::new(&simulation).unwrap().unwrap();
+        let written = body.frame(&simulation, &frame, &fields, None, Vec::new());
         let of = |name: &str| {
             let array = written.point_data.iter().find(|array| array.name == name);
             array.unwrap_or_else(|| panic!("no {name}")).values.clone()
@@ -78,14 +78,14 @@ fn stress_at_each_vertex_is_that_of_the_region_that_it_is_written_for() {
     };
     for young_modulus in [10.0, 3.0e6] {
         let parts = vec![core(young_modulus, 0.025)];
-        let (problem, prepared, frame) = stretched(Dimension::Three, parts);
-        let fields = NodeFields::new(&problem, &prepared, &frame, None).unwrap();
-        let body = BodyFrames::new(&problem, &prepared).unwrap().unwrap();
-        let written = body.frame(&prepared, &frame, &fields, None, Vec::new());
+        let (simulation, frame) = stretched(Dimension::Three, parts);
+        let fields = NodeFields::new(&simulation, &frame, None).unwrap();
+        let body = BodyFrames::new(&simulation).unwrap().unwrap();
+        let written = body.frame(&simulation, &frame, &fields, None, Vec::new());
         let stress = written.point_data.iter().find(|array| array.name == "cauchy_stress").unwrap();
         let mut counts = [0; 2];
         for (values, &owner) in stress.values.chunks(9).zip(&body.owners) {
-            let law = problem.regions[owner as usize].material.law;
+            let law = simulation.problem.regions[owner as usize].material.law;
             let exact = law.cauchy(&(gradient + Matrix3::identity()));
             let off = exact.iter().zip(values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(off < 1e-9 * exact.norm(), "region {owner}: {off} of {}", exact.norm());
