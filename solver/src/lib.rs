@@ -67,8 +67,7 @@ pub mod unloaded;
 
 pub mod simulation;
 
-#[doc = include_str!("../docs/method.md")]
-pub mod method {}
+pub mod method;
 #[doc = include_str!("../docs/references.md")]
 pub mod references {}
 
