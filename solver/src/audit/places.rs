@@ -24,6 +24,8 @@ const SAMPLES: usize = 2000;
 const SEEN: f64 = 0.05;
 /// Part of the boundary that may be glued \[–\]: the tips of notches are.
 const GLUED: f64 = 0.01;
+/// Half of the narrowest gap that is seen \[spacing\]: what is narrower may be round-off of a drawing.
+const NARROWEST: f64 = 5e-6;
 /// The sides of a gap face each other: cosine of their normals \[–\].
 const OPPOSITE: f64 = -0.7;
 /// Spacings across a layer below which its stiffness is off by more than a tenth \[–\]: with
@@ -101,15 +103,18 @@ impl Run<'_> {
         if self.body.signed_distance(&self.at(X + middle * normal)) > 0.8 * middle {
             return None;
         }
-        let mut way = 1e-3 * self.spacing;
+        // Facets of curved faces are chords.
+        let X = X - self.body.signed_distance(&self.at(X)) * normal;
+        let least = NARROWEST * self.spacing;
+        let mut way = least;
         for _ in 0..64 {
             let place = self.at(X + way * normal);
             let distance = self.body.signed_distance(&place);
-            if distance < 1e-4 * self.spacing && way > 2e-3 * self.spacing {
+            if distance < 0.1 * least && way > 2.0 * least {
                 let opposite = self.body.gradient(&place).dot(&normal) < OPPOSITE;
                 return opposite.then_some(way);
             }
-            way += distance.max(1e-3 * self.spacing);
+            way += distance.max(least);
             if way > reach {
                 break;
             }

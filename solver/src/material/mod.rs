@@ -1,6 +1,7 @@
 //! Constitutive laws: strain energy ψ(F) per reference volume \[Pa\] and first
 //! Piola–Kirchhoff stress P = ∂ψ/∂F \[Pa\], one law per file.
 
+mod catalogue;
 mod constants;
 mod constitutive_law;
 mod isochoric;
@@ -15,6 +16,7 @@ mod prony;
 mod st_venant_kirchhoff;
 mod volumetric_term;
 
+pub use catalogue::{LAWS, NamedConstants, NamedLaw, Takes};
 pub use constants::{ElasticConstants, MaterialError};
 pub use constitutive_law::{ConstitutiveLaw, Deformation};
 pub use isochoric::{

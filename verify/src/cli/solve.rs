@@ -63,10 +63,10 @@ fn solve_to(
     common: &Common,
 ) -> Result<anyhow::Result<u8>, Error> {
     let mut simulation = Simulation::new(&case.problem)?;
-    if let Some(file) = &arguments.from {
-        if let Err(error) = SavedState::read(file, &mut simulation) {
-            return Ok(Err(error));
-        }
+    if let Some(file) = &arguments.from
+        && let Err(error) = SavedState::read(file, &mut simulation)
+    {
+        return Ok(Err(error));
     }
     for doubt in warnings(case, &simulation) {
         common.warn(doubt);

@@ -1,8 +1,10 @@
 //! The cells, from the coarsest to those in which the signed distance is linear.
 #![allow(non_snake_case)]
 
+use super::corner::{Corner, Known};
 use super::cost::{cost, cost_of, has_labels};
 use super::level::level;
+use super::sampled::{Cell, Cut, Sampled, Volume};
 use super::seams::{is_seam, may_have_seams};
 use super::simplex::{Halves, OF_BOX, Tetrahedron, vector_area, volume};
 use super::surface::Facet;
@@ -17,10 +19,13 @@ use rayon::prelude::*;
 const COARSEST: f64 = 2.0;
 /// Edge of the cells in which a boundary that is flat is cut, over the spacing \[–\].
 const FLAT_CELL: f64 = 1.0;
-/// The same of the smallest cells, at edges of the body and at rough boundaries \[–\].
+/// The same of the cells in which flat faces meet, and distance of places along their edges \[–\].
+const CORNER_CELL: f64 = 0.5;
+const ALONG_EDGES: f64 = 1.0 / 16.0;
+/// The same of the smallest cells, where faces are not flat and at rough boundaries \[–\].
 const FINEST: f64 = 1.0 / 32.0;
-/// Those of an image lie so far beside its middle \[their edge\], so that the errors of a body
-/// with planes of symmetry do not add up.
+/// The cells lie so far beside the middle of the body \[their edge\], so that its faces do not lie between
+/// cells, and errors of a body with planes of symmetry do not add up.
 const ASIDE: [f64; 3] = [0.13, 0.07, 0.19];
 /// Edge of the largest cells of which corners and centre alone say that one part owns them,
 /// over the spacing, in space and in a plane \[–\]: labels have no distance.
@@ -28,14 +33,13 @@ const SAMPLED_CELL: (f64, f64) = (0.5, 0.25);
 /// Deviation of the signed distance from a linear function over the edge of the cell \[–\]: with
 /// it a ball of radius R is cut in cells of 0.08 R and its volume is right to 0.1 %.
 const BEND: f64 = 0.01;
-/// Bend over the edge of a cell from which on a border is not curved but has two sides in the cell, and
-/// what is hidden there over it \[–\].
-const KINK: f64 = 0.1;
+/// The same from the faces that meet in a cell that is not divided further: a chamfer is ten times as far off.
+const BEND_OF_LAST: f64 = 0.05;
+/// What a border with two sides in a cell may hide there, over its bend \[–\]: a layer as thick as that lies
+/// between corners and centre.
 const HIDDEN: f64 = 2.0;
 /// Tetrahedra that a part without distances passes are halved so often.
 const HALVINGS: usize = 3;
-/// Part of a cell that such a part may be off by \[–\], where pieces of 1/48 of it are asked.
-const BY_PLACES: f64 = 0.45;
 /// The nodes of a body from an image may take so many times that: its set-up takes seconds.
 const OF_IMAGE: usize = 4;
 /// Signed distances of a primitive that are spent in all: a few milliseconds, and per node, about
@@ -54,40 +58,6 @@ pub(crate) struct Divided<'a> {
     pub nodes: usize,
 }
 
-/// Volume of a part with its first moments.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Volume {
-    /// \[m³\]
-    pub size: f64,
-    /// ∫ X dV \[m⁴\].
-    pub first: Vector3,
-    /// How wrong the size may be \[m³\].
-    pub doubt: f64,
-    /// Square of how wrong it may be besides, in sum over cells whose errors are independent \[m⁶\].
-    variance: f64,
-}
-
-/// What was found.
-#[derive(Debug, Default)]
-pub(crate) struct Sampled {
-    /// \[part\]
-    pub volumes: Vec<Volume>,
-    pub facets: Vec<Facet>,
-    /// Pieces of the volume for integrals: place \[m\], size \[m³\], part.
-    pub pieces: Vec<(Vector3, f64, usize)>,
-    /// Places at which the smallest cells have an edge of the body in them \[m\].
-    pub edges: Vec<Vector3>,
-    /// Edge of these cells \[m\].
-    pub finest: f64,
-}
-
-#[derive(Clone, Copy)]
-struct Cell {
-    centre: Vector3,
-    /// Half of its edges \[m\].
-    half: Vector3,
-}
-
 /// What becomes of a cell.
 enum Fate {
     Outside,
@@ -95,48 +65,35 @@ enum Fate {
     Cut(Cut),
 }
 
-/// What lies in a cell.
-#[derive(Default)]
-struct Cut {
-    pieces: Vec<(Vector3, f64, usize)>,
-    facets: Vec<Facet>,
-    /// Deviation of the signed distance from a linear function \[m\].
-    bend: f64,
-    edge: bool,
-    /// The same of the borders of the parts that may lie in the cell: part, \[m\].
-    border_bends: Vec<(usize, f64)>,
-    /// Whether the pieces were told by places, not by distances.
-    by_places: bool,
-}
-
 /// Divides the bounding box of the body into cells, and these where they are cut.
 pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     let (lower, upper) = divided.body.finite_bounds(divided.dimension)?;
     let edge = COARSEST * divided.spacing;
-    // Faces of the body that lie along the axes shall not lie between cells.
     let counts = (upper - lower).map(|length| (length / edge + 0.7).ceil().max(1.0) as usize);
-    let labels = has_labels(divided.body);
-    let aside = if labels { edge * Vector3::from(ASIDE) } else { Vector3::zeros() };
-    let middle = 0.5 * (lower + upper) + aside;
+    let middle = 0.5 * (lower + upper) + edge * Vector3::from(ASIDE);
     let start = middle - 0.5 * edge * counts.map(|n| n as f64);
     let flat = matches!(divided.dimension, Dimension::PlaneStrain { .. });
     let count = counts.x * counts.y * if flat { 1 } else { counts.z };
     let mut cells: Vec<Cell> = (0..count).map(|n| divided.cell(n, counts, &start, edge)).collect();
-    let times = if !flat && labels { OF_IMAGE } else { 1 };
+    let times = if !flat && has_labels(divided.body) { OF_IMAGE } else { 1 };
     let mut budget = BUDGET.0 + times * BUDGET.1 * divided.nodes;
     let cost = cost(divided.body) + divided.parts.iter().map(|part| cost_of(part)).sum::<usize>();
     let mut sampled =
         Sampled { volumes: vec![Volume::default(); divided.parts.len()], ..Sampled::default() };
-    // About half of the children of a cell on the boundary lie on it, fewer on an edge; of the
-    // coarsest cells all are divided, which says nothing.
-    let of_boundary = if flat { 2.0 } else { 4.0 };
-    let mut growth: f64 = of_boundary;
     while !cells.is_empty() {
-        let spent = cells.len() * cost * 5;
-        budget = budget.saturating_sub(spent);
-        let last = (budget as f64) < growth * spent as f64
-            || cells[0].half.x <= 0.51 * FINEST * divided.spacing;
-        let fates: Vec<Fate> = cells.par_iter().map(|cell| divided.fate(cell, last)).collect();
+        // Half of the cells lie beside the boundary, and their middle says so.
+        let work = |cells: usize| cells * cost * 5;
+        budget = budget.saturating_sub(work(cells.len()));
+        let finest = cells[0].half.x <= 0.51 * FINEST * divided.spacing;
+        let mut fates: Vec<Fate> =
+            cells.par_iter().map(|cell| divided.fate(cell, finest)).collect();
+        let is_divided = |fate: &Fate| matches!(fate, Fate::Divided);
+        let divided_cells = fates.iter().filter(|fate| is_divided(fate)).count();
+        if work(divided_cells * if flat { 4 } else { 8 }) > budget {
+            let ends = fates.par_iter_mut().zip(&cells);
+            let ends = ends.filter(|(fate, _)| is_divided(fate));
+            ends.for_each(|(fate, cell)| *fate = divided.fate(cell, true));
+        }
         let mut next = Vec::new();
         for (cell, fate) in cells.iter().zip(fates) {
             match fate {
@@ -145,8 +102,6 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
                 Fate::Cut(cut) => sampled.add(cell, cut),
             }
         }
-        sampled.finest = 2.0 * cells[0].half.x;
-        growth = of_boundary.min(next.len() as f64 / cells.len() as f64);
         cells = next;
     }
     sampled.volumes.iter_mut().for_each(|part| part.doubt += part.variance.sqrt());
@@ -154,32 +109,6 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
         sampled.facets.retain(|facet| !is_seam(facet, |X| divided.distance(X)));
     }
     Ok(sampled)
-}
-
-impl Cell {
-    fn corner(&self, n: usize) -> Vector3 {
-        let side =
-            |axis: usize| if n >> axis & 1 == 1 { self.half[axis] } else { -self.half[axis] };
-        self.centre + Vector3::new(side(0), side(1), side(2))
-    }
-
-    /// Halves along each direction, in a plane along x and y.
-    fn children(&self, flat: bool) -> impl Iterator<Item = Cell> {
-        let deep = if flat { 1.0 } else { 0.5 };
-        let half = self.half.component_mul(&Vector3::new(0.5, 0.5, deep));
-        let whole = *self;
-        (0..if flat { 4 } else { 8 }).map(move |n| {
-            let mut centre = 0.5 * (whole.centre + whole.corner(n));
-            if flat {
-                centre.z = whole.centre.z;
-            }
-            Cell { centre, half }
-        })
-    }
-
-    fn volume(&self) -> f64 {
-        8.0 * self.half.product()
-    }
 }
 
 impl Divided<'_> {
@@ -255,19 +184,50 @@ impl Divided<'_> {
         }
         let bend = bend(&values, distance);
         let flat = bend <= BEND * edge && edge <= 1.01 * FLAT_CELL * self.spacing;
-        if !(last || flat && (owner.is_some() || self.has_flat_borders(cell))) {
+        let is_small = edge <= 1.01 * CORNER_CELL * self.spacing;
+        let corner = (!flat && (is_small || last))
+            .then(|| self.corner(cell, &values, distance, last))
+            .flatten();
+        let is_flat =
+            (flat || corner.is_some()) && (owner.is_some() || self.has_flat_borders(cell));
+        if !(last || is_flat) {
             return Fate::Divided;
         }
-        self.cut(cell, &values, owner, bend)
+        self.cut(cell, (&values, bend), owner, corner)
+    }
+
+    /// The flat faces that meet in a cell.
+    fn corner(&self, cell: &Cell, values: &[f64; 8], distance: f64, last: bool) -> Option<Corner> {
+        let count = if self.dimension.components() == 2 { 4 } else { 8 };
+        let corners = (0..count).map(|n| (self.at(cell.corner(n)), values[n]));
+        let between = (0..count).map(|n| self.at(0.5 * (cell.centre + cell.corner(n))));
+        let between = between.map(|X| (X, self.distance(&X)));
+        let known: Vec<Known> =
+            corners.chain([(self.at(cell.centre), distance)]).chain(between).collect();
+        let bend = if last { BEND_OF_LAST } else { BEND };
+        Corner::find(self.body, &known, bend * 2.0 * cell.half.x)
     }
 
     /// Tetrahedra of a cell inside the body, by part, and the boundary between.
-    fn cut(&self, cell: &Cell, values: &[f64; 8], owner: Option<usize>, bend: f64) -> Fate {
-        let mut halves = Halves::of(OF_BOX.len());
-        for tetrahedron in OF_BOX {
-            halves.cut(tetrahedron.map(|n| (cell.corner(n), values[n])));
-        }
-        let is_edge = bend > BEND * 2.0 * cell.half.x;
+    fn cut(
+        &self,
+        cell: &Cell,
+        (values, bend): (&[f64; 8], f64),
+        owner: Option<usize>,
+        corner: Option<Corner>,
+    ) -> Fate {
+        let (halves, edges) = match &corner {
+            Some(corner) => self.cut_at_edges(cell, corner),
+            None => {
+                let mut halves = Halves::of(OF_BOX.len());
+                for tetrahedron in OF_BOX {
+                    halves.cut(tetrahedron.map(|n| (cell.corner(n), values[n])));
+                }
+                (halves, Vec::new())
+            }
+        };
+        let is_edge = corner.is_none() && bend > BEND * 2.0 * cell.half.x;
+        let bend = corner.map_or(bend, |corner| corner.misfit);
         let facet = |corners| Facet { corners, edge: is_edge };
         let facets = halves.border.iter().filter(|t| vector_area(t).norm() > 0.0);
         let facets: Vec<Facet> = facets.map(|corners| facet(*corners)).collect();
@@ -290,14 +250,28 @@ impl Divided<'_> {
         let pieces = filled.map(|(part, (first, size))| (first / size, size, part)).collect();
         let edge = is_edge && !halves.border.is_empty();
         let border_bends = if owner.is_none() { self.border_bends(cell) } else { Vec::new() };
-        Fate::Cut(Cut { pieces, facets, bend, edge, by_places, border_bends })
+        Fate::Cut(Cut { pieces, facets, bend, edge, edges, by_places, border_bends })
+    }
+
+    /// What faces that are flat leave of a cell, and places along their edges.
+    fn cut_at_edges(&self, cell: &Cell, corner: &Corner) -> (Halves, Vec<Vector3>) {
+        // In a plane an edge is a place.
+        let step = match self.dimension.components() {
+            2 => f64::INFINITY,
+            _ => ALONG_EDGES * self.spacing,
+        };
+        let edges = corner.edges(&self.at(cell.centre), &cell.half, step);
+        (corner.cut(&OF_BOX.map(|tetrahedron| tetrahedron.map(|n| cell.corner(n)))), edges)
     }
 
     /// Whether the borders of all parts are planes in a cell.
     fn has_flat_borders(&self, cell: &Cell) -> bool {
         let has_distance = |part: &&Selector| level(part, &self.at(cell.centre), None).metric;
         self.parts.iter().all(has_distance)
-            && self.border_bends(cell).iter().all(|(_, bend)| *bend <= BEND * 2.0 * cell.half.x)
+            && self
+                .border_bends(cell)
+                .iter()
+                .all(|(_, bend)| *bend <= HIDDEN * BEND * 2.0 * cell.half.x)
     }
 
     /// How far the borders of parts are from where a linear function has them: part, \[m\]. A layer
@@ -311,7 +285,7 @@ impl Divided<'_> {
             let is_known = middle.metric && middle.value.is_finite() && !middle.is_uniform(reach);
             is_known.then(|| {
                 let bend = bend(&corners.map(|corner| corner.value), middle.value);
-                (index, if bend > KINK * 2.0 * cell.half.x { HIDDEN * bend } else { bend })
+                (index, HIDDEN * bend)
             })
         };
         self.parts.iter().enumerate().filter_map(of).collect()
@@ -357,38 +331,4 @@ fn bend(values: &[f64; 8], middle: f64) -> f64 {
         middle + (0..3).map(|k| if n >> k & 1 == 1 { slope[k] } else { -slope[k] }).sum::<f64>()
     };
     (0..8).map(|n| (values[n] - linear(n)).abs()).fold(0.0, f64::max)
-}
-
-impl Sampled {
-    fn add(&mut self, cell: &Cell, cut: Cut) {
-        let area: f64 = cut.facets.iter().map(|facet| vector_area(&facet.corners).norm()).sum();
-        let parts = cut.pieces.len() as f64;
-        let face = cell.volume() / (2.0 * cell.half.x);
-        let border_bend = cut.border_bends.iter().fold(0.0, |most, (_, bend)| bend.max(most));
-        for (part, bend) in &cut.border_bends {
-            if !cut.pieces.iter().any(|(_, _, other)| other == part) {
-                self.volumes[*part].doubt += bend * face;
-            }
-        }
-        for (place, size, part) in &cut.pieces {
-            let own = &mut self.volumes[*part];
-            own.size += size;
-            own.first += *size * place;
-            // What a boundary that bends is off, and what several owners may get of another.
-            own.doubt += cut.bend * area / parts + border_bend * face;
-            if cut.by_places {
-                own.variance += (BY_PLACES * cell.volume()).powi(2);
-            }
-        }
-        if cut.edge {
-            self.edges.push(cell.centre);
-        }
-        self.pieces.extend(cut.pieces);
-        self.facets.extend(cut.facets);
-    }
-
-    /// \[m³\]
-    pub fn volume(&self) -> f64 {
-        self.volumes.iter().map(|part| part.size).sum()
-    }
 }

@@ -1,5 +1,6 @@
 use super::surface::Facet;
 use super::*;
+use crate::algebra::random::Random;
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::geometry::{LabelField, LabelMap, Selector, Shape};
 use crate::problem::Dimension;
@@ -89,6 +90,88 @@ fn a_face_in_which_two_members_touch_is_no_boundary() {
                 (X.x - border).abs() < 1e-6 && X.y.min(X.z) > 0.01 && X.y.max(X.z) < 0.03
             });
             assert_eq!(seam.count(), 0, "{border} {spacing}");
+        }
+    }
+}
+
+fn sampled(body: &Shape, spacing: f64) -> Sampled {
+    let dimension = &Dimension::Three;
+    let parts = vec![&Selector::All];
+    let nodes = (1e-3 / spacing.powi(3)) as usize;
+    sample(&Divided { body, dimension, parts, spacing, nodes }).unwrap()
+}
+
+#[test]
+fn where_flat_faces_meet_the_boundary_is_closed_and_its_area_is_that_of_the_faces() {
+    let mut random = Random(5);
+    for n in 0..24 {
+        let mut within =
+            |low: f64, high: f64| low + (high - low) * 0.5 * (1.0 + random.symmetric());
+        let size = Vector3::from_fn(|_, _| within(0.05, 0.15));
+        let block = Shape::Box { min: Vector3::zeros(), max: size };
+        // A wedge is cut off, or a notch into an edge.
+        let normal = Vector3::from_fn(|_, _| within(-1.0, 1.0)).normalize();
+        let place = size.map(|length| length * within(0.4, 0.6));
+        let notch = Shape::Box { min: place, max: 2.0 * size };
+        let body = match n % 2 {
+            0 => Shape::Intersection(vec![block, Shape::HalfSpace { point: place, normal }]),
+            _ => Shape::Difference(Box::new(block), Box::new(notch)),
+        };
+        let found = sampled(&body, within(0.01, 0.02));
+        let areas = found.facets.iter().map(|facet| facet.area() * facet.normal());
+        let (all, sizes) = areas
+            .clone()
+            .fold((Vector3::zeros(), 0.0), |(sum, size), area| (sum + area, size + area.norm()));
+        // Where an edge passes by a cell at a hundredth of its own, the cell does not see it.
+        assert!(all.norm() < 5e-3 * sizes, "{n}: {} of {sizes}", all.norm());
+        let flux: f64 =
+            found.facets.iter().zip(areas).map(|(facet, area)| facet.centre().dot(&area)).sum();
+        let volume = found.volume();
+        assert!((flux / 3.0 - volume).abs() < 5e-3 * volume, "{n}: {flux} {volume}");
+        assert!(found.volumes[0].doubt < 5e-3 * volume, "{n}: {:?}", found.volumes[0]);
+        if n % 2 == 1 {
+            // A notch takes as much off three faces as it adds.
+            let faces = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
+            let rest = size - place;
+            assert!((sizes - faces).abs() < 5e-3 * faces, "{n}: {sizes} {faces}");
+            let exact = size.product() - rest.product();
+            assert!((volume - exact).abs() < 1e-3 * exact, "{n}: {volume} {exact}");
+        }
+    }
+}
+
+#[test]
+fn the_rim_of_a_cylinder_is_cut_as_sharply_as_its_side() {
+    let (radius, height) = (0.05, 0.1);
+    let body = Shape::Cylinder { base: Vector3::zeros(), axis: Vector3::z(), radius, height };
+    for spacing in [0.01, 0.007, 0.004] {
+        let found = sampled(&body, spacing);
+        let area: f64 = found.facets.iter().map(Facet::area).sum();
+        let exact = 2.0 * std::f64::consts::PI * radius * (radius + height);
+        assert!((area / exact - 1.0).abs() < 0.015, "{spacing}: {area} {exact}");
+        let volume = std::f64::consts::PI * radius * radius * height;
+        assert!((found.volume() / volume - 1.0).abs() < 1e-3, "{spacing}: {}", found.volume());
+        let chamfers: f64 = found.facets.iter().filter(|f| f.edge).map(Facet::area).sum();
+        assert!(chamfers < 0.01 * exact, "{spacing}: {chamfers} of {exact}");
+    }
+}
+
+#[test]
+fn every_face_of_a_box_has_its_area_though_it_is_no_wider_than_a_spacing() {
+    let mut random = Random(3);
+    for n in 0..40 {
+        let mut within =
+            |low: f64, high: f64| low + (high - low) * 0.5 * (1.0 + random.symmetric());
+        let size = Vector3::from_fn(|_, _| within(0.02, 0.1));
+        let body = Shape::Box { min: Vector3::zeros(), max: size };
+        let found = sampled(&body, size.min() * within(0.2, 1.0));
+        for axis in 0..3 {
+            let exact = size.product() / size[axis];
+            for side in [-1.0, 1.0] {
+                let own = found.facets.iter().filter(|f| f.normal()[axis] * side > 0.99);
+                let area: f64 = own.map(Facet::area).sum();
+                assert!((area / exact - 1.0).abs() < 0.01, "{n}: {axis} {side} {area} {exact}");
+            }
         }
     }
 }

@@ -32,19 +32,23 @@ const FINE: f64 = 0.01;
 /// Farther outside than this is straight between two faces \[half of the way across\].
 const STRAIGHT: f64 = 0.8;
 /// Looks for the outside between two places on its two sides.
-const LOOKS: usize = 2;
+const LOOKS: usize = 3;
 /// Looks along the boundary \[way to the next place\].
 const ALONG: [f64; 3] = [0.5, 0.25, 0.75];
 /// Looks beside a place on the boundary \[way to the next place\].
 const BESIDE: [f64; 3] = [0.1, 0.01, 0.001];
-/// Halvings towards the places where a way leaves and comes back.
-const HALVINGS: usize = 8;
+/// The same for the narrowest gaps \[way to the next place\].
+const NEXT_TO: f64 = 1e-5;
+/// Halvings towards the places where a way leaves and comes back: those that find the walls of a hollow, and
+/// those that find the two faces of a narrow gap.
+const HALVINGS: [usize; 2] = [8, 24];
 /// Parts of what of a way lies outside, between which it is looked how far outside.
 const PARTS: usize = 8;
 /// Places as deep or as low but for less are equal \[length\].
 const TIE: f64 = 1e-6;
+
 /// Between two places on the two sides of a gap the distance rises above a line by more than
-/// this part of the sum of their depths.
+/// this part of the sum of their depths, unless a face beside the way is nearer.
 const BENT: f64 = 0.1;
 
 /// A place with its signed distance \[m\].
@@ -167,7 +171,12 @@ struct Outside {
     first: f64,
     /// The greatest distance that was seen \[m\].
     depth: f64,
+    /// Whether it is so little that it is a gap only between faces that face each other.
+    narrow: bool,
 }
+
+/// A place on a way \[m\] with its signed distance \[m\].
+type Step = (f64, f64);
 
 /// The straight way between two places.
 struct Way<'a> {
@@ -218,11 +227,13 @@ impl<'a> Way<'a> {
                 if next == self.total { self.ends[1].distance } else { self.distance(next) };
             let narrow = distance <= self.thin && there <= self.thin;
             if narrow {
-                outside = self.outside_between((t, distance), (next, there), LOOKS);
+                outside = self.outside_between((t, distance), (next, there), (LOOKS, false));
             }
             match (there > self.thin, &mut outside) {
                 (true, Some(out)) => out.depth = out.depth.max(there),
-                (true, None) => outside = Some(Outside { first: next, depth: there }),
+                (true, None) => {
+                    outside = Some(Outside { first: next, depth: there, narrow: false })
+                }
                 (false, Some(out)) if self.is_crossed(inside, out, next) => return true,
                 (false, _) => (inside, outside) = (next, None),
             }
@@ -233,8 +244,14 @@ impl<'a> Way<'a> {
 
     /// The outside between two places inside, (t, distance), if it shows. Where one of these is on
     /// the boundary, a narrow gap would be beside it; elsewhere it would be where the distance
-    /// vanished if it rose and fell evenly.
-    fn outside_between(&self, from: (f64, f64), to: (f64, f64), looks: usize) -> Option<Outside> {
+    /// vanished if it rose and fell evenly. It hardly rises where the way runs along a face that is
+    /// nearer than the gap: what is found there is `narrow`.
+    fn outside_between(
+        &self,
+        from: Step,
+        to: Step,
+        (looks, narrow): (usize, bool),
+    ) -> Option<Outside> {
         let (before, after) = ((-from.1).max(0.0), (-to.1).max(0.0));
         let span = to.0 - from.0;
         // Balls of material that overlap.
@@ -242,26 +259,30 @@ impl<'a> Way<'a> {
             return None;
         }
         let at = |part: f64| from.0 + part * span;
-        let out = |t: f64| {
+        let look = |t: f64, narrow: bool| {
             let depth = self.distance(t);
-            (depth > self.thin).then_some(Outside { first: t, depth })
+            (depth > self.thin).then_some(Outside { first: t, depth, narrow })
+        };
+        let out = |t: f64| look(t, narrow);
+        let next_to = |parts: &dyn Fn(f64) -> f64| {
+            let found = BESIDE.into_iter().map(parts).map(at).find_map(out);
+            found.or_else(|| look(at(parts(NEXT_TO)), true))
         };
         match (before <= self.thin, after <= self.thin) {
             (true, true) => ALONG.into_iter().map(at).find_map(out),
-            (true, false) => BESIDE.into_iter().map(at).find_map(out),
-            (false, true) => BESIDE.into_iter().map(|part| at(1.0 - part)).find_map(out),
+            (true, false) => next_to(&|part| part),
+            (false, true) => next_to(&|part| 1.0 - part),
             (false, false) => {
                 let t = at(before / (before + after));
                 let distance = self.distance(t);
                 if distance > self.thin {
-                    return Some(Outside { first: t, depth: distance });
+                    return Some(Outside { first: t, depth: distance, narrow });
                 }
                 let on_line = from.1 + (to.1 - from.1) * (t - from.0) / span;
-                if distance - on_line <= BENT * (before + after) {
-                    return None;
-                }
-                let first = self.outside_between(from, (t, distance), looks - 1);
-                first.or_else(|| self.outside_between((t, distance), to, looks - 1))
+                let is_even = distance - on_line <= BENT * (before + after);
+                let then = (looks - 1, narrow || is_even || looks < LOOKS);
+                let first = self.outside_between(from, (t, distance), then);
+                first.or_else(|| self.outside_between((t, distance), to, then))
             }
         }
     }
@@ -271,27 +292,37 @@ impl<'a> Way<'a> {
     /// just outside of where the way leaves and comes back differ.
     fn is_crossed(&self, inside: f64, outside: &Outside, returns: f64) -> bool {
         let is_deep = |depth: f64, width: f64| depth > self.allowed.max(DEEP * width);
-        if is_deep(outside.depth, returns - inside) {
+        if !outside.narrow && is_deep(outside.depth, returns - inside) {
             return true;
         }
-        let just_outside = |mut inside: f64| {
-            let mut out = outside.first;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (inside + out);
-                if self.distance(middle) > self.thin {
-                    out = middle;
-                } else {
-                    inside = middle;
-                }
-            }
-            out
-        };
-        let (leaves, returns) = (just_outside(inside), just_outside(returns));
         let away = |t: f64| self.body.gradient(&self.at(t));
+        let [leaves, returns] =
+            [inside, returns].map(|t| self.just_outside(t, outside.first, HALVINGS[1]));
+        if away(leaves).dot(&away(returns)) < FACING {
+            return true;
+        }
+        if outside.narrow {
+            return false;
+        }
+        let [leaves, returns] =
+            [inside, returns].map(|t| self.just_outside(t, outside.first, HALVINGS[0]));
         let part = (returns - leaves) / PARTS as f64;
         let depths = (1..PARTS).map(|n| self.distance(leaves + n as f64 * part));
         let depth = depths.fold(outside.depth, f64::max);
         is_deep(depth, returns - leaves) || away(leaves).dot(&away(returns)) < TURNED
+    }
+
+    /// The place outside next to where the boundary lies between one inside and one outside.
+    fn just_outside(&self, mut inside: f64, mut outside: f64, halvings: usize) -> f64 {
+        for _ in 0..halvings {
+            let middle = 0.5 * (inside + outside);
+            if self.distance(middle) > self.thin {
+                outside = middle;
+            } else {
+                inside = middle;
+            }
+        }
+        outside
     }
 }
 

@@ -14,6 +14,8 @@ pub struct Demiray {
 }
 
 impl ShapeEnergy for Demiray {
+    const NAME: &'static str = "demiray";
+    const ENERGY: &'static str = "mu/2b (exp(b (Ī₁ − 3)) − 1) + U(J)";
     const CONSTANTS: &'static [Constant] =
         &[Constant::needed("mu", "Pa"), Constant::needed("b", "–")];
     const HAS_FIBRES: bool = false;

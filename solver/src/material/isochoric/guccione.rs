@@ -38,6 +38,9 @@ impl Guccione {
 }
 
 impl ShapeEnergy for Guccione {
+    const NAME: &'static str = "guccione";
+    const ENERGY: &'static str = "C/2 (exp Q − 1) + U(J), Q = b_f E₁₁² + b_t (E₂₂² + E₃₃² + 2 E₂₃²) + 2 b_fs (E₁₂² + E₁₃²), \
+         E = (C̄ − 1)/2 with axis 1 along the fibres";
     const CONSTANTS: &'static [Constant] = &[
         Constant::needed("C", "Pa"),
         Constant::needed("b_f", "–"),

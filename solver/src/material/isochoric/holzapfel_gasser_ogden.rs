@@ -30,6 +30,9 @@ impl HolzapfelGasserOgden {
 }
 
 impl ShapeEnergy for HolzapfelGasserOgden {
+    const NAME: &'static str = "holzapfel_gasser_ogden";
+    const ENERGY: &'static str = "mu/2 (Ī₁ − 3) + k1/2k2 Σ (exp(k2 E²) − 1) + U(J), E = max(0, kappa (Ī₁ − 3) + (1 − 3 kappa)(m·C̄m − 1)) of \
+         two families m of fibres at ± angle [rad] from `fibres` towards `sheets`; kappa and angle are 0 if left out";
     const CONSTANTS: &'static [Constant] = &[
         Constant::needed("mu", "Pa"),
         Constant::needed("k1", "Pa"),

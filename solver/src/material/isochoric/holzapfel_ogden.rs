@@ -39,6 +39,10 @@ impl Exponential {
 }
 
 impl ShapeEnergy for HolzapfelOgden {
+    const NAME: &'static str = "holzapfel_ogden";
+    const ENERGY: &'static str = "a/2b (exp(b (Ī₁ − 3)) − 1) + a_f/2b_f (exp(b_f max(0, C̄₁₁ − 1)²) − 1) + a_s/2b_s (exp(b_s max(0, C̄₂₂ − 1)²) \
+         − 1) + a_fs/2b_fs (exp(b_fs C̄₁₂²) − 1) + U(J), axis 1 along the fibres, 2 in the sheets normal to them; terms of \
+         sheets are left out with their constants";
     const CONSTANTS: &'static [Constant] = &[
         Constant::needed("a", "Pa"),
         Constant::needed("b", "–"),

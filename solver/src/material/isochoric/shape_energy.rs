@@ -33,6 +33,10 @@ impl Constant {
 /// the fibre frame: the first axis along the fibres, the second along the sheets, the third normal
 /// to both.
 pub trait ShapeEnergy: Copy + Send + Sync + PartialEq + Debug {
+    /// The law with this energy in case files.
+    const NAME: &'static str;
+    /// ψ in words and signs, for people and other programs, with the constants by their names.
+    const ENERGY: &'static str;
     /// What [`ShapeEnergy::new`] takes, in this order.
     const CONSTANTS: &'static [Constant];
     /// Whether it depends on the directions of fibres.

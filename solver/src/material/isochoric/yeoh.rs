@@ -13,6 +13,9 @@ pub struct Yeoh {
 }
 
 impl ShapeEnergy for Yeoh {
+    const NAME: &'static str = "yeoh";
+    const ENERGY: &'static str =
+        "C1 x + C2 x² + C3 x³ + U(J), x = Ī₁ − 3 [Pa]; C2 and C3 are 0 if left out";
     const CONSTANTS: &'static [Constant] = &[
         Constant::needed("C1", "Pa"),
         Constant::zero_if_left_out("C2", "Pa"),

@@ -2,6 +2,7 @@
 #![allow(non_snake_case)]
 
 use crate::common::*;
+use mtled::algebra::random::Random;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Discretisation;
 use mtled::geometry::{Field, Selector, Shape, Surface};
@@ -153,4 +154,55 @@ fn octahedron() -> (Vec<Vector3>, Vec<[u32; 3]>) {
         triangles.push(if turned { [corners[0], corners[2], corners[1]] } else { corners });
     }
     (vertices, triangles)
+}
+
+/// Beside each other with a gap between them: two blocks, one of which is held and pulled and the other
+/// held alone.
+fn pair(random: &mut Random) -> (Problem, f64) {
+    let mut within = |low: f64, high: f64| low + (high - low) * 0.5 * (1.0 + random.symmetric());
+    let spacing = 0.01;
+    let gap = spacing * 10.0_f64.powf(within(-4.0, -0.3));
+    let (border, end) = (within(0.035, 0.055), within(0.085, 0.11));
+    let (width, height) = (within(0.03, 0.045), within(0.03, 0.045));
+    let left = block([0.0; 3], [border, width, height]);
+    let right = block([border + gap, 0.0, 0.0], [end, width, height]);
+    let mut problem = problem(Shape::Union(vec![left, right]), spacing);
+    if within(-1.0, 1.0) > 0.0 {
+        let seed = (1e6 * within(0.0, 1.0)) as u64;
+        problem.recipe.cloud = Cloud::Jittered { spacing, jitter: within(0.05, 0.25), seed };
+    }
+    let still = Vector3::zeros();
+    let up = Vector3::new(0.0, 0.002, 0.003);
+    let top = Selector::Intersection(vec![
+        face(2, height),
+        Selector::Inside {
+            shape: block([-1.0; 3], [border + 0.5 * gap, 1.0, 1.0]),
+            tolerance: 0.0,
+        },
+    ]);
+    problem.conditions = vec![
+        EssentialCondition::on_surface("left", face(0, 0.0), still, Amplitude::Constant),
+        EssentialCondition::on_surface("right", face(0, end), still, Amplitude::Constant),
+    ];
+    let traction = (20.0 * up.normalize()).into();
+    problem.loads.tractions =
+        vec![Traction { name: "pull".into(), part: top, traction, amplitude: Amplitude::Constant }];
+    (problem, border + 0.5 * gap)
+}
+
+#[test]
+fn a_block_without_loads_beside_a_gap_does_not_move_however_narrow_the_gap() {
+    let mut random = Random(11);
+    for n in 0..16 {
+        let (problem, middle) = pair(&mut random);
+        let simulation = solved(&problem);
+        let (mut loaded, mut other) = (0.0_f64, 0.0_f64);
+        let nodes = simulation.model.positions.iter().zip(simulation.state.displacement.chunks(3));
+        for (X, u) in nodes {
+            let size = u.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+            let side = if X.x < middle { &mut loaded } else { &mut other };
+            *side = side.max(size);
+        }
+        assert!(loaded > 1e-4 && other < 1e-5 * loaded, "{n}: {other} beside {loaded}");
+    }
 }

@@ -22,7 +22,8 @@ pub struct Region {
 }
 
 /// A hyperelastic material. With F the deformation gradient: J = det F, C = FᵀF, I₁ = tr C, I, II
-/// and III the invariants of C, E = (C − 1)/2, ε the small strain, λᵢ the principal stretches.
+/// and III the invariants of C, E = (C − 1)/2, ε the small strain, λᵢ the principal stretches,
+/// C̄ = J^(−2/3) C, Ī₁ = tr C̄.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Material {
     pub law: LawFormat,
@@ -134,43 +135,13 @@ impl Material {
     }
 }
 
-/// The isochoric tensor in formulas.
-const BAR: &str = "Cbar = J^(-2/3) C, I1bar = tr Cbar";
-
-/// The formula of a law.
+/// The formula of a law with that of its volumetric energy.
 fn strain_energy(law: LawFormat, volumetric: Option<VolumetricFormat>) -> String {
     let volumetric = match volumetric.unwrap_or(VolumetricFormat::Quadratic) {
-        VolumetricFormat::Quadratic => "K/2 (J - 1)^2",
-        VolumetricFormat::SimoTaylor => "K/4 (J^2 - 1 - 2 ln J)",
+        VolumetricFormat::Quadratic => "K/2 (J − 1)²",
+        VolumetricFormat::SimoTaylor => "K/4 (J² − 1 − 2 ln J)",
     };
-    match law {
-        LawFormat::MooneyRivlin => "A (I - 3) + B (II - 3) + C (III^-2 - 1) + D (III - 1)^2".into(),
-        LawFormat::NeoHookeanLogJ => "mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2".into(),
-        LawFormat::NeoHookeanIsochoric => format!("mu/2 (J^(-2/3) I1 - 3) + {volumetric}"),
-        LawFormat::Ogden => format!(
-            "sum_i 2 mu_i/alpha_i^2 (l1^alpha_i + l2^alpha_i + l3^alpha_i - 3) + {volumetric}, \
-             l_k = J^(-1/3) lambda_k"
-        ),
-        LawFormat::Yeoh => format!("C1 x + C2 x^2 + C3 x^3 + {volumetric}, {BAR}, x = I1bar - 3"),
-        LawFormat::Demiray => format!("mu/2b (exp(b (I1bar - 3)) - 1) + {volumetric}, {BAR}"),
-        LawFormat::Guccione => format!(
-            "C/2 (exp Q - 1) + {volumetric}, Q = b_f E11^2 + b_t (E22^2 + E33^2 + 2 E23^2) + \
-             2 b_fs (E12^2 + E13^2), E = (Cbar - 1)/2 with axis 1 along the fibres, {BAR}"
-        ),
-        LawFormat::HolzapfelGasserOgden => format!(
-            "mu/2 (I1bar - 3) + k1/2k2 sum_i (exp(k2 E_i^2) - 1) + {volumetric}, E_i = max(0, kappa \
-             (I1bar - 3) + (1 - 3 kappa) (m_i.Cbar m_i - 1)), m_i at +- angle [rad] from the fibres \
-             towards the sheets, kappa and angle 0 if left out, {BAR}"
-        ),
-        LawFormat::HolzapfelOgden => format!(
-            "a/2b (exp(b (I1bar - 3)) - 1) + a_f/2b_f (exp(b_f max(0, Cbar11 - 1)^2) - 1) + a_s/2b_s \
-             (exp(b_s max(0, Cbar22 - 1)^2) - 1) + a_fs/2b_fs (exp(b_fs Cbar12^2) - 1) + {volumetric}, axis \
-             1 along the fibres, 2 in the sheets normal to them, terms of constants that are left out \
-             are 0, {BAR}"
-        ),
-        LawFormat::StVenantKirchhoff => "lambda/2 (tr E)^2 + mu E:E".into(),
-        LawFormat::LinearElastic => "lambda/2 (tr eps)^2 + mu eps:eps".into(),
-    }
+    law.0.energy.replace("U(J)", volumetric)
 }
 
 /// The regions of a sound case; one for a body of one material.

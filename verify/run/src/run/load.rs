@@ -89,7 +89,6 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         Error::TooMuchAddedMass { .. } | Error::UnscaledMass { .. } => "time.mass_scaling",
         Error::ProbeOutside { .. } => "probe",
         Error::PointWithoutRegion { .. } => "region",
-        Error::Mistake(_) => "discretisation",
         Error::Geometry(GeometryError::NoVolume) => "geometry.shape",
         Error::Geometry(_) => "discretisation",
         Error::NoEquilibrium { .. } | Error::NoEquilibriumToVary | Error::NoSensitivity { .. } => {
@@ -107,7 +106,9 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         | Error::NotHeld { .. }
         | Error::NeitherSolver { .. }
         | Error::FictitiousMass => "time",
-        Error::NoFrequencies | Error::TooManyFrequencies { .. } => "discretisation",
+        Error::Mistake(_) | Error::NoFrequencies | Error::TooManyFrequencies { .. } => {
+            "discretisation"
+        }
     };
     case.diagnostic(key, error.to_string() + &searched_elsewhere(case, error))
 }

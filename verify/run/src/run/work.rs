@@ -1,6 +1,7 @@
 //! Work of a run in counts that do not depend on the machine.
 
 use super::solved::Solved;
+use mtled_checks::report::four_digits;
 use serde::{Deserialize, Serialize};
 
 /// Counts of a run.
@@ -37,5 +38,19 @@ impl Work {
             neighbour_visits: evaluations * supports.nodes.len(),
             bytes_streamed: evaluations * simulation.model.bytes_per_step(),
         }
+    }
+
+    /// A line for people.
+    pub fn text(&self) -> String {
+        format!(
+            "  {} evaluations of the internal force ({} for the critical step), {:.2e} points and {:.2e} \
+             neighbours visited, {} GB read; {} iterations for the gradients",
+            self.force_evaluations,
+            self.lanczos_evaluations,
+            self.point_evaluations as f64,
+            self.neighbour_visits as f64,
+            four_digits(self.bytes_streamed as f64 / 1e9),
+            self.correction_iterations
+        )
     }
 }

@@ -2,24 +2,25 @@
 //! the law.
 
 use crate::scene::build::builder::Builder;
-use crate::scene::format::{DirectionFormat, LawFormat, MaterialFormat, PronyTermFormat};
+use crate::scene::format::{DirectionFormat, MaterialFormat, PronyTermFormat};
 use mtled::geometry::Field;
-use mtled::material::{Isochoric, Law, PronySeries, PronyTerm, ShapeEnergy, VolumetricTerm};
+use mtled::material::{Law, NamedConstants, PronySeries, PronyTerm, VolumetricTerm};
 use mtled::problem::{ActiveStress, Fibres};
 
 impl Builder<'_> {
     /// A law of named constants, or `None` and a mistake.
-    pub fn isochoric<W: ShapeEnergy>(
+    pub fn isochoric(
         &mut self,
         key: &str,
         format: &MaterialFormat,
+        law: &NamedConstants,
         volumetric: VolumetricTerm,
-    ) -> Option<Isochoric<W>> {
-        let name = LawFormat::WORDS[format.law as usize];
+    ) -> Option<Law> {
+        let name = format.law.name();
         let before = self.count();
-        let known: Vec<&str> = W::CONSTANTS.iter().map(|constant| constant.name).collect();
+        let known: Vec<&str> = law.constants.iter().map(|constant| constant.name).collect();
         let names: Vec<String> =
-            W::CONSTANTS.iter().map(|own| format!("{} [{}]", own.name, own.unit)).collect();
+            law.constants.iter().map(|own| format!("{} [{}]", own.name, own.unit)).collect();
         let Some(given) = &format.constants else {
             let message = format!("is missing; {name} needs {}", names.join(", "));
             self.mistake(&format!("{key}.constants"), message);
@@ -29,7 +30,7 @@ impl Builder<'_> {
             let own = format!("{key}.constants.{other}");
             self.unknown_name(&own, &format!("constant of {name}"), other, &known);
         }
-        let values: Vec<f64> = (W::CONSTANTS.iter())
+        let values: Vec<f64> = (law.constants.iter())
             .map(|constant| {
                 let value = given.get(constant.name).copied();
                 value.or(constant.is_optional.then_some(0.0)).unwrap_or_else(|| {
@@ -42,10 +43,10 @@ impl Builder<'_> {
         if self.count() > before {
             return None;
         }
-        let shape = self.accept(&format!("{key}.constants"), W::new(&values))?;
-        let shear = (!W::HAS_FIBRES).then(|| shape.shear_modulus());
+        let shear = self.accept(&format!("{key}.constants"), (law.shear_modulus)(&values))?;
+        let shear = (!law.has_fibres).then_some(shear);
         let bulk_modulus = self.bulk_modulus(key, (name, "constants"), format, shear)?;
-        self.accept(key, Isochoric::new(shape, bulk_modulus, volumetric))
+        self.accept(key, (law.law)(&values, bulk_modulus, volumetric))
     }
 
     /// The fibres of a law or an active stress that has some.
@@ -91,7 +92,7 @@ impl Builder<'_> {
         let rows = format.prony.as_ref()?;
         let key = format!("{key}.prony");
         if !law.is_split() {
-            let name = LawFormat::WORDS[format.law as usize];
+            let name = format.law.name();
             let message = format!(
                 "relaxes the isochoric stress, which {name} does not have: use \
                  neo_hookean_isochoric, ogden, or a law with constants"

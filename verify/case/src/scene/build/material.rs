@@ -1,12 +1,11 @@
 //! Materials and regions of a case file → those of the solver.
 
 use crate::scene::build::builder::Builder;
-use crate::scene::format::{CaseFormat, LawFormat, MaterialFormat};
+use crate::scene::format::{CaseFormat, MaterialFormat};
 use mtled::geometry::Selector;
 use mtled::material::{
-    ElasticConstants, Law, LinearElastic, Material, MaterialError, MooneyRivlin,
-    NeoHookeanIsochoric, NeoHookeanLogJ, Ogden, OgdenTerm, OgdenTerms, StVenantKirchhoff,
-    VolumetricTerm,
+    ElasticConstants, Law, Material, MaterialError, MooneyRivlin, Ogden, OgdenTerm, OgdenTerms,
+    Takes, VolumetricTerm,
 };
 use mtled::problem::Region;
 use std::collections::BTreeMap;
@@ -50,31 +49,12 @@ impl Builder<'_> {
         self.positive(&format!("{key}.density"), format.density);
         self.keys_of_law(&key, format);
         let volumetric = format.volumetric.map(Into::into).unwrap_or_default();
-        let law = match format.law {
-            LawFormat::MooneyRivlin => Law::MooneyRivlin(self.rubber(&key, format)?),
-            LawFormat::NeoHookeanLogJ => {
-                Law::NeoHookeanLogJ(NeoHookeanLogJ::new(self.constants(&key, format)?))
-            }
-            LawFormat::NeoHookeanIsochoric => {
-                let constants = self.constants(&key, format)?;
-                Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(constants, volumetric))
-            }
-            LawFormat::Ogden => Law::Ogden(self.ogden(&key, format, volumetric)?),
-            LawFormat::Yeoh => Law::Yeoh(self.isochoric(&key, format, volumetric)?),
-            LawFormat::Demiray => Law::Demiray(self.isochoric(&key, format, volumetric)?),
-            LawFormat::Guccione => Law::Guccione(self.isochoric(&key, format, volumetric)?),
-            LawFormat::HolzapfelGasserOgden => {
-                Law::HolzapfelGasserOgden(self.isochoric(&key, format, volumetric)?)
-            }
-            LawFormat::HolzapfelOgden => {
-                Law::HolzapfelOgden(self.isochoric(&key, format, volumetric)?)
-            }
-            LawFormat::StVenantKirchhoff => {
-                Law::StVenantKirchhoff(StVenantKirchhoff::new(self.constants(&key, format)?))
-            }
-            LawFormat::LinearElastic => {
-                Law::LinearElastic(LinearElastic::new(self.constants(&key, format)?))
-            }
+        let law = match &format.law.0.takes {
+            Takes::Rubber => Law::MooneyRivlin(self.rubber(&key, format)?),
+            Takes::Pair(law) => law(self.constants(&key, format)?),
+            Takes::PairAndVolumetric(law) => law(self.constants(&key, format)?, volumetric),
+            Takes::Terms => Law::Ogden(self.ogden(&key, format, volumetric)?),
+            Takes::Constants(named) => self.isochoric(&key, format, named, volumetric)?,
         };
         let before = self.count();
         let fibres = self.fibres(&key, format, &law);
@@ -87,7 +67,8 @@ impl Builder<'_> {
 
     /// Refuses keys that belong to another law.
     fn keys_of_law(&mut self, key: &str, format: &MaterialFormat) {
-        let rubber = format.law == LawFormat::MooneyRivlin;
+        let takes = &format.law.0.takes;
+        let rubber = matches!(takes, Takes::Rubber);
         for (name, value) in [("A", format.a), ("B", format.b)] {
             if value.is_some() && !rubber {
                 self.mistake(&format!("{key}.{name}"), "belongs to law = \"mooney_rivlin\"");
@@ -100,14 +81,14 @@ impl Builder<'_> {
                 self.mistake(&format!("{key}.{name}"), message);
             }
         }
-        let named = has_named_constants(format.law);
-        let split = matches!(format.law, LawFormat::NeoHookeanIsochoric | LawFormat::Ogden);
-        if format.volumetric.is_some() && !split && !named {
+        let named = matches!(takes, Takes::Constants(_));
+        let split = named || matches!(takes, Takes::PairAndVolumetric(_) | Takes::Terms);
+        if format.volumetric.is_some() && !split {
             let message =
                 "belongs to law = \"neo_hookean_isochoric\" or \"ogden\", or one with constants";
             self.mistake(&format!("{key}.volumetric"), message);
         }
-        if format.terms.is_some() && format.law != LawFormat::Ogden {
+        if format.terms.is_some() && !matches!(takes, Takes::Terms) {
             self.mistake(&format!("{key}.terms"), "belongs to law = \"ogden\"");
         }
         if format.constants.is_some() && !named {
@@ -253,21 +234,4 @@ fn constants_given(format: &MaterialFormat) -> [(&'static str, Option<f64>); 5] 
         ("shear_modulus", format.shear_modulus),
         ("bulk_modulus", format.bulk_modulus),
     ]
-}
-
-/// Whether a law takes constants by their names.
-fn has_named_constants(law: LawFormat) -> bool {
-    match law {
-        LawFormat::Yeoh
-        | LawFormat::Demiray
-        | LawFormat::Guccione
-        | LawFormat::HolzapfelGasserOgden
-        | LawFormat::HolzapfelOgden => true,
-        LawFormat::MooneyRivlin
-        | LawFormat::NeoHookeanLogJ
-        | LawFormat::NeoHookeanIsochoric
-        | LawFormat::Ogden
-        | LawFormat::StVenantKirchhoff
-        | LawFormat::LinearElastic => false,
-    }
 }

@@ -3,10 +3,13 @@
 use crate::scene::format::choice::choice;
 use crate::scene::format::conditions::AmplitudeFormat;
 use crate::scene::format::fibres::DirectionFormat;
-use mtled::material::VolumetricTerm;
-use schemars::JsonSchema;
-use serde::Deserialize;
+use mtled::material::{LAWS, NamedLaw, VolumetricTerm};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use serde_json::{Value, json};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 /// A constitutive law with its parameters: exactly one pair of elastic constants; A, B and
 /// poisson_ratio for mooney_rivlin; terms and poisson_ratio or bulk_modulus for ogden; constants and
@@ -84,35 +87,57 @@ pub struct ActiveStressFormat {
     pub amplitude: AmplitudeFormat,
 }
 
-choice! {
-    /// A constitutive law.
-    LawFormat {
-        /// ψ = A(I−3) + B(II−3) + C(III⁻²−1) + D(III−1)².
-        "mooney_rivlin" MooneyRivlin,
-        /// ψ = μ/2 (I₁−3) − μ ln J + λ/2 (ln J)².
-        "neo_hookean_log_j" NeoHookeanLogJ,
-        /// ψ = μ/2 (J^(−2/3) I₁ − 3) + U(J).
-        "neo_hookean_isochoric" NeoHookeanIsochoric,
-        /// ψ = Σ 2μ/α² (λ̄₁^α + λ̄₂^α + λ̄₃^α − 3) + U(J), λ̄ = J^(−1/3) λ.
-        "ogden" Ogden,
-        /// ψ = C1 x + C2 x² + C3 x³ + U(J), x = Ī₁ − 3 [Pa]; C2 and C3 are 0 if left out.
-        "yeoh" Yeoh,
-        /// ψ = mu/2b (exp(b (Ī₁ − 3)) − 1) + U(J).
-        "demiray" Demiray,
-        /// ψ = C/2 (exp Q − 1) + U(J), Q = b_f E₁₁² + b_t (E₂₂² + E₃₃² + 2 E₂₃²) + 2 b_fs (E₁₂² + E₁₃²),
-        /// Ē in the frame of the fibres.
-        "guccione" Guccione,
-        /// ψ = mu/2 (Ī₁ − 3) + k1/2k2 Σ (exp(k2 E²) − 1) + U(J), E = ⟨kappa (Ī₁ − 3) + (1 − 3 kappa)(Ī₄ − 1)⟩
-        /// of two families of fibres at ± angle [rad] from `fibres` towards `sheets`; kappa and angle
-        /// are 0 if left out.
-        "holzapfel_gasser_ogden" HolzapfelGasserOgden,
-        /// ψ = a/2b (exp(b (Ī₁ − 3)) − 1) + a_f/2b_f (exp(b_f ⟨Ī₄f − 1⟩²) − 1) + a_s/2b_s (exp(b_s ⟨Ī₄s − 1⟩²) − 1)
-        /// + a_fs/2b_fs (exp(b_fs Ī₈²) − 1) + U(J); terms of sheets are left out with their constants.
-        "holzapfel_ogden" HolzapfelOgden,
-        /// ψ = λ/2 (tr E)² + μ E:E.
-        "st_venant_kirchhoff" StVenantKirchhoff,
-        /// ψ = λ/2 (tr ε)² + μ ε:ε, small displacements only.
-        "linear_elastic" LinearElastic,
+/// A constitutive law, by its name.
+#[derive(Clone, Copy)]
+pub struct LawFormat(pub &'static NamedLaw);
+
+impl LawFormat {
+    /// As case files write it.
+    pub fn name(self) -> &'static str {
+        self.0.name
+    }
+}
+
+impl std::fmt::Debug for LawFormat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl PartialEq for LawFormat {
+    fn eq(&self, other: &LawFormat) -> bool {
+        self.name() == other.name()
+    }
+}
+
+impl Serialize for LawFormat {
+    fn serialize<S: Serializer>(&self, writer: S) -> Result<S::Ok, S::Error> {
+        writer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for LawFormat {
+    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<LawFormat, D::Error> {
+        static NAMES: LazyLock<Vec<&str>> =
+            LazyLock::new(|| LAWS.iter().map(|law| law.name).collect());
+        let word = String::deserialize(reader)?;
+        let found = LAWS.iter().find(|law| law.name == word);
+        found.map(LawFormat).ok_or_else(|| de::Error::unknown_variant(&word, &NAMES))
+    }
+}
+
+impl JsonSchema for LawFormat {
+    fn schema_name() -> Cow<'static, str> {
+        "LawFormat".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let one = |law: &NamedLaw| {
+            let description = format!("ψ = {}.", law.energy);
+            json!({ "description": description, "type": "string", "const": law.name })
+        };
+        let all: Vec<Value> = LAWS.iter().map(one).collect();
+        json_schema!({ "description": "A constitutive law.", "oneOf": all })
     }
 }
 

@@ -290,7 +290,7 @@ pub fn summary_text(
     lines.extend(answers_text(case, record, bars));
     lines.extend(contacts_text(case, contacts).into_iter().chain(left_out_text(case)));
     lines.extend(bars.into_iter().flat_map(|bars| error_bars_text(case, bars)));
-    lines.push(work_text(solved));
+    lines.push(Work::of(solved).text());
     lines.extend(memory_text(case, solved));
     lines.push(format!(
         "  set-up {:.2} s, run {:.2} s wall ({:.2} s CPU)",
@@ -388,18 +388,4 @@ fn answers_text(case: &Case, record: &Recording, bars: Option<&Estimated>) -> Ve
     }
     lines.extend(loads_text(case, last));
     lines
-}
-
-fn work_text(solved: &Solved) -> String {
-    let work = Work::of(solved);
-    format!(
-        "  {} evaluations of the internal force ({} for the critical step), {:.2e} points and {:.2e} \
-         neighbours visited, {} GB read; {} iterations for the gradients",
-        work.force_evaluations,
-        work.lanczos_evaluations,
-        work.point_evaluations as f64,
-        work.neighbour_visits as f64,
-        four_digits(work.bytes_streamed as f64 / 1e9),
-        work.correction_iterations
-    )
 }
