@@ -175,3 +175,14 @@ fn every_face_of_a_box_has_its_area_though_it_is_no_wider_than_a_spacing() {
         }
     }
 }
+
+#[test]
+fn a_ball_has_no_edges() {
+    for (radius, spacing) in [(0.05, 0.01), (0.05, 0.02), (0.05, 0.004)] {
+        let body = Shape::Sphere { centre: Vector3::new(0.01, 0.02, -0.01), radius };
+        let found = sampled(&body, spacing);
+        assert!(found.edges.is_empty(), "{spacing}: {}", found.edges.len());
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+        assert!((found.volume() / volume - 1.0).abs() < 5e-3, "{spacing}: {}", found.volume());
+    }
+}

@@ -22,6 +22,8 @@ const FRACTION_DEPTH: usize = 4;
 const FRACTION_DEPTH_PLANE: usize = 5;
 /// Parts of a cell smaller than this fraction of it are dropped \[–\].
 const SMALLEST_FRACTION: f64 = 1e-4;
+/// Where on both sides of the middle of a cell it is looked whether a gap lies between \[edge\].
+const ACROSS: f64 = 0.4;
 /// Halvings of a sub-box in which a point would lie in another region than its own.
 const HALVINGS: usize = 2;
 
@@ -268,7 +270,7 @@ impl PointCollector<'_> {
         let mixed = mixed && depth > 0;
         let one_plane = match (is_cut, mixed) {
             (false, false) => Some((1.0, Vector3::zeros(), cell.spread(self.components))),
-            (true, false) if depth > 0 => self.boundary_cut().flat(cell, distance),
+            (true, false) if depth > 0 => self.flat(cell, distance),
             _ => None,
         };
         let (fraction, shift, spread) = match one_plane {
@@ -287,6 +289,25 @@ impl PointCollector<'_> {
             keep(Leaf { cell: *cell, region, centroid, volume, spread });
         }
         Ok(())
+    }
+
+    /// What of a cell lies behind a boundary that is flat there and no gap divides.
+    fn flat(&self, cell: &Cell, distance: f64) -> Option<(f64, Vector3, Matrix3)> {
+        let found = self.boundary_cut().flat(cell, distance)?;
+        let middle = self.body.place(&(cell.centre + found.1));
+        if found.0 == 0.0 || !(self.subdivision.spacing.beside_gap)(&middle.X) {
+            return Some(found);
+        }
+        // Another face may be nearer to corners and centre than the gap.
+        let is_across = |n: usize| {
+            let (axis, side) = (n / 2, if n % 2 == 0 { -ACROSS } else { ACROSS });
+            let mut X = middle.X;
+            X[axis] = cell.centre[axis] + side * cell.edge;
+            let end = self.body.place(&X);
+            end.distance <= 0.0 && self.body.parts(&middle, &end, cell.edge)
+        };
+        let is_torn = middle.distance > 0.0 || (0..2 * self.components).any(is_across);
+        (!is_torn).then_some(found)
     }
 
     /// Visits the parts of a cell by region.

@@ -206,3 +206,24 @@ fn a_block_without_loads_beside_a_gap_does_not_move_however_narrow_the_gap() {
         assert!(loaded > 1e-4 && other < 1e-5 * loaded, "{n}: {other} beside {loaded}");
     }
 }
+
+#[test]
+fn both_sides_of_a_gap_have_their_own_volume_and_no_point_lies_in_it() {
+    let mut random = Random(23);
+    for n in 0..24 {
+        let (problem, middle) = pair(&mut random);
+        let Shape::Union(blocks) = &problem.body else { panic!("two blocks") };
+        let quadrature = Discretisation::new(&problem).unwrap().quadrature;
+        let mut volumes = [0.0; 2];
+        for (X, weight) in quadrature.positions.iter().zip(&quadrature.weights) {
+            volumes[usize::from(X.x > middle)] += weight;
+            let outside = problem.body.signed_distance(X) > -1e-9;
+            assert!(!outside, "{n}: {X:?} lies in the gap or on its faces");
+        }
+        for (own, shape) in volumes.iter().zip(blocks) {
+            let Shape::Box { min, max } = shape else { panic!("a block") };
+            let exact = (max - min).product();
+            assert!((own / exact - 1.0).abs() < 2e-3, "{n}: {own} of {exact}");
+        }
+    }
+}
