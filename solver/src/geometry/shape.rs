@@ -149,6 +149,17 @@ impl Shape {
         }
     }
 
+    /// Whether it is from an image, in part.
+    pub(crate) fn has_labels(&self) -> bool {
+        match self {
+            Shape::Union(members) | Shape::Intersection(members) => {
+                members.iter().any(Shape::has_labels)
+            }
+            Shape::Difference(body, hole) => body.has_labels() || hole.has_labels(),
+            _ => matches!(self, Shape::Labels(_)),
+        }
+    }
+
     /// This solid without a hole. Where a flat end, face or side of the hole lies in a face of the solid,
     /// it is moved a little beyond: [`Shape::Difference`] as such has a boundary there, the mouth
     /// of the hole, on both sides of which it is empty.

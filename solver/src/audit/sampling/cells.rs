@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use super::corner::{Corner, Known};
-use super::cost::{cost, cost_of, has_labels};
+use super::cost::{cost, cost_of};
 use super::level::level;
 use super::sampled::{Cell, Cut, Sampled, Volume};
 use super::seams::{is_seam, may_have_seams};
@@ -42,6 +42,8 @@ const HIDDEN: f64 = 2.0;
 const HALVINGS: usize = 3;
 /// The nodes of a body from an image may take so many times that: its set-up takes seconds.
 const OF_IMAGE: usize = 4;
+/// Cells whose parts are kept at a time before they are added.
+const CHUNK: usize = 512;
 /// Signed distances of a primitive that are spent in all: a few milliseconds, and per node, about
 /// as much as a step of the solution costs there.
 const BUDGET: (usize, usize) = (60_000, 30);
@@ -75,7 +77,7 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     let flat = matches!(divided.dimension, Dimension::PlaneStrain { .. });
     let count = counts.x * counts.y * if flat { 1 } else { counts.z };
     let mut cells: Vec<Cell> = (0..count).map(|n| divided.cell(n, counts, &start, edge)).collect();
-    let times = if !flat && has_labels(divided.body) { OF_IMAGE } else { 1 };
+    let times = if !flat && divided.body.has_labels() { OF_IMAGE } else { 1 };
     let mut budget = BUDGET.0 + times * BUDGET.1 * divided.nodes;
     let cost = cost(divided.body) + divided.parts.iter().map(|part| cost_of(part)).sum::<usize>();
     let mut sampled =
@@ -85,24 +87,12 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
         let work = |cells: usize| cells * cost * 5;
         budget = budget.saturating_sub(work(cells.len()));
         let finest = cells[0].half.x <= 0.51 * FINEST * divided.spacing;
-        let mut fates: Vec<Fate> =
-            cells.par_iter().map(|cell| divided.fate(cell, finest)).collect();
-        let is_divided = |fate: &Fate| matches!(fate, Fate::Divided);
-        let divided_cells = fates.iter().filter(|fate| is_divided(fate)).count();
-        if work(divided_cells * if flat { 4 } else { 8 }) > budget {
-            let ends = fates.par_iter_mut().zip(&cells);
-            let ends = ends.filter(|(fate, _)| is_divided(fate));
-            ends.for_each(|(fate, cell)| *fate = divided.fate(cell, true));
+        let open = divided.cut_all(&cells, finest, &mut sampled);
+        if work(open.len() * if flat { 4 } else { 8 }) > budget {
+            divided.cut_all(&open, true, &mut sampled);
+            break;
         }
-        let mut next = Vec::new();
-        for (cell, fate) in cells.iter().zip(fates) {
-            match fate {
-                Fate::Outside => {}
-                Fate::Divided => next.extend(cell.children(flat)),
-                Fate::Cut(cut) => sampled.add(cell, cut),
-            }
-        }
-        cells = next;
+        cells = open.iter().flat_map(|cell| cell.children(flat)).collect();
     }
     sampled.volumes.iter_mut().for_each(|part| part.doubt += part.variance.sqrt());
     if may_have_seams(divided.body) {
@@ -161,6 +151,22 @@ impl Divided<'_> {
             }
         }
         None
+    }
+
+    /// Adds what lies in cells, and returns those that are to be divided; none if they are the `last`.
+    fn cut_all(&self, cells: &[Cell], last: bool, sampled: &mut Sampled) -> Vec<Cell> {
+        let mut open = Vec::new();
+        for part in cells.chunks(CHUNK) {
+            let fates: Vec<Fate> = part.par_iter().map(|cell| self.fate(cell, last)).collect();
+            for (cell, fate) in part.iter().zip(fates) {
+                match fate {
+                    Fate::Outside => {}
+                    Fate::Divided => open.push(*cell),
+                    Fate::Cut(cut) => sampled.add(cell, cut),
+                }
+            }
+        }
+        open
     }
 
     fn fate(&self, cell: &Cell, last: bool) -> Fate {
@@ -230,7 +236,9 @@ impl Divided<'_> {
         let bend = corner.map_or(bend, |corner| corner.misfit);
         let facet = |corners| Facet { corners, edge: is_edge };
         let facets = halves.border.iter().filter(|t| vector_area(t).norm() > 0.0);
-        let facets: Vec<Facet> = facets.map(|corners| facet(*corners)).collect();
+        let mut all = Vec::with_capacity(halves.border.len());
+        all.extend(facets.map(|corners| facet(*corners)));
+        let facets = all;
         let mut volumes = vec![(Vector3::zeros(), 0.0); self.parts.len()];
         let mut add = |tetrahedra: &[Tetrahedron], part: usize| {
             for tetrahedron in tetrahedra {

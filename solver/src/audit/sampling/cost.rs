@@ -8,15 +8,6 @@ const OF_TRIANGLES: usize = 40;
 /// The same of a part without distances, which is asked at many places of a cell.
 const OF_PLACES: usize = 4;
 
-/// Whether a body is from an image, in part.
-pub(super) fn has_labels(shape: &Shape) -> bool {
-    match shape {
-        Shape::Union(members) | Shape::Intersection(members) => members.iter().any(has_labels),
-        Shape::Difference(body, hole) => has_labels(body) || has_labels(hole),
-        _ => matches!(shape, Shape::Labels(_)),
-    }
-}
-
 /// Signed distances of a primitive that take as long as one of a shape.
 pub(super) fn cost(shape: &Shape) -> usize {
     match shape {

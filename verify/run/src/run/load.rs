@@ -75,11 +75,9 @@ pub fn located(case: &Case, error: &Error) -> Diagnostic {
         | Error::OpenCavity { name, .. }
         | Error::NoCavity { name, .. } => &format!("cavity.{name}.where"),
         Error::DependentConstraints { .. } => "discretisation.enforcement",
-        Error::NoQuadraturePoints
-        | Error::UncoveredNode { .. }
-        | Error::DivergedCorrection { .. }
-        | Error::TooFewPoints { .. }
-        | Error::ZeroEnergyModes { .. } => "discretisation.grid",
+        Error::NoQuadraturePoints | Error::UncoveredNode { .. } => "discretisation.grid",
+        Error::DivergedCorrection { .. } | Error::TooFewPoints { .. } => "discretisation.grid",
+        Error::ZeroEnergyModes { .. } => "discretisation.grid",
         Error::MasslessNode { .. } => "discretisation.mass",
         Error::SmallSupport { .. }
         | Error::SingularMomentMatrix { .. }
