@@ -35,7 +35,7 @@ pub struct Footprint {
 /// following bytes at the peak are fitted to the measured bodies.
 const PROGRAM: f64 = 24.0e6;
 const PER_NODE: f64 = 1400.0;
-const PER_ENTRY: f64 = 63.0;
+const PER_ENTRY: f64 = 60.0;
 const PER_PANEL: f64 = 710.0;
 /// What the audit finds of the surface of a body from an image, in all and per node.
 const OF_IMAGE: [f64; 2] = [2e6, 3000.0];
