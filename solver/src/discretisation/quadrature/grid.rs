@@ -300,7 +300,7 @@ impl PointCollector<'_> {
         }
         // Another face may be nearer to corners and centre than the gap.
         let is_across = |n: usize| {
-            let (axis, side) = (n / 2, if n % 2 == 0 { -ACROSS } else { ACROSS });
+            let (axis, side) = (n / 2, if n.is_multiple_of(2) { -ACROSS } else { ACROSS });
             let mut X = middle.X;
             X[axis] = cell.centre[axis] + side * cell.edge;
             let end = self.body.place(&X);
