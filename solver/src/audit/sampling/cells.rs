@@ -234,11 +234,9 @@ impl Divided<'_> {
         };
         let is_edge = corner.is_none() && bend > BEND * 2.0 * cell.half.x;
         let bend = corner.map_or(bend, |corner| corner.misfit);
-        let facet = |corners| Facet { corners, edge: is_edge };
-        let facets = halves.border.iter().filter(|t| vector_area(t).norm() > 0.0);
-        let mut all = Vec::with_capacity(halves.border.len());
-        all.extend(facets.map(|corners| facet(*corners)));
-        let facets = all;
+        let border = halves.border.iter().filter(|t| vector_area(t).norm() > 0.0);
+        let mut facets = Vec::with_capacity(halves.border.len());
+        facets.extend(border.map(|corners| Facet { corners: *corners, edge: is_edge }));
         let mut volumes = vec![(Vector3::zeros(), 0.0); self.parts.len()];
         let mut add = |tetrahedra: &[Tetrahedron], part: usize| {
             for tetrahedron in tetrahedra {
