@@ -24,18 +24,25 @@ def refuse(what, reason="unsupported"):
     reply(refused={"reason": reason, "what": what})
 
 
-body, material = problem["body"], problem["regions"][0]["material"]
-if problem["dimension"] != "3d" or body["kind"] != "box" or len(problem["regions"]) > 1:
+solved = {"title", "description", "source", "dimension", "geometry", "region", "material"}
+solved |= {"discretisation", "prescribe", "time", "probe", "output"}
+for key, table in problem.items():
+    if table and key not in solved:
+        refuse(key)
+body, regions = problem["geometry"]["shape"], problem["region"]
+if problem["dimension"] != "3d" or "box" not in body or len(regions) > 1:
     refuse("anything but a box of one material")
-if material["law"] != "neo_hookean_log_j":
-    refuse(f"the law {material['law']}")
-if problem["motion"]["kind"] != "static" or problem["obstacles"] or any(problem["loads"].values()):
-    refuse("motion in time, loads and contact")
+name = regions[0]["material"]
+law, material = problem["material"][name], job["materials"][name]
+if law["law"] != "neo_hookean_log_j" or {"prony", "active_stress"} & set(law):
+    refuse(f"the law {law['law']}, viscosity or active stress")
+if problem["time"]["method"] != "static":
+    refuse("motion in time")
 if any(probe["kind"] != "positions" for probe in job["probes"]):
     refuse("centres of mass")
 
 # Nodes X[n, 3] of a grid, x slowest; corners[e, 8] of its cells; Grad N[q, 8, 3] at Gauss points.
-low, high = np.array(body["min_m"]), np.array(body["max_m"])
+low, high = np.array(body["box"]["min"]), np.array(body["box"]["max"])
 cells = np.maximum(1, np.round((high - low) / job["spacing_m"])).astype(int)
 axes = [np.linspace(low[k], high[k], cells[k] + 1) for k in range(3)]
 X = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -49,18 +56,18 @@ grad = np.stack([signs[:, k] / size[k] * N1[..., k - 1] * N1[..., k - 2] for k i
 weight, mu, lam = size.prod() / 8.0, material["shear_modulus_pa"], material["lame_modulus_pa"]
 
 full, fixed, owned = np.zeros_like(X), np.zeros(X.shape, bool), []
-for support in problem["supports"]:
-    where, motion = support["where"], support["motion"]
-    if where["kind"] != "plane" or motion["kind"] != "displacement":
-        refuse(f"support {support['name']}: {where['kind']} with {motion['kind']}")
-    height = (X - where["point_m"]) @ where["normal"] / np.linalg.norm(where["normal"])
-    nodes = np.abs(height) <= where["tolerance_m"]
-    given = np.array([motion[key] is not None for key in ("x_m", "y_m", "z_m")])
-    value = np.array([motion[key] or 0.0 for key in ("x_m", "y_m", "z_m")])
+for row, factors in zip(problem["prescribe"], job["factors"]["prescribe"]):
+    if "plane" not in row["where"] or "displacement" not in row or "release" in row:
+        refuse(f"support {row['name']}: what is no plane that is displaced for ever")
+    plane, components = row["where"]["plane"], row["displacement"]
+    height = (X - plane["point"]) @ plane["normal"] / np.linalg.norm(plane["normal"])
+    nodes = np.abs(height) <= plane.get("tolerance", job["selection_tolerance_m"])
+    given = np.array([key in components for key in "xyz"])
+    value = np.array([components.get(key, 0.0) for key in "xyz"])
     mine = nodes[:, None] & given & ~fixed
-    full = np.where(mine, support["history"]["factors"][-1] * value, full)
+    full = np.where(mine, factors[-1] * value, full)
     fixed |= mine
-    owned.append((support["name"], mine))
+    owned.append((row["name"], mine))
 
 
 def assemble(u):

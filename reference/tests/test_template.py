@@ -15,18 +15,16 @@ YOUNG, NU, LENGTH, PULL = 3000.0, 0.3, 0.1, 0.01
 def plane(axis: int, at: float) -> dict:
     point, normal = np.zeros(3), np.zeros(3)
     point[axis], normal[axis] = at, 1.0
-    return {"kind": "plane", "point_m": [*point], "normal": [*normal], "tolerance_m": 1e-6}
+    return {"plane": {"point": [*point], "normal": [*normal]}}
 
 
 def support(name: str, where: dict, **components) -> dict:
-    motion = {"kind": "displacement", "x_m": None, "y_m": None, "z_m": None} | components
-    return {"name": name, "where": where, "motion": motion, "history": {"factors": [1.0]}}
+    return {"name": name, "of": "surface", "where": where, "displacement": components}
 
 
 def job(spacing: float) -> dict:
     """A bar that is pulled along x and free to contract, a quarter of it."""
-    material = {
-        "law": "neo_hookean_log_j",
+    in_numbers = {
         "shear_modulus_pa": YOUNG / (2 * (1 + NU)),
         "lame_modulus_pa": YOUNG * NU / ((1 + NU) * (1 - 2 * NU)),
     }
@@ -34,19 +32,22 @@ def job(spacing: float) -> dict:
         "protocol": 1,
         "spacing_m": spacing,
         "probes": [{"kind": "positions", "name": "end", "positions_m": [[LENGTH, 0.02, 0.02]]}],
+        "selection_tolerance_m": 1e-6,
+        "materials": {"tissue": in_numbers},
+        "factors": {"prescribe": [[1.0]] * 4},
         "problem": {
             "dimension": "3d",
-            "body": {"kind": "box", "min_m": [0, 0, 0], "max_m": [LENGTH, 0.02, 0.02]},
-            "regions": [{"material": material}],
-            "supports": [
-                support("left", plane(0, 0.0), x_m=0.0),
-                support("front", plane(1, 0.0), y_m=0.0),
-                support("bottom", plane(2, 0.0), z_m=0.0),
-                support("right", plane(0, LENGTH), x_m=PULL),
+            "geometry": {"shape": {"box": {"min": [0, 0, 0], "max": [LENGTH, 0.02, 0.02]}}},
+            "region": [{"name": "body", "where": "all", "material": "tissue"}],
+            "material": {"tissue": {"law": "neo_hookean_log_j"}},
+            "prescribe": [
+                support("left", plane(0, 0.0), x=0.0),
+                support("front", plane(1, 0.0), y=0.0),
+                support("bottom", plane(2, 0.0), z=0.0),
+                support("right", plane(0, LENGTH), x=PULL),
             ],
-            "loads": {"body_forces": []},
-            "obstacles": [],
-            "motion": {"kind": "static"},
+            "obstacle": [],
+            "time": {"method": "static"},
         },
     }
 
@@ -64,7 +65,7 @@ def answer(tmp_path):
 
 def free_contraction(stretch: float) -> tuple[float, float]:
     """Lateral stretch and first Piola–Kirchhoff stress [Pa] of a bar that is free to contract."""
-    material = job(1.0)["problem"]["regions"][0]["material"]
+    material = job(1.0)["materials"]["tissue"]
     mu, lam = material["shear_modulus_pa"], material["lame_modulus_pa"]
     low, high = 0.5, 1.5
     for _ in range(80):
@@ -87,6 +88,6 @@ def test_a_pulled_bar_has_the_displacement_and_the_force_of_the_closed_form(answ
 
 def test_what_is_not_solved_is_refused_by_name(answer):
     content = job(0.02)
-    content["problem"]["obstacles"] = [{"name": "floor"}]
+    content["problem"]["obstacle"] = [{"name": "floor"}]
     refused = answer(content)["refused"]
-    assert refused["reason"] == "unsupported" and "contact" in refused["what"]
+    assert refused["reason"] == "unsupported" and "obstacle" in refused["what"]

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..shared.materials import Material
 from . import elements
 from .cases import read_without_contact
 from .files import Refused, answer
@@ -25,7 +26,6 @@ from .nodal import Nodal
 STEPS = 4
 """In which loads and supports grow; CalculiX divides them where it does not converge."""
 TYPES = {id(elements.HEXAHEDRON_20): "C3D20R", id(elements.TETRAHEDRON_10): "C3D10"}
-LAWS = ("mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2", "st_venant_kirchhoff")
 NUMBER = ".12g"
 """Of numbers, for which CalculiX reads 20 letters."""
 PER_LINE = 15
@@ -38,8 +38,8 @@ def solve(job: dict) -> dict:
     if not case.is_static:
         raise Refused("motion in time")
     materials = "".join(
-        f"*MATERIAL, NAME=M{number}\n{_law(region['material'])}"
-        for number, region in enumerate(job["problem"]["regions"])
+        f"*MATERIAL, NAME=M{number}\n{_law(region.material)}"
+        for number, region in enumerate(case.regions)
     )
     model = Nodal(case, job["spacing_m"], 2)
     with tempfile.TemporaryDirectory() as folder:
@@ -60,14 +60,14 @@ def solve(job: dict) -> dict:
     return content | {"method": f"{TYPES[id(model.element)]}, SPOOLES"}
 
 
-def _law(material: dict) -> str:
-    if material["strain_energy"] == LAWS[0]:
-        c_10, d_1 = material["shear_modulus_pa"] / 2.0, 2.0 / material["bulk_modulus_pa"]
+def _law(material: Material) -> str:
+    if material.is_quadratic_isochoric:
+        c_10, d_1 = material.shear_modulus / 2.0, 2.0 / material.bulk_modulus
         return f"*HYPERELASTIC, NEO HOOKE\n{c_10:{NUMBER}}, {d_1:{NUMBER}}\n"
-    if material["law"] == LAWS[1]:
-        young, nu = material["young_modulus_pa"], material["poisson_ratio"]
+    if material.law == "st_venant_kirchhoff":
+        young, nu = material.young_modulus, material.poisson_ratio
         return f"*ELASTIC\n{young:{NUMBER}}, {nu:{NUMBER}}\n"
-    raise Refused(f"the law {material['law']}")
+    raise Refused(f"the law {material.law}")
 
 
 def _numbers(values) -> str:

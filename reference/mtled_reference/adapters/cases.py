@@ -3,12 +3,14 @@
 import numpy as np
 
 from .. import LEVELS
-from ..shared.case import Case, read_case
+from ..shared.case import Case, case_of
 from ..shared.selection import bounding_box, radii_of_quarter_ring, selected
 from .files import Refused
 
 EVEN = {"all", "plane", "half_space", "box"}
 """Selections whose borders an even mesh of a box can follow."""
+OF_MATERIALS = ("fibres", "sheets", "active_stress", "prony")
+"""Keys of materials that no adapter of this folder solves."""
 COMPOSED = ("union", "intersection")
 """Selections that others make up."""
 
@@ -16,21 +18,17 @@ COMPOSED = ("union", "intersection")
 def read(job: dict, pressures_on_rings: bool = False) -> Case:
     """The case of a job; refuses what no adapter of this folder solves, and pressures that follow
     the surface, on a quarter of a ring at rest only if the adapter does not solve them there."""
+    problem = job["problem"]
+    for material in problem["material"].values():
+        for key in OF_MATERIALS:
+            if key in material:
+                raise Refused(f"materials with {key}")
     try:
-        case = read_case(job["case_file"])
+        case = case_of(problem, job["case"])
     except ValueError as error:
         raise Refused(str(error)) from None
-    problem = job["problem"]
-    solved = pressures_on_rings and case.is_static and _is_ring(case)
-    for name in ("pressures", "springs", "cavities", "initial_velocities"):
-        if problem["loads"][name] and not (name == "pressures" and solved):
-            raise Refused(name.replace("_", " "))
-    for region in problem["regions"]:
-        material = region["material"]
-        if material["fibres"] or material["sheets"] or material["active_stress"]:
-            raise Refused("fibres")
-        if material["prony"]:
-            raise Refused("viscosity")
+    if case.pressures and not (pressures_on_rings and case.is_static and _is_ring(case)):
+        raise Refused("pressures")
     return case
 
 

@@ -17,6 +17,7 @@ except ImportError:
     from scipy.sparse.linalg import spsolve
 
 from ..shared.case import Case
+from ..shared.materials import Material
 from ..shared.selection import selected
 from .cases import counts, is_even, read
 from .files import Quick, Refused, answer
@@ -25,7 +26,6 @@ LOAD_STEPS = (5, 20)
 """Numbers of load steps, tried in turn."""
 RESIDUAL = 1e-6
 """Of Newton's method, over the forces [–]."""
-NEARLY_INCOMPRESSIBLE = 0.45
 THREE_FIELDS = {"Q1": False, "Q1/P0": True}
 """Whether p and θ are fields of an element."""
 FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -37,7 +37,7 @@ def solve(job: dict, element: str | None) -> dict:
     """The answer to a job."""
     case = read(job)
     _refuse_others(case, job)
-    material = job["problem"]["regions"][0]["material"]
+    material = case.regions[0].material
     if element is not None:
         quick = Quick(FAILURES)
         three_fields = THREE_FIELDS[element]
@@ -46,8 +46,7 @@ def solve(job: dict, element: str | None) -> dict:
         )
         return _answered(case, body) | {"apart_cpu_s": quick.apart_s()}
     three_fields = (
-        material["law"] != "neo_hookean_log_j"
-        and material["poisson_ratio"] >= NEARLY_INCOMPRESSIBLE
+        material.law != "neo_hookean_log_j" and material.is_nearly_incompressible
     )
     for steps in LOAD_STEPS:
         try:
@@ -74,14 +73,14 @@ def _refuse_others(case: Case, job: dict) -> None:
         raise Refused("rotations")
 
 
-def _solid(material: dict, three_fields: bool, field):
+def _solid(material: Material, three_fields: bool, field):
     """The body and what it is made of."""
-    mu, bulk = material["shear_modulus_pa"], material["bulk_modulus_pa"]
-    if material["law"] == "neo_hookean_log_j" and not three_fields:
-        law = felupe.NeoHookeCompressible(mu=mu, lmbda=material["lame_modulus_pa"])
+    mu, bulk = material.shear_modulus, material.bulk_modulus
+    if material.law == "neo_hookean_log_j" and not three_fields:
+        law = felupe.NeoHookeCompressible(mu=mu, lmbda=material.lame_modulus)
         return felupe.SolidBody(law, field), "trilinear hexahedra"
-    if material["strain_energy"] != "mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2":
-        raise Refused(f"the law {material['law']}")
+    if not material.is_quadratic_isochoric:
+        raise Refused(f"the law {material.law}")
     if not three_fields:
         return felupe.SolidBody(felupe.NeoHooke(mu=mu, bulk=bulk), field), "trilinear hexahedra"
     solid = felupe.SolidBodyNearlyIncompressible(felupe.NeoHooke(mu=mu), field, bulk=bulk)
@@ -118,7 +117,7 @@ class Body:
 
 
 def _equilibrium(
-    case: Case, job: dict, material: dict, three_fields: bool, steps: int, residual: float
+    case: Case, job: dict, material: Material, three_fields: bool, steps: int, residual: float
 ) -> Body:
     """The body after load steps."""
     low, high, numbers = counts(case, job["spacing_m"], 1)

@@ -30,6 +30,7 @@ from sfepy.terms import Term, Terms, register_term
 from sfepy.terms.terms_hyperelastic_base import HyperElasticBase
 from sfepy.terms.terms_hyperelastic_tl import HyperElasticTLBase
 
+from ..shared.materials import Material as Matter
 from ..shared.selection import selected
 from .bodies import TOLERANCE
 from .cases import read_without_contact
@@ -41,7 +42,6 @@ RESIDUAL = 1e-8
 ITERATIONS = 15
 LOAD_STEPS = (4, 16)
 """Numbers of load steps, tried in turn."""
-ISOCHORIC = "mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2"
 PAIRS = np.array([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)])
 """Components of symmetric tensors in sfepy's order."""
 
@@ -88,28 +88,27 @@ class Solver:
         self.domain = FEDomain("domain", mesh)
         self.body = self.domain.create_region("Omega", "all")
         self.u, self.v, integral = *self._pair("u", "vector", 2), Integral("i", order=4)
-        regions = job["problem"]["regions"]
-        self.mixed = any(r["material"]["poisson_ratio"] >= 0.45 - 1e-9 for r in regions)
+        self.mixed = any(r.material.is_nearly_incompressible for r in case.regions)
         fields = {"u": self.u, "v": self.v}
         if self.mixed:
             fields["p"], fields["q"] = self._pair("p", "scalar", 1)
         terms, volume = [], []
-        for number, region in enumerate(regions):
+        for number, region in enumerate(case.regions):
             if not (model.owners == number).any():
-                raise Refused(f"{region['name']} is smaller than an element", "resolution")
+                raise Refused(f"{region.name} is smaller than an element", "resolution")
             part = self.domain.create_region(f"Part{number}", f"cells of group {number}")
-            material = region["material"]
+            material = region.material
             for name, values in _terms(material, self.mixed):
                 terms.append(Term.new(name, integral, part, **_matter(values), **fields))
             if self.mixed:
-                compliance = _matter(1.0 / material["bulk_modulus_pa"])
+                compliance = _matter(1.0 / material.bulk_modulus)
                 volume += [
                     Term.new("dw_tl_volume(q, u)", integral, part, **fields),
                     Term.new("dw_dot(m.v, q, p)", integral, part, **compliance, **fields),
                     -Term.new("dw_integrate(q)", integral, part, **fields),
                 ]
             for force in case.body_forces:
-                density = material["density_kg_per_m3"] * force.amplitude(end)
+                density = material.density * force.amplitude(end)
                 load = self._load(density * np.array(force.acceleration))
                 terms.append(-Term.new("dw_volume_lvf(m.v, v)", integral, part, m=load, **fields))
         for row in case.tractions:
@@ -220,10 +219,10 @@ def _matter(values) -> dict:
     return {"m": Material("m", v=values)}
 
 
-def _terms(material: dict, mixed: bool) -> list:
+def _terms(material: Matter, mixed: bool) -> list:
     """Terms of a law with their constants."""
-    mu, lam, bulk = (material[f"{key}_modulus_pa"] for key in ("shear", "lame", "bulk"))
-    if material["strain_energy"] == ISOCHORIC:
+    mu, lam, bulk = material.shear_modulus, material.lame_modulus, material.bulk_modulus
+    if material.is_quadratic_isochoric:
         rest = (
             ("dw_tl_bulk_pressure(v, u, p)", 0.0)
             if mixed
@@ -231,12 +230,12 @@ def _terms(material: dict, mixed: bool) -> list:
         )
         return [("dw_tl_he_neohook(m.v, v, u)", mu), rest]
     if mixed:
-        raise Refused(f"nearly incompressible tissue of the law {material['law']}")
-    if material["law"] == "neo_hookean_log_j":
+        raise Refused(f"nearly incompressible tissue of the law {material.law}")
+    if material.law == "neo_hookean_log_j":
         return [("dw_tl_he_log_j(m.v, v, u)", np.array([[mu, lam]]))]
-    if material["law"] == "st_venant_kirchhoff":
+    if material.law == "st_venant_kirchhoff":
         return [("dw_tl_he_svk(m.v, v, u)", stiffness_from_lame(3, lam, mu))]
-    raise Refused(f"the law {material['law']}")
+    raise Refused(f"the law {material.law}")
 
 
 def solve(job: dict) -> dict:

@@ -196,7 +196,11 @@ def read_case(path: str | Path) -> Case:
     """The case in the TOML file at `path`."""
     path = Path(path)
     with path.open("rb") as file:
-        document = tomllib.load(file)
+        return case_of(tomllib.load(file), path.stem, path.parent)
+
+
+def case_of(document: dict, name: str, folder: Path = Path(".")) -> Case:
+    """The case of tables; names of other files count from `folder`."""
     for key in NOT_SOLVED:
         if document.get(key):
             raise ValueError(f"{key} is not solved by the references")
@@ -209,8 +213,8 @@ def read_case(path: str | Path) -> Case:
         if any("formula" in row for row in document.get(table, [])):
             raise ValueError(f"{table}: formulas are not solved by the references")
     return Case(
-        name=path.stem,
-        folder=path.parent,
+        name=name,
+        folder=folder,
         document=document,
         dimension=2 if plane_strain else 3,
         thickness=float(plane["thickness"]) if plane_strain else 1.0,

@@ -40,10 +40,21 @@ class Material:
         return self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus
 
     @property
+    def young_modulus(self) -> float:
+        """E = 9Kμ/(3K + μ) [Pa]."""
+        mu, bulk = self.shear_modulus, self.bulk_modulus
+        return 9.0 * bulk * mu / (3.0 * bulk + mu)
+
+    @property
     def poisson_ratio(self) -> float:
         """ν = (3K − 2μ)/2(3K + μ) [–]."""
         mu, bulk = self.shear_modulus, self.bulk_modulus
         return (3.0 * bulk - 2.0 * mu) / (2.0 * (3.0 * bulk + mu))
+
+    @property
+    def is_quadratic_isochoric(self) -> bool:
+        """Whether ψ = μ/2 (J^(−2/3) I₁ − 3) + K/2 (J − 1)², which most programs have."""
+        return self.law == "neo_hookean_isochoric" and self.volumetric == "quadratic"
 
     @property
     def is_nearly_incompressible(self) -> bool:

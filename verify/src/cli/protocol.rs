@@ -9,7 +9,7 @@ use mtled_case::bundled::unpack;
 use mtled_case::protocol::{
     Job, Resolution, SoundReply, answer_schema, job_schema, parse_job, read_reply,
 };
-use mtled_case::scene::{one_error, read_case};
+use mtled_case::scene::{one_error, parse_case};
 use mtled_checks::input::read_text;
 use mtled_checks::report::{ensure_writable, write_atomically};
 use mtled_lab::contests::{Spacing, absolute, solve_job};
@@ -24,7 +24,7 @@ pub enum ProtocolCommand {
         /// The file that it describes.
         file: ProtocolFile,
     },
-    /// Write a job, to try a program with: DIR/job.json and the case file.
+    /// Write a job, to try a program with: DIR/job.json.
     Job {
         /// A case file, or the name of a bundled case.
         case: String,
@@ -106,11 +106,11 @@ fn write_job(case: &str, out: &Path, spacing: Spacing, common: &Common) -> Resul
         bail!("{case} has no spacing; give --spacing in metres");
     };
     std::fs::create_dir_all(&out)?;
-    let (case, case_file) = absolute(&source, &out)?;
+    let case = absolute(&source)?;
     let known = ReferenceSolution::bundled(&case);
     let instants = known.map_or_else(|| vec![case.problem.motion.end()], |known| known.times);
     let at = Resolution { spacing_m, level: 0, levels: 1, time_limit_s: TIME_LIMIT_S };
-    let job = Job::new(&case, &case_file, at, &instants);
+    let job = Job::new(&case, at, &instants);
     let job = job.map_err(|mistake| one_error(vec![mistake]))?;
     let path = out.join("job.json");
     write_atomically(&path, (serde_json::to_string_pretty(&job)? + "\n").as_bytes())?;
@@ -122,8 +122,8 @@ fn write_job(case: &str, out: &Path, spacing: Spacing, common: &Common) -> Resul
 fn check(job: &Path, answer: &Path, common: &Common) -> Result<u8> {
     let path = job;
     let job = read_job(path)?;
-    let case = read_case(&job.case_file).map_err(one_error);
-    let case = case.with_context(|| format!("the case of {}", path.display()))?;
+    let named = format!("the problem of {}", path.display());
+    let case = parse_case(&job.case_text()?, &named, Path::new(".")).map_err(one_error)?;
     let text = match read_reply(answer, &case, job.instants_s.len()) {
         Err(fault) => {
             common.complain(format!("{}: {fault}", answer.display()));

@@ -33,11 +33,11 @@ STEPS_PER_INSTANT = 4
 class Flexes:
     """The model and its state. `u` are displacements (n, 3) [m]."""
 
-    def __init__(self, nodal: Nodal, job: dict, time_step: float):
+    def __init__(self, nodal: Nodal, time_step: float):
         self.nodal = nodal
-        spec = mujoco.MjSpec.from_string(_scene(nodal, job, time_step))
-        for flex, region in zip(spec.flexes, job["problem"]["regions"]):
-            flex.elastic3d = int(region["material"]["law"] != "st_venant_kirchhoff")
+        spec = mujoco.MjSpec.from_string(_scene(nodal, time_step))
+        for flex, region in zip(spec.flexes, nodal.case.regions):
+            flex.elastic3d = int(region.material.law != "st_venant_kirchhoff")
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self.frames = self.model.body_pos[1:].copy()
@@ -56,10 +56,10 @@ class Flexes:
         return self.data.xpos[1:] - self.frames
 
 
-def _scene(nodal: Nodal, job: dict, time_step: float) -> str:
+def _scene(nodal: Nodal, time_step: float) -> str:
     """MuJoCo's scene."""
     rows = []
-    if job["problem"]["motion"].get("damping_per_s"):
+    if nodal.case.time.damping:
         raise Refused("damping")
     for number, (point, mass) in enumerate(zip(nodal.points, nodal.masses().tolist())):
         free = np.flatnonzero(~nodal.fixed[number])
@@ -67,14 +67,14 @@ def _scene(nodal: Nodal, job: dict, time_step: float) -> str:
         inertial = f'<inertial pos="0 0 0" mass="{mass!r}" diaginertia="1 1 1"/>'
         rows.append(f'<body name="{number}" pos="{_words(point)}">{inertial}{joints}</body>')
     flexes = []
-    for number, region in enumerate(job["problem"]["regions"]):
+    for number, region in enumerate(nodal.case.regions):
         cells = nodal.cells[nodal.owners == number]
         nodes, elements = np.unique(cells, return_inverse=True)
-        material = region["material"]
+        material = region.material
         flexes.append(
             f'<flex name="{number}" dim="3" radius="1e-6" body="{_words(nodes)}" '
             f'element="{_words(elements.ravel())}"><elasticity '
-            f'young="{material["young_modulus_pa"]!r}" poisson="{material["poisson_ratio"]!r}"/>'
+            f'young="{material.young_modulus!r}" poisson="{material.poisson_ratio!r}"/>'
             '<contact contype="0" conaffinity="0" selfcollide="none"/></flex>'
         )
     return (
@@ -103,7 +103,7 @@ def _at_rest(nodal: Nodal, job: dict) -> list:
     wave = size / np.sqrt(material.shear_modulus / material.density)
     for steps in STEPS_PER_WAVE:
         try:
-            return [_relaxed(Flexes(nodal, job, wave / steps), steps)]
+            return [_relaxed(Flexes(nodal, wave / steps), steps)]
         except Refused:
             if steps == STEPS_PER_WAVE[-1]:
                 raise
@@ -125,7 +125,7 @@ def _relaxed(flexes: Flexes, steps: int) -> np.ndarray:
 def _in_motion(nodal: Nodal, job: dict) -> list:
     instants = job["instants_s"]
     count = round(STEPS_PER_INSTANT * 2 ** (job["level"] / 2))
-    flexes, states, t = Flexes(nodal, job, instants[0] / count), [], 0.0
+    flexes, states, t = Flexes(nodal, instants[0] / count), [], 0.0
     for _ in instants:
         for _ in range(count):
             t += instants[0] / count

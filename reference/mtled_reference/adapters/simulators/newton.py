@@ -50,10 +50,10 @@ def solve(job: dict) -> dict:
     return content | {"method": "SolverVBD, linear tetrahedra, single precision"}
 
 
-def _builder(model: Nodal, job: dict, held: np.ndarray):
+def _builder(model: Nodal, held: np.ndarray):
     """Particles and tetrahedra."""
     builder = newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))
-    materials = [region["material"] for region in job["problem"]["regions"]]
+    materials = [region.material for region in model.case.regions]
     builder.add_soft_mesh(
         pos=wp.vec3(),
         rot=wp.quat_identity(),
@@ -62,8 +62,8 @@ def _builder(model: Nodal, job: dict, held: np.ndarray):
         vertices=[wp.vec3(*point) for point in model.points],
         indices=model.cells.ravel().tolist(),
         density=0.0,
-        k_mu=np.array([m["shear_modulus_pa"] for m in materials])[model.owners],
-        k_lambda=np.array([m["lame_modulus_pa"] for m in materials])[model.owners],
+        k_mu=np.array([m.shear_modulus for m in materials])[model.owners],
+        k_lambda=np.array([m.lame_modulus for m in materials])[model.owners],
         k_damp=0.0,
         add_surface_mesh_edges=False,
     )
@@ -76,7 +76,7 @@ def _rest(model: Nodal, job: dict, held: np.ndarray) -> np.ndarray:
     """Displacements (n, 3) [m] at rest."""
     end, material = model.case.time.load_end, model.case.regions[0].material
     wave = np.ptp(model.points, axis=0).max() / np.sqrt(material.shear_modulus / material.density)
-    body = _builder(model, job, held).finalize()
+    body = _builder(model, held).finalize()
     solver = newton.solvers.SolverVBD(
         model=body, iterations=ITERATIONS, particle_enable_self_contact=False
     )

@@ -1,28 +1,26 @@
-//! What a solver is asked: a case with every default spelled out, at one resolution.
+//! What a solver is asked: a case at one resolution, in the words of case files.
 
-use super::conditions::{Contact, Loads, Support, loads, obstacles, supports};
-use super::geometry::Shape;
-use super::material::{Region, regions};
+use super::material::{InNumbers, materials};
 use super::version::PROTOCOL;
-use crate::scene::format::{DimensionFormat, Triple};
+use crate::scene::format::{CaseFormat, RegionFormat, SelectorFormat, Triple};
 use crate::scene::{Case, Diagnostic, ProbeKind, tables};
-use mtled::problem::{Motion, defaults};
+use mtled::problem::{Amplitude, Loads, Problem, defaults};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use serde::ser::Error;
+use serde::{Deserialize, Serialize, Serializer};
+use serde_json::Value;
+use std::collections::BTreeMap;
 
-/// A job of the solver protocol of mtled: one problem of solid mechanics at one resolution. SI
-/// units; keys that end in _m, _s, _pa, _rad … have these. Every key is always there.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// A job of the solver protocol of mtled: one problem of solid mechanics at one resolution, SI
+/// units throughout; keys that end in _m, _s, _pa … have these.
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Job of the solver protocol")]
 pub struct Job {
     /// Version of the protocol, 1.
     pub protocol: u32,
     /// Name of the case.
     pub case: String,
-    /// What is solved, in a few sentences.
-    pub description: String,
-    /// The wanted distance of neighbouring nodes; where the body needs smaller elements
+    /// The requested distance of neighbouring nodes; where the body needs smaller elements
     /// somewhere is left to the solver.
     pub spacing_m: f64,
     /// Number of this resolution, from 0, the coarsest.
@@ -33,55 +31,65 @@ pub struct Job {
     pub time_limit_s: f64,
     /// Threads that it may use.
     pub threads: usize,
-    /// The same problem as a case file of mtled (TOML), for programs that read these.
-    pub case_file: PathBuf,
-    pub problem: Problem,
-    /// Where displacements are wanted.
+    /// The case: the tables of a case file, with absolute names of other files and at least one
+    /// region. `discretisation` is the recipe of mtled, which other programs leave alone.
+    #[serde(serialize_with = "without_nulls")]
+    pub problem: CaseFormat,
+    /// Tolerance of selections that state none.
+    pub selection_tolerance_m: f64,
+    /// The materials in numbers, by their names in `problem.material`.
+    pub materials: BTreeMap<String, InNumbers>,
+    /// Factors over time.
+    pub factors: Factors,
+    /// Where displacements are requested.
     pub probes: Vec<Probe>,
-    /// Instants at which every quantity is wanted; in a static problem the end of loading.
+    /// Instants at which every quantity is requested; in a static problem the end of loading.
     pub instants_s: Vec<f64>,
     /// Moments of reactions are taken about this point.
     pub moment_about_m: Triple,
 }
 
-/// What is solved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Problem {
-    pub dimension: DimensionFormat,
-    /// Of a problem in plane strain: forces, energies and masses belong to a slab of this
-    /// thickness, and positions have this z. Null in three dimensions.
-    pub plane: Option<Plane>,
-    /// The body that deforms.
-    pub body: Shape,
-    /// Its materials; the first region that contains a point owns it.
-    pub regions: Vec<Region>,
-    /// Prescribed displacements. Where two prescribe a component, the reaction counts with the
-    /// first.
-    pub supports: Vec<Support>,
-    pub loads: Loads,
-    /// Contact with rigid obstacles.
-    pub obstacles: Vec<Contact>,
-    pub motion: JobMotion,
+/// The factor of each row of a table of `problem` at each instant of the job.
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
+pub struct Factors {
+    pub prescribe: Vec<Vec<f64>>,
+    pub body_force: Vec<Vec<f64>>,
+    pub traction: Vec<Vec<f64>>,
+    pub pressure: Vec<Vec<f64>>,
 }
 
-/// The slab of a problem in plane strain.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Plane {
-    pub thickness_m: f64,
-    pub z_m: f64,
+impl Factors {
+    fn new(problem: &Problem, instants_s: &[f64]) -> Factors {
+        let at = |amplitude: &Amplitude| instants_s.iter().map(|&t| amplitude.at(t)).collect();
+        let Loads { body_forces, tractions, pressures, .. } = &problem.loads;
+        Factors {
+            prescribe: problem.conditions.iter().map(|row| at(&row.amplitude)).collect(),
+            body_force: body_forces.iter().map(|row| at(&row.amplitude)).collect(),
+            traction: tractions.iter().map(|row| at(&row.amplitude)).collect(),
+            pressure: pressures.iter().map(|row| at(&row.amplitude)).collect(),
+        }
+    }
 }
 
-/// Equilibrium, or motion in time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub enum JobMotion {
-    /// The equilibrium under the loads of this time, reached from rest as they grow.
-    Static { load_end_s: f64 },
-    /// ρ ü + damping ρ u̇ = div P + loads, from rest or the initial velocities.
-    Dynamic { end_s: f64, damping_per_s: f64 },
+/// As a case file has it: what is left out has no key.
+fn without_nulls<S: Serializer>(problem: &CaseFormat, writer: S) -> Result<S::Ok, S::Error> {
+    let mut value = serde_json::to_value(problem).map_err(S::Error::custom)?;
+    drop_nulls(&mut value);
+    value.serialize(writer)
 }
 
-/// Where displacements are wanted: positions, or a centre of mass.
+fn drop_nulls(value: &mut Value) {
+    match value {
+        Value::Object(table) => {
+            table.retain(|_, inner| !inner.is_null());
+            table.values_mut().for_each(drop_nulls);
+        }
+        Value::Array(rows) => rows.iter_mut().for_each(drop_nulls),
+        _ => {}
+    }
+}
+
+/// Where displacements are requested: positions, or a centre of mass.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Probe {
@@ -105,48 +113,37 @@ pub struct Resolution {
 }
 
 impl Job {
-    /// A job for a case in whose text names of other files are absolute, and which is stored in
-    /// `case_file`.
-    pub fn new(
-        case: &Case,
-        case_file: &Path,
-        resolution: Resolution,
-        instants_s: &[f64],
-    ) -> Result<Job, Diagnostic> {
-        let format = tables(case)?;
-        let Resolution { spacing_m, level, levels, time_limit_s } = resolution;
-        let tolerance_m = defaults::SELECTION_TOLERANCE * spacing_m;
-        let plane = format.plane.as_ref();
-        let problem = Problem {
-            dimension: format.dimension,
-            plane: plane.map(|plane| Plane { thickness_m: plane.thickness, z_m: plane.z }),
-            body: (&format.geometry.shape).into(),
-            regions: regions(&format, case, tolerance_m, instants_s),
-            supports: supports(&format, case, tolerance_m, instants_s),
-            loads: loads(&format, case, tolerance_m, instants_s),
-            obstacles: obstacles(&format, case, instants_s),
-            motion: match &case.problem.motion {
-                Motion::Dynamic { end, damping, .. } => {
-                    JobMotion::Dynamic { end_s: *end, damping_per_s: *damping }
-                }
-                motion => JobMotion::Static { load_end_s: motion.end() },
-            },
-        };
+    /// A job for a case in whose text names of other files are absolute.
+    pub fn new(case: &Case, at: Resolution, instants_s: &[f64]) -> Result<Job, Diagnostic> {
+        let Resolution { spacing_m, level, levels, time_limit_s } = at;
+        let mut problem = tables(case)?;
+        if problem.region.is_empty() {
+            let known = case.problem.regions.iter().map(|region| region.name.clone());
+            problem.region = (known.zip(problem.material.keys().cloned()))
+                .map(|(name, material)| RegionFormat { name, part: SelectorFormat::All, material })
+                .collect();
+        }
         Ok(Job {
             protocol: PROTOCOL,
             case: case.name.clone(),
-            description: case.description.clone(),
             spacing_m,
             level,
             levels,
             time_limit_s,
             threads: 1,
-            case_file: case_file.to_path_buf(),
+            selection_tolerance_m: defaults::SELECTION_TOLERANCE * spacing_m,
+            materials: materials(&problem, case),
+            factors: Factors::new(&case.problem, instants_s),
             problem,
             probes: case.probes.iter().map(probe).collect(),
             instants_s: instants_s.to_vec(),
             moment_about_m: case.outputs.moment_about.into(),
         })
+    }
+
+    /// Its problem as the text of a case file.
+    pub fn case_text(&self) -> Result<String, toml_edit::ser::Error> {
+        toml_edit::ser::to_string_pretty(&self.problem)
     }
 }
 

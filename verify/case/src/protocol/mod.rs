@@ -2,8 +2,6 @@
 //! `reference/adapters/README.md` describes it for those who write such a program.
 
 mod answer;
-mod conditions;
-mod geometry;
 mod job;
 mod material;
 mod read;
@@ -11,7 +9,8 @@ mod schema;
 mod version;
 
 pub use answer::{Answer, Refusal, RefusalReason, Refused, Reply, SolverName};
-pub use job::{Job, Probe, Resolution};
+pub use job::{Factors, Job, Probe, Resolution};
+pub use material::InNumbers;
 pub use read::{
     AnswerFault, Answered, SoundReply, parse_job, parse_reply, read_reply, reply_value, sound_reply,
 };

@@ -142,24 +142,20 @@ fn one_run(case: &ContestCase, entrant: &Entrant, at: Resolution) -> Result<Opti
     })
 }
 
-/// Writes a job with its case file into a folder; returns its path.
+/// Writes a job into a folder; returns its path.
 fn write_job(source: &Source, folder: &Path, at: Resolution, instants: &[f64]) -> Result<PathBuf> {
-    let (case, case_file) = absolute(source, folder)?;
-    let job = Job::new(&case, &case_file, at, instants);
+    let job = Job::new(&absolute(source)?, at, instants);
     let job = job.map_err(|mistake| one_error(vec![mistake]))?;
     let path = folder.join("job.json");
     std::fs::write(&path, serde_json::to_string_pretty(&job)? + "\n")?;
     Ok(path)
 }
 
-/// The case with absolute names of other files, in a file of a folder.
-pub fn absolute(source: &Source, folder: &Path) -> Result<(Case, PathBuf)> {
+/// The case with absolute names of other files.
+pub fn absolute(source: &Source) -> Result<Case> {
     let base = source.file.parent().unwrap_or(Path::new("."));
     let text = with_absolute_paths(source.case.text(), base)?;
-    let case_file = folder.join(format!("{}.toml", source.name));
-    std::fs::write(&case_file, &text)?;
-    let case = parse_case(&text, &case_file.display().to_string(), folder).map_err(one_error)?;
-    Ok((case, case_file))
+    parse_case(&text, &source.file.display().to_string(), base).map_err(one_error)
 }
 
 #[cfg(test)]

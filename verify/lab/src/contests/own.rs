@@ -1,14 +1,12 @@
 //! The door of the protocol to this solver.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use mtled::Simulation;
 use mtled_case::protocol::{
     Answer, Job, PROTOCOL, Refusal, RefusalReason, Refused, Reply, SolverName,
 };
 use mtled_case::reference::{Family, is_dynamic, quantities};
-use mtled_case::scene::{
-    Case, Knob, Override, Setting, edited, one_error, parse_overridden, read_text,
-};
+use mtled_case::scene::{Case, Knob, Override, Setting, edited, one_error, parse_overridden};
 use mtled_run::accuracy::{SAMPLES, values};
 use mtled_run::machine::{cpu_seconds, peak_memory};
 use mtled_run::run::{Recorder, integrate, refuse_beyond_memory};
@@ -50,15 +48,12 @@ fn unknowns(case: &Case, simulation: &Simulation) -> u64 {
 
 /// The case at the wanted spacing, or why there is none.
 fn case_of(job: &Job, overrides: &[Override]) -> Result<Result<Case, String>> {
-    let file = &job.case_file;
-    let text = read_text(file).with_context(|| format!("cannot read {}", file.display()))?;
-    let text = match edited(&text, &[Setting::number(Knob::Spacing, job.spacing_m)]) {
+    let text = match edited(&job.case_text()?, &[Setting::number(Knob::Spacing, job.spacing_m)]) {
         Ok(text) => text,
         Err(reason) => return Ok(Err(reason.to_string())),
     };
-    let folder = file.parent().unwrap_or(Path::new("."));
-    let name = file.display().to_string();
-    let mut case = parse_overridden(&text, &name, folder, overrides).map_err(one_error)?;
+    let name = format!("{}.toml", job.case);
+    let mut case = parse_overridden(&text, &name, Path::new("."), overrides).map_err(one_error)?;
     if is_dynamic(&case) {
         case.outputs.history = case.outputs.history.max(SAMPLES);
     }

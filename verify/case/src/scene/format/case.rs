@@ -10,12 +10,12 @@ use crate::scene::format::material::MaterialFormat;
 use crate::scene::format::recipe::DiscretisationFormat;
 use crate::scene::format::time::{OutputFormat, ProbeFormat, TimeFormat};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// One problem of solid mechanics for the meshless solver mtled. Lengths in m,
 /// masses in kg, times in s, stresses in Pa, angles in rad.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "mtled case")]
 pub struct CaseFormat {
@@ -83,7 +83,7 @@ choice! {
 }
 
 /// The slice of a plane-strain problem.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneFormat {
     /// Thickness of the slab that volumes, masses and forces belong to [m].
@@ -93,7 +93,7 @@ pub struct PlaneFormat {
 }
 
 /// The solid that deforms.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GeometryFormat {
     /// Its shape at rest.
@@ -101,7 +101,7 @@ pub struct GeometryFormat {
 }
 
 /// A part of the body made of one material.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionFormat {
     /// Its name in results and for probes.

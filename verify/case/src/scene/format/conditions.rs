@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A prescribed displacement: one of `displacement`, `rotation`, `formula` and `data`.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PrescribeFormat {
     /// Its name in results.
@@ -46,7 +46,7 @@ choice! {
 }
 
 /// A displacement at amplitude 1 [m]; a component that is left out is free.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DisplacementFormat {
     /// Component along x [m]; free if left out.
@@ -58,7 +58,7 @@ pub struct DisplacementFormat {
 }
 
 /// A rotation about an axis; the amplitude multiplies the angle.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationFormat {
     /// A point on the axis [m].
@@ -72,7 +72,7 @@ pub struct RotationFormat {
 /// A vector as formulas of the reference position x, y, z [m], such
 /// as "0.02*sin(PI*x/0.1)": + - * / ^, parentheses, sqrt, exp, ln, sin, cos, tan, asin, acos,
 /// atan, sinh, cosh, tanh, abs, PI.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FormulaFormat {
     /// Component along x [m, m/s, m/s², Pa or –].
@@ -96,7 +96,7 @@ impl FormulaFormat {
 
 /// Displacements at amplitude 1 at scattered points, such as measured ones, or directions. Between
 /// them the linear function counts that fits the nearest 16 best.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DataFormat {
     /// CSV with a header x, y, z, ux, uy, uz; NPY of shape (n, 6) in this order; VTU; or an image
@@ -156,7 +156,7 @@ choice! {
 }
 
 /// A factor over time; constant if left out.
-#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum AmplitudeFormat {
     /// 1 from the start.
@@ -177,7 +177,7 @@ pub enum AmplitudeFormat {
 }
 
 /// A force per mass on the body.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForceFormat {
     /// The part that it acts on, such as what lies above a fluid; everything if left out.
@@ -192,7 +192,7 @@ pub struct BodyForceFormat {
 }
 
 /// A traction of fixed direction on a part of the boundary.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TractionFormat {
     /// Its name in results.
@@ -208,7 +208,7 @@ pub struct TractionFormat {
 }
 
 /// A pressure on the deformed surface: along its inward normal, whatever way it turns.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PressureFormat {
     /// Its name in results.
@@ -223,7 +223,7 @@ pub struct PressureFormat {
 
 /// Springs all over a part of the boundary, between each point and where it was: an elastic bed,
 /// such as the tissue around an organ. One of the two stiffnesses is above 0.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringFormat {
     /// Its name in results.
@@ -239,7 +239,7 @@ pub struct SpringFormat {
 }
 
 /// A part of the boundary that encloses a volume, which is recorded, and what fills it.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CavityFormat {
     /// Its name in results.
@@ -257,7 +257,7 @@ pub struct CavityFormat {
 
 /// A fluid whose pressure is its bulk modulus times what it lacks in room over the volume of the cavity at
 /// rest, (V₀ + inflow − V)/V₀. With an inflow a volume is prescribed, and the pressure is the answer.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FluidFormat {
     /// Bulk modulus [Pa]; 2.18e9, that of water, if left out. A motion takes steps that are the
@@ -277,7 +277,7 @@ fn water() -> f64 {
 }
 
 /// A velocity at t = 0.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialVelocityFormat {
     #[serde(rename = "where")]
@@ -289,7 +289,7 @@ pub struct InitialVelocityFormat {
 }
 
 /// A rigid obstacle.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleFormat {
     /// Its name in results.
@@ -309,7 +309,7 @@ pub struct ObstacleFormat {
 }
 
 /// A motion of an obstacle: a displacement or a rotation.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigidMotionFormat {
     /// Its way at amplitude 1 [m]; left out where a rotation is given.

@@ -3,10 +3,10 @@
 use crate::scene::format::conditions::{DataFormat, FormulaFormat};
 use crate::scene::format::geometry::Triple;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A direction at every place: one of `direction`, `formula` and `data`. Its length does not count.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DirectionFormat {
     /// The same everywhere [–]; left out where another kind is given.

@@ -4,14 +4,14 @@
 use crate::scene::format::choice::choice;
 use mtled_io::files::LengthUnit;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A vector in space: three numbers.
 pub type Triple = [f64; 3];
 
 /// A solid.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ShapeFormat {
     /// Axis-parallel, between two corners [m].
@@ -110,7 +110,7 @@ choice! {
 /// A part of the body or of its boundary: "all" or a table with one key.
 /// Tolerances are lengths [m]; left out, they are a thousandth of the nodal
 /// spacing.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum SelectorFormat {
     /// Everything.

@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 /// poisson_ratio for mooney_rivlin; terms and poisson_ratio or bulk_modulus for ogden; constants and
 /// poisson_ratio or bulk_modulus for yeoh and demiray; constants, bulk_modulus and directions for
 /// laws with fibres.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialFormat {
     /// Its strain energy.
@@ -57,7 +57,7 @@ pub struct MaterialFormat {
 }
 
 /// The term 2μ/α² (λ̄₁^α + λ̄₂^α + λ̄₃^α − 3) of ogden, as Miller and Chinzei (2002) write it.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OgdenTermFormat {
     /// Its part of the shear modulus at rest [Pa], positive.
@@ -67,7 +67,7 @@ pub struct OgdenTermFormat {
 }
 
 /// A term of viscosity.
-#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PronyTermFormat {
     /// The part of the isochoric stress that relaxes with it [–], positive; all sum to less than 1.
@@ -77,7 +77,7 @@ pub struct PronyTermFormat {
 }
 
 /// The second Piola–Kirchhoff stress T f ⊗ f with the direction f of the fibres at rest.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ActiveStressFormat {
     /// T at amplitude 1 [Pa].

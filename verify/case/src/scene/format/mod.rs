@@ -10,15 +10,14 @@ mod material;
 mod recipe;
 mod time;
 
-pub use case::{CaseFormat, DimensionFormat};
+pub use case::{CaseFormat, DimensionFormat, RegionFormat};
 pub use conditions::{
-    AmplitudeFormat, BeyondFormat, CavityFormat, DataFormat, DisplacementFormat, ExtentFormat,
-    FluidFormat, FormulaFormat, FrictionFormat, ObstacleFormat, PrescribeFormat, RigidMotionFormat,
-    RotationFormat, SideFormat, SpringFormat, VectorFrameFormat,
+    AmplitudeFormat, BeyondFormat, DataFormat, DisplacementFormat, FluidFormat, FormulaFormat,
+    ObstacleFormat, PrescribeFormat, RigidMotionFormat, RotationFormat,
 };
 pub use fibres::DirectionFormat;
 pub use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
-pub use material::{LawFormat, MaterialFormat, PronyTermFormat, VolumetricFormat};
+pub use material::{MaterialFormat, PronyTermFormat, VolumetricFormat};
 pub use recipe::{
     BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientsFormat, GridFormat,
     MassFormat, MaterialBordersFormat, VolumetricProjectionFormat, WeightFunctionFormat,

@@ -7,11 +7,11 @@ use mtled::problem::{
     VolumetricProjection, WeightFunction,
 };
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// How the body is turned into nodes, supports and quadrature points.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiscretisationFormat {
     /// Where the nodes come from.
@@ -95,7 +95,7 @@ choice! {
 }
 
 /// The spacing in a part of the body.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RefineSpacingFormat {
     #[serde(rename = "where")]
@@ -198,7 +198,7 @@ choice! {
 }
 
 /// The background grid that quadrature points come from.
-#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GridFormat {
     /// Edge of the largest cells [m]; instead of cells_per_spacing, which counts if it is left out. With it, or with
@@ -220,7 +220,7 @@ pub struct GridFormat {
 }
 
 /// The largest edge of cells in a part of the body.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RefineCellFormat {
     #[serde(rename = "where")]

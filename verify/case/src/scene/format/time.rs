@@ -3,13 +3,13 @@
 use crate::scene::format::choice::choice;
 use crate::scene::format::geometry::{Triple, UnitFormat};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// How the body moves. `end`, `damping` and `mass_scaling` belong to method "dynamic";
 /// `solver`, `load_end`, `load_steps`, `tolerance`, `max_steps` and `parts` to "static".
 /// Solver "newton" takes `load_end`, `tolerance` and `parts` only.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeFormat {
     /// Whether the body moves in time or the state at rest is the target.
@@ -69,7 +69,7 @@ choice! {
 
 /// Where displacements are recorded: one of `point`, `points`, `lattice`,
 /// `centre_of_mass`.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProbeFormat {
     /// Its name in results.
@@ -86,7 +86,7 @@ pub struct ProbeFormat {
 
 /// Reference positions from a file, each a probe with the name of this one, a point and its own
 /// name, as in `landmarks.tip`.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointsFormat {
     /// CSV with a header that names name, x, y and z, or x_mm, y_mm and z_mm. Path relative to
@@ -97,7 +97,7 @@ pub struct PointsFormat {
 }
 
 /// Equally spaced reference positions, ends included; those outside the body are left out.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeFormat {
     /// First corner [m].
@@ -109,7 +109,7 @@ pub struct LatticeFormat {
 }
 
 /// What is written.
-#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputFormat {
     /// Number of VTU frames after the first, at equal parts of the progress, the end among
