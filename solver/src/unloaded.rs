@@ -159,9 +159,10 @@ impl Search<'_> {
     fn at(&mut self, fraction: f64, mut offsets: Vec<f64>) -> Result<Tried, Error> {
         let problem = part_of(self.problem, fraction);
         let last = fraction == 1.0;
-        let (tolerance, most) = match last {
-            true => (self.settings.tolerance, self.settings.most),
-            false => (self.settings.tolerance.max(PASSING), MOST_ON_THE_WAY),
+        let (tolerance, most) = if last {
+            (self.settings.tolerance, self.settings.most)
+        } else {
+            (self.settings.tolerance.max(PASSING), MOST_ON_THE_WAY)
         };
         let mut factor = 1.0;
         let mut before: Option<Vec<f64>> = None;

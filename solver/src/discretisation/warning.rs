@@ -124,6 +124,19 @@ pub enum Warning {
         /// The amplitude there \[–\].
         factor: f64,
     },
+    /// A condition is released before the load of a static problem ends.
+    #[error(
+        "\"{name}\" is released at {release} s and the load ends at {end} s: the solution is that of a body \
+         that it no longer holds"
+    )]
+    ReleasedEarly {
+        /// Of the condition.
+        name: String,
+        /// Of the condition \[s\].
+        release: f64,
+        /// Of the load \[s\].
+        end: f64,
+    },
     /// Nodes are a little inside an obstacle before the first step.
     #[error(
         "{nodes} nodes are inside obstacle \"{name}\" at the start, node {node} at ({}) by {depth:.4e} m: \

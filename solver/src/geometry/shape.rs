@@ -198,9 +198,10 @@ impl Shape {
             Shape::Polygon { ref points, z: (lower, upper) } => {
                 let z = (lower - moved(2, -1.0), upper + moved(2, 1.0));
                 // Places in the plane where it has no ends.
-                let (middle, half) = match (upper - lower).is_finite() {
-                    true => (0.5 * (lower + upper), 0.5 * (upper - lower)),
-                    false => (0.0, 0.0),
+                let (middle, half) = if (upper - lower).is_finite() {
+                    (0.5 * (lower + upper), 0.5 * (upper - lower))
+                } else {
+                    (0.0, 0.0)
                 };
                 let points = points.with_edges_moved(|[x, y], normal, way| {
                     let ways = [Vector3::new(way[0], way[1], 0.0), half * Vector3::z()];

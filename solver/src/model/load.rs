@@ -194,9 +194,18 @@ pub fn check_loads(
     let mut warnings: Vec<Warning> =
         names.map(|name| Warning::CarriedTraction { name: name.clone() }).collect();
     if !matches!(problem.motion, Motion::Dynamic { .. }) {
-        warnings.extend(unfinished(problem));
+        warnings.extend(unfinished(problem).chain(released(problem)));
     }
     warnings
+}
+
+/// Conditions that no longer act when the load of a static problem ends.
+fn released(problem: &Problem) -> impl Iterator<Item = Warning> {
+    let end = problem.motion.end();
+    problem.conditions.iter().filter_map(move |condition| {
+        let release = condition.release.filter(|release| *release <= end)?;
+        Some(Warning::ReleasedEarly { name: condition.name.clone(), release, end })
+    })
 }
 
 /// Amplitudes that are on their way when the load of a static problem ends.

@@ -1,5 +1,6 @@
 //! Cases, references and templates that the program has with it.
 
+use crate::scene::nearest;
 use anyhow::Context;
 use mtled_checks::report::write_atomically;
 use mtled_reference::LABEL_MAPS;
@@ -55,6 +56,15 @@ pub static TEMPLATES: [Template; 6] = [
 /// Cases that take seconds rather than parts of one: studies that solve every case many times
 /// leave them out.
 pub const LARGE: [&str; 2] = ["brain_gravity", "brain_shift"];
+
+/// Why a name is no case.
+pub fn no_such_case(name: &str) -> String {
+    let meant = nearest(name, CASES.iter().map(|(name, _)| *name));
+    let hint = meant.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    format!(
+        "there is no such file, and no bundled case of that name{hint} (`mtled case list` prints their names)"
+    )
+}
 
 /// Writes the bundled cases to `dir/cases` and the label maps to `dir/brain`,
 /// where the cases look for them; returns the folder of the cases.

@@ -137,10 +137,13 @@ fn check(file: &Path) -> (Outcome, Option<String>) {
     }
     match Simulation::new(&case.problem) {
         Err(error) => located(error.to_string()),
-        Ok(simulation) => match simulation.discretisation.worst_condition.is_finite() {
-            true => (Outcome::Succeeded, None),
-            false => located("the condition is not finite, without an error".into()),
-        },
+        Ok(simulation) => {
+            if simulation.discretisation.worst_condition.is_finite() {
+                (Outcome::Succeeded, None)
+            } else {
+                located("the condition is not finite, without an error".into())
+            }
+        }
     }
 }
 

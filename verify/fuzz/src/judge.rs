@@ -93,10 +93,7 @@ fn all_files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files = Vec::new();
     for path in entries.map(|entry| entry.path()) {
-        match path.is_dir() {
-            true => files.extend(all_files(&path)),
-            false => files.push(path),
-        }
+        if path.is_dir() { files.extend(all_files(&path)) } else { files.push(path) }
     }
     files.sort();
     files

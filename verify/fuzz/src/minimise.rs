@@ -28,9 +28,10 @@ pub fn minimised(
             let mut smaller = best.clone();
             smaller.bytes.drain(at..(at + part).min(best.bytes.len()));
             let trial = station.try_input(target, &smaller)?;
-            match trial.findings.iter().any(|finding| finding.signature() == signature) {
-                true => best = smaller,
-                false => at += part,
+            if trial.findings.iter().any(|finding| finding.signature() == signature) {
+                best = smaller
+            } else {
+                at += part
             }
         }
         part /= 2;

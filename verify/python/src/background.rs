@@ -32,10 +32,7 @@ impl Watch {
         if let Ok(mut reached) = self.reached.lock() {
             *reached = (progress, step);
         }
-        match self.is_stopped() {
-            true => Continue::Stop,
-            false => Continue::Yes,
-        }
+        if self.is_stopped() { Continue::Stop } else { Continue::Yes }
     }
 
     /// Ends the work with an exception; the first one counts.

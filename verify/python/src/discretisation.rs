@@ -66,9 +66,10 @@ impl Discretisation {
             support_starts: supports.starts.into_pyarray(py).unbind(),
             support_nodes: supports.nodes.into_pyarray(py).unbind(),
             phi: supports.phi.into_pyarray(py).unbind(),
-            grad_phi_per_m: match gradients.is_empty() {
-                true => rows(py, Vec::new(), 3)?,
-                false => vectors(py, gradients)?,
+            grad_phi_per_m: if gradients.is_empty() {
+                rows(py, Vec::new(), 3)?
+            } else {
+                vectors(py, gradients)?
             },
             worst_condition: discretisation.worst_condition,
             enlarged_supports: discretisation.enlarged,

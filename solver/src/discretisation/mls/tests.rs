@@ -242,9 +242,10 @@ fn points_of_the_stiffer_side_see_their_own_nodes_and_reproduce_linear_fields_as
         let X = Vector3::new(x, 0.24, 0.27);
         let (support, all) = (sided.evaluate(&X).unwrap(), plain.evaluate(&X).unwrap());
         let softer = |node: &&u32| plain.nodes[**node as usize].x > border;
-        match x < border {
-            true => assert_eq!(support.nodes.iter().filter(softer).count(), 0),
-            false => assert_eq!(support.phi, all.phi),
+        if x < border {
+            assert_eq!(support.nodes.iter().filter(softer).count(), 0)
+        } else {
+            assert_eq!(support.phi, all.phi)
         }
         let values = support.nodes.iter().map(|&node| field(&plain.nodes[node as usize]));
         let value: f64 = values.zip(&support.phi).map(|(value, phi)| value * phi).sum();

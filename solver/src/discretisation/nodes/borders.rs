@@ -70,18 +70,22 @@ pub(crate) fn place_nodes_on_borders(cloud: &mut NodeCloud, body: &Shape, stiffn
     }
     let stays = |node: usize| {
         let (X, room) = (&cloud.positions[node], ROOM * cloud.spacing[node]);
-        let faces = match cloud.on_boundary[node] {
-            true => faces_at(body, X, cloud.spacing[node], stiffness.is_flat()),
-            false => 0,
+        let faces = if cloud.on_boundary[node] {
+            faces_at(body, X, cloud.spacing[node], stiffness.is_flat())
+        } else {
+            0
         };
         // Corners of the body stay, and nodes on its edges and faces unless others on these come.
         faces > 2 || (faces.min(2)..3).all(|others| !borders[others].any_within(X, room))
     };
     let nodes = 0..cloud.positions.len();
     let stays: Vec<bool> = nodes.clone().into_par_iter().map(stays).collect();
-    let moved = |node| match cloud.on_boundary[node] {
-        true => cloud.positions[node],
-        false => beside.clear_of(&cloud.positions[node], cloud.spacing[node], body),
+    let moved = |node| {
+        if cloud.on_boundary[node] {
+            cloud.positions[node]
+        } else {
+            beside.clear_of(&cloud.positions[node], cloud.spacing[node], body)
+        }
     };
     cloud.positions = nodes.into_par_iter().map(moved).collect();
     cloud.retain(&stays);

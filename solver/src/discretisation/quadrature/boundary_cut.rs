@@ -68,9 +68,10 @@ impl BoundaryCut<'_> {
             if self.components == 2 {
                 shift.z = 0.0;
             }
-            let spread = match self.has_spread {
-                true => spread(level, &(2.0 * slope)) * cell.edge.powi(2),
-                false => Matrix3::zeros(),
+            let spread = if self.has_spread {
+                spread(level, &(2.0 * slope)) * cell.edge.powi(2)
+            } else {
+                Matrix3::zeros()
             };
             (fraction, shift * cell.edge, in_plane(spread, self.components))
         })

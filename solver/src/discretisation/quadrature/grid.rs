@@ -230,9 +230,10 @@ impl PointCollector<'_> {
         }
         let mut leaves = Vec::new();
         self.measure(part, depth, &mut |leaf| leaves.push(leaf))?;
-        let piece = match beside_gap {
-            true => pieces(self.body, part, &leaves, self.components),
-            false => pieces_by_sight(self.regions, &leaves),
+        let piece = if beside_gap {
+            pieces(self.body, part, &leaves, self.components)
+        } else {
+            pieces_by_sight(self.regions, &leaves)
         };
         let last = piece.iter().max().map_or(0, |&last| last);
         let mut moments = vec![Moments::default(); (last + 1) * count];

@@ -215,6 +215,21 @@ fn a_static_load_that_ends_before_its_amplitude_is_reported() {
     assert_eq!(warnings(&problem), []);
 }
 
+#[test]
+fn a_condition_that_is_released_before_a_static_load_ends_is_reported() {
+    let mut problem = stretched(0.01);
+    problem.motion = Motion::Relaxed(Relaxation::default());
+    problem.conditions[1].release = Some(0.5);
+    let found = warnings(&problem);
+    let early = |warning: &Warning| match warning {
+        Warning::ReleasedEarly { name, release, .. } => name == "top" && *release == 0.5,
+        _ => false,
+    };
+    assert!(found.iter().any(early), "{found:?}");
+    problem.conditions[1].release = Some(2.0);
+    assert_eq!(warnings(&problem), []);
+}
+
 /// What a condition holds includes the weight of its own nodes.
 #[test]
 fn the_reaction_of_a_held_volume_carries_the_whole_weight() {

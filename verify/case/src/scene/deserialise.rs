@@ -41,7 +41,11 @@ fn located(document: &Document, error: &toml_edit::de::Error) -> Diagnostic {
             format!("`{name}` is not a choice that is known here{}", choices(name, known));
         return document.diagnostic_at(span, path, message);
     }
+    let whole = "expected a whole number that is not negative";
     let message = message.replace("expected f64", "expected a number").replace('\n', ", ");
+    let message = ["usize", "u32", "u64"]
+        .iter()
+        .fold(message, |text, kind| text.replace(&format!("expected {kind}"), whole));
     document.diagnostic_at(span, path, message)
 }
 

@@ -39,11 +39,10 @@ fn once(bytes: &[u8], other: &[u8], rng: &mut Rng) -> Vec<u8> {
         && let Some(start) = archive::start(bytes)
     {
         let (head, data) = bytes.split_at(start);
-        return match head.is_empty() || rng.bool() {
-            true => {
-                [head, &archive::mutated(data, rng, |inner, rng| once(inner, other, rng))].concat()
-            }
-            false => [&plain(head, other, rng)[..], data].concat(),
+        return if head.is_empty() || rng.bool() {
+            [head, &archive::mutated(data, rng, |inner, rng| once(inner, other, rng))].concat()
+        } else {
+            [&plain(head, other, rng)[..], data].concat()
         };
     }
     plain(bytes, other, rng)

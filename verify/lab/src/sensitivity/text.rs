@@ -57,7 +57,7 @@ fn table(found: &Sensitivities, shown: std::ops::Range<usize>) -> comfy_table::T
     table.add_row(values);
     for row in &found.rows {
         let mut cells = vec![printable(&row.number.key), four_digits(row.number.value)];
-        cells.extend(row.relative[shown.clone()].iter().map(|size| format!("{size:+.3}")));
+        cells.extend(row.relative[shown.clone()].iter().map(|size| signed(*size)));
         cells.extend(row.difference().map(|check| format!("{check:.0e}")));
         table.add_row(cells);
     }
@@ -90,4 +90,9 @@ pub fn to_json(found: &Sensitivities) -> Value {
         "doubtful": found.audit.is_doubtful(),
         "timings": { "run_cpu_s": found.run_cpu_s, "sensitivities_cpu_s": found.sensitivities_cpu_s },
     })
+}
+
+/// With three decimals; nothing is +0.
+fn signed(size: f64) -> String {
+    format!("{:+.3}", (1000.0 * size).round() / 1000.0 + 0.0)
 }

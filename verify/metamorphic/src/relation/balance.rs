@@ -168,9 +168,10 @@ fn prescribed(subject: &Subject) -> Option<Compared> {
         return None;
     }
     let places: Vec<Vector3> = rows.iter().map(|row| model.positions[row.0 as usize]).collect();
-    let field = match subject.scene.direct {
-        true => rows.iter().map(|row| answer.displacements()[row.0 as usize]).collect(),
-        false => answer.simulation.displacements_at(&places).ok()?,
+    let field = if subject.scene.direct {
+        rows.iter().map(|row| answer.displacements()[row.0 as usize]).collect()
+    } else {
+        answer.simulation.displacements_at(&places).ok()?
     };
     let asked: Vec<Vector3> = rows.iter().map(|row| row.1).collect();
     let floor = answer.largest();

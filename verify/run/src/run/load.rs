@@ -4,7 +4,7 @@ use super::memory::refuse_beyond_memory;
 use anyhow::{Context, Result};
 use mtled::error::Error;
 use mtled::geometry::GeometryError;
-use mtled_case::bundled::{CASES, unpack, unpack_label_maps_of};
+use mtled_case::bundled::{CASES, no_such_case, unpack, unpack_label_maps_of};
 use mtled_case::scene::{Case, Diagnostic, Override, one_error, parse_overridden, read_overridden};
 use std::path::Path;
 
@@ -31,10 +31,9 @@ fn read(case: &Path, overrides: &[Override]) -> Result<Case> {
     // A folder of that name is no case.
     match bundled.filter(|_| absent || case.is_dir()) {
         None if absent => {
-            let message = "cannot be read: there is no such file, and no bundled case of that name \
-                           (`mtled case list` prints their names)";
             let file = case.display().to_string();
-            Err(one_error(vec![Diagnostic::of_file(&file, message.into())]))
+            let message = format!("cannot be read: {}", no_such_case(&file));
+            Err(one_error(vec![Diagnostic::of_file(&file, message)]))
         }
         None => read_overridden(case, overrides).map_err(one_error),
         Some((name, text)) => {

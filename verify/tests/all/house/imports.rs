@@ -71,9 +71,10 @@ fn content(module: &Module, tokens: &[String], modules: &BTreeSet<Module>) -> Co
             let public = at > 0 && (tokens[at - 1] == "pub" || tokens[at - 1] == ")");
             for (path, name) in expand(&tokens[at + 1..end]) {
                 let Some(path) = absolute(module, &path, modules) else { continue };
-                match public {
-                    true => drop(content.reexports.insert(name, path)),
-                    false => content.uses.push(path),
+                if public {
+                    drop(content.reexports.insert(name, path))
+                } else {
+                    content.uses.push(path)
                 }
             }
             at = end.max(at) + 1;

@@ -38,9 +38,10 @@ fn listing(folder: &Path) -> Vec<String> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        match path.is_dir() {
-            true => names.extend(listing(&path)),
-            false => names.push(path.display().to_string()),
+        if path.is_dir() {
+            names.extend(listing(&path))
+        } else {
+            names.push(path.display().to_string())
         }
     }
     names.sort();

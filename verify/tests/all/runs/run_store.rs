@@ -212,8 +212,11 @@ fn records_that_are_not_what_their_names_say_are_named_and_lead_nowhere() {
 fn a_range_that_cannot_be_read_and_a_case_that_is_not_there_end_with_code_2() {
     for (arguments, words) in [
         (vec!["study", "patch", "cube_compression", "--dilation", "1.4..2"], "1.4..2.6:0.2"),
-        (vec!["study", "patch", "no_such_case"], "no case file no_such_case"),
-        (vec!["tune", "no_such_case"], "no case file no_such_case"),
+        (
+            vec!["study", "patch", "no_such_case"],
+            "no_such_case cannot be read: there is no such file",
+        ),
+        (vec!["tune", "no_such_case"], "no_such_case cannot be read: there is no such file"),
         (vec!["study", "patch", "--plan", "plan.toml"], "plan.toml: no case is named"),
         (vec!["tune", "cube_compression", "--target-error", "2"], "not a fraction"),
         (vec!["budget", "cube_compression", "--reference", "no_file.json"], "no_file.json"),

@@ -284,7 +284,9 @@ impl Builder<'_> {
             None => match &self.body_labels {
                 Some(field) => field.map().clone(),
                 None => {
-                    self.mistake(key, "needs a `file`, since the body is not made of a label map");
+                    // A body that could not be read may be one.
+                    let message = "needs a `file`, since the body is not made of a label map";
+                    self.refuse_if(self.body.is_some(), key, message);
                     return None;
                 }
             },

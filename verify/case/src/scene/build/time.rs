@@ -94,7 +94,7 @@ impl Builder<'_> {
         } else {
             format.region.iter().map(|region| region.name.as_str()).collect()
         };
-        let spacing = format.discretisation.spacing;
+        let spacing = format.discretisation.spacing.filter(|spacing| *spacing > 0.0);
         let mut probes = Vec::new();
         for (n, row) in format.probe.iter().enumerate() {
             let key = format!("probe[{n}]");

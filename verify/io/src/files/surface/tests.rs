@@ -43,19 +43,14 @@ fn ply() -> String {
 fn binary_ply(big: bool) -> Vec<u8> {
     let name = if big { "binary_big_endian" } else { "binary_little_endian" };
     let mut bytes = PLY.replace("ascii", name).into_bytes();
-    let mut put = |word: [u8; 4]| match big {
-        true => bytes.extend(word),
-        false => bytes.extend(word.iter().rev()),
-    };
+    let mut put =
+        |word: [u8; 4]| if big { bytes.extend(word) } else { bytes.extend(word.iter().rev()) };
     POINTS.iter().flatten().for_each(|c| put(c.to_be_bytes()));
     for face in FACES {
         bytes.push(4);
         for n in face {
             let word = n.to_be_bytes();
-            match big {
-                true => bytes.extend(word),
-                false => bytes.extend(word.iter().rev()),
-            }
+            if big { bytes.extend(word) } else { bytes.extend(word.iter().rev()) }
         }
     }
     bytes

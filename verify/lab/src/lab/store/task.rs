@@ -1,7 +1,7 @@
 //! Cases and the runs that are made of them.
 
-use anyhow::{Context, Result, anyhow};
-use mtled_case::bundled::{CASES, unpack};
+use anyhow::{Context, Result, bail};
+use mtled_case::bundled::{CASES, no_such_case, unpack};
 use mtled_case::scene::{
     Case, EditError, Override, Setting, edited, one_error, parse_case, parse_overridden, read_text,
 };
@@ -60,19 +60,17 @@ impl Source {
         let path = PathBuf::from(name);
         let bundled = CASES.iter().any(|(bundled, _)| *bundled == name);
         // A folder of that name is no case.
-        let file = match (path.exists() && !(bundled && path.is_dir()), bundled) {
-            (true, _) => path,
-            (false, true) => unpack(folder)?.join(format!("{name}.toml")),
-            (false, false) => {
-                return Err(anyhow!(
-                    "there is no case file {name} and no bundled case of that name \
-                     (`mtled case list` prints their names)"
-                ));
+        let (file, shown) = match (path.exists() && !(bundled && path.is_dir()), bundled) {
+            (true, _) => (path, name.to_string()),
+            (false, true) => {
+                let shown = format!("{name}.toml");
+                (unpack(folder)?.join(&shown), shown)
             }
+            (false, false) => bail!("{name} cannot be read: {}", no_such_case(name)),
         };
         let text = read_text(&file).with_context(|| format!("cannot read {}", file.display()))?;
         let base = file.parent().unwrap_or(Path::new("."));
-        let case = parse_overridden(&text, &file.display().to_string(), base, overrides);
+        let case = parse_overridden(&text, &shown, base, overrides);
         let case = case.map_err(one_error)?;
         Ok(Arc::new(Source { name: case.name.clone(), file, case }))
     }

@@ -100,6 +100,7 @@ fn orders(case: &MeasuredCase, families: &[Family], bar: f64) -> Table {
             Some(fit) if is_order(&fit) => {
                 format!("{:.2} ± {:.2}", fit.slope, fit.standard_deviation)
             }
+            Some(fit) if fit.slope <= 0.0 => "none: errors do not fall".into(),
             Some(_) => "none: scatter".into(),
             None => "none: errors below that of the reference, or a single spacing".into(),
         };
@@ -162,6 +163,11 @@ fn undecided(clouds: usize, (_, samples): &Family, bar: f64) -> Option<String> {
                 .into(),
         ),
         Some(fit) if is_order(&fit) => None,
+        Some(fit) if fit.slope <= 0.0 => Some(format!(
+            "the errors do not fall with the spacing, the fitted order is {:.2} ± {:.2}: take finer spacings \
+             (--spacing), or look what limits them (--reference)",
+            fit.slope, fit.standard_deviation
+        )),
         Some(fit) => Some(format!(
             "the fitted order, {:.2} ± {:.2}, scatters by more than half of itself: take more clouds \
              (--clouds) or a wider range of spacings (--spacing)",
@@ -212,5 +218,6 @@ mod tests {
         with(1, &second(1.0), "one cloud");
         with(3, &[(1.0, 0.5), (0.5, 0.1), (0.5, 0.6), (0.25, 0.2)], "scatters");
         with(3, &[(1.0, 0.5), (0.5, 0.1)], "two errors");
+        with(3, &[(1.0, 0.1), (0.5, 0.11), (0.25, 0.2)], "do not fall");
     }
 }
