@@ -24,7 +24,7 @@ pub fn refuse_named_pipe(path: &Path) -> io::Result<()> {
 
 /// Refuses a named pipe, which there are none of.
 #[cfg(not(unix))]
-pub fn refuse_named_pipe(_: &Path) -> io::Result<()> {
+pub(crate) fn refuse_named_pipe(_: &Path) -> io::Result<()> {
     Ok(())
 }
 

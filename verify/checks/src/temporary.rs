@@ -12,7 +12,7 @@ const YOUNG: Duration = Duration::from_secs(60);
 const OLD: Duration = Duration::from_secs(3600);
 
 /// A file of a name that no other has, which is removed unless it is renamed.
-pub fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+pub(crate) fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     let prefix = format!(".{}-", std::process::id());
     builder.prefix(&prefix).suffix(".tmp");

@@ -22,17 +22,17 @@ use std::process::ExitCode;
 /// Environment variables by which the parent asks for a task and its limits.
 pub mod variable {
     /// `program` or the name of a target.
-    pub const TASK: &str = "MTLED_FUZZ_TASK";
+    pub(crate) const TASK: &str = "MTLED_FUZZ_TASK";
     /// Address space \[byte\].
-    pub const ADDRESS_SPACE: &str = "MTLED_FUZZ_ADDRESS_SPACE";
+    pub(crate) const ADDRESS_SPACE: &str = "MTLED_FUZZ_ADDRESS_SPACE";
     /// Pairs of points and nodes beyond which a case is left out.
-    pub const LARGEST: &str = "MTLED_FUZZ_LARGEST";
+    pub(crate) const LARGEST: &str = "MTLED_FUZZ_LARGEST";
     /// File for the peak memory \[byte\].
-    pub const PEAK: &str = "MTLED_FUZZ_PEAK";
+    pub(crate) const PEAK: &str = "MTLED_FUZZ_PEAK";
 }
 
 /// Exit code of a case that is left out; the program has no such code.
-pub const LEFT_OUT: u8 = 77;
+pub(crate) const LEFT_OUT: u8 = 77;
 /// Pairs of points and nodes that are discretised by the library targets at most.
 const LARGEST_IN_LIBRARY: f64 = 3e5;
 /// File that a program with a case as its input reads.
@@ -40,7 +40,7 @@ const CASE: &str = "input.toml";
 
 /// What a worker says of an input.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Answer {
+pub(crate) struct Answer {
     /// How it ended.
     pub outcome: Outcome,
     /// The refusal.

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 const ENDING: &str = ".input";
 
 /// The inputs of a target with their paths, by name.
-pub fn read(folder: &Path, target: Target) -> Result<Vec<(PathBuf, Input)>> {
+pub(crate) fn read(folder: &Path, target: Target) -> Result<Vec<(PathBuf, Input)>> {
     let folder = folder.join(target.name());
     if !folder.exists() {
         return Ok(Vec::new());

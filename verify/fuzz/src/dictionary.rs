@@ -1,7 +1,7 @@
 //! Numbers and words that programs stumble over.
 
 /// Numbers as they are written.
-pub const NUMBERS: &[&str] = &[
+pub(crate) const NUMBERS: &[&str] = &[
     "0",
     "-0",
     "-0.0",
@@ -62,7 +62,7 @@ pub const NUMBERS: &[&str] = &[
 
 /// Words, escape sequences, paths and markup. `@OUTSIDE@` becomes a folder that must not
 /// change.
-pub const WORDS: &[&str] = &[
+pub(crate) const WORDS: &[&str] = &[
     "",
     " ",
     "x",
@@ -134,7 +134,7 @@ pub const WORDS: &[&str] = &[
 ];
 
 /// Whole numbers at the ends of their types.
-pub const INTEGERS: &[u64] = &[
+pub(crate) const INTEGERS: &[u64] = &[
     0,
     1,
     2,
@@ -160,7 +160,7 @@ pub const INTEGERS: &[u64] = &[
 ];
 
 /// Numbers as floats.
-pub const FLOATS: &[f64] = &[
+pub(crate) const FLOATS: &[f64] = &[
     0.0,
     -0.0,
     1.0,

@@ -64,7 +64,7 @@ pub struct Finding {
 
 impl Finding {
     /// A finding with its detail on one line, without control characters.
-    pub fn new(kind: Kind, detail: impl fmt::Display) -> Finding {
+    pub(crate) fn new(kind: Kind, detail: impl fmt::Display) -> Finding {
         let detail = detail.to_string();
         let words: Vec<String> =
             detail.split_whitespace().map(|word| word.escape_debug().to_string()).collect();
@@ -73,7 +73,7 @@ impl Finding {
 
     /// The same for findings of one cause: the detail without its numbers, for control
     /// characters only where they were.
-    pub fn signature(&self) -> String {
+    pub(crate) fn signature(&self) -> String {
         let detail = match self.kind {
             Kind::ControlCharacter => self.detail.split(':').next().unwrap_or_default(),
             _ => &self.detail,

@@ -22,7 +22,7 @@ const MAY_BE_NULL: &[&str] = &[
 ];
 
 /// Why a child died, from its standard error and the signal, if one ended it.
-pub fn death(stderr: &str, signal: Option<i32>) -> Finding {
+pub(crate) fn death(stderr: &str, signal: Option<i32>) -> Finding {
     if let Some(at) = stderr.find("panicked at ") {
         let place =
             stderr[at + 12..].rsplit_once("/registry/src/").map_or(&stderr[at + 12..], |p| p.1);
@@ -48,7 +48,7 @@ fn last_line(text: &str) -> &str {
 }
 
 /// Control characters in what was printed; line ends and tabs are none.
-pub fn control_character(what: &str, text: &[u8]) -> Option<Finding> {
+pub(crate) fn control_character(what: &str, text: &[u8]) -> Option<Finding> {
     let text = String::from_utf8_lossy(text);
     let found = text.char_indices().find(|(_, c)| c.is_control() && !matches!(c, '\n' | '\t'));
     let (at, c) = found?;
@@ -60,13 +60,13 @@ pub fn control_character(what: &str, text: &[u8]) -> Option<Finding> {
 }
 
 /// A refusal whose message does not name the input.
-pub fn unlocated(message: &str, name: &str) -> Option<Finding> {
+pub(crate) fn unlocated(message: &str, name: &str) -> Option<Finding> {
     (!message.contains(name))
         .then(|| Finding::new(Kind::Unlocated, format!("says only: {message}")))
 }
 
 /// Findings in the files of a folder.
-pub fn files(folder: &Path) -> Vec<Finding> {
+pub(crate) fn files(folder: &Path) -> Vec<Finding> {
     let mut found = Vec::new();
     for file in all_files(folder) {
         let name = file.strip_prefix(folder).unwrap_or(&file).display().to_string();
@@ -100,7 +100,7 @@ fn all_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// A document that is no JSON; for result.json also a null that stands for NaN.
-pub fn json(name: &str, text: &str) -> Option<Finding> {
+pub(crate) fn json(name: &str, text: &str) -> Option<Finding> {
     let value: Value = match serde_json::from_str(text) {
         Ok(value) => value,
         Err(error) => return Some(Finding::new(Kind::BadFile, format!("{name}: {error}"))),

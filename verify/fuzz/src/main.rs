@@ -63,7 +63,7 @@ mod unix {
         out: Option<PathBuf>,
     }
 
-    pub fn run_all() -> Result<ExitCode> {
+    pub(crate) fn run_all() -> Result<ExitCode> {
         let arguments = Arguments::parse();
         let chosen = arguments.only.clone();
         let options = Options {

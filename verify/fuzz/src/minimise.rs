@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 const MOST_TIME: Duration = Duration::from_secs(8);
 
 /// Cuts out parts, large ones first, while a finding of this signature stays.
-pub fn minimised(
+pub(crate) fn minimised(
     station: &mut Station,
     target: Target,
     input: &Input,
@@ -43,7 +43,11 @@ pub fn minimised(
 const MOST_TIME_OF_SCENE: Duration = Duration::from_secs(60);
 
 /// Leaves out one thing of a scene after another while a finding of this signature stays.
-pub fn smallest_scene(station: &mut Station, input: &Input, signature: &str) -> Result<Input> {
+pub(crate) fn smallest_scene(
+    station: &mut Station,
+    input: &Input,
+    signature: &str,
+) -> Result<Input> {
     let start = Instant::now();
     let mut best = input.clone();
     'smaller: loop {

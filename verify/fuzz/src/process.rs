@@ -29,7 +29,7 @@ const WALL_OVER_CPU: f64 = 6.0;
 const STOP: f64 = 0.2;
 
 /// This program with a task for a child, on one thread.
-pub fn command(task: &str, limits: &Limits) -> Result<Command> {
+pub(crate) fn command(task: &str, limits: &Limits) -> Result<Command> {
     let mut command = Command::new(std::env::current_exe().context("this program has no path")?);
     command
         .env_clear()
@@ -44,7 +44,7 @@ pub fn command(task: &str, limits: &Limits) -> Result<Command> {
 
 /// Watches the time of a child from now on.
 #[derive(Debug)]
-pub struct Watch {
+pub(crate) struct Watch {
     pid: u32,
     start: Instant,
     cpu_at_start: f64,
@@ -52,22 +52,22 @@ pub struct Watch {
 
 impl Watch {
     /// Watches a child.
-    pub fn new(pid: u32) -> Watch {
+    pub(crate) fn new(pid: u32) -> Watch {
         Watch { pid, start: Instant::now(), cpu_at_start: cpu_seconds(pid).unwrap_or(0.0) }
     }
 
     /// Time on the clock so far \[s\].
-    pub fn wall_s(&self) -> f64 {
+    pub(crate) fn wall_s(&self) -> f64 {
         self.start.elapsed().as_secs_f64()
     }
 
     /// CPU time so far, or that on the clock where there is no other \[s\].
-    pub fn cpu_s(&self) -> f64 {
+    pub(crate) fn cpu_s(&self) -> f64 {
         cpu_seconds(self.pid).map_or(self.wall_s(), |cpu| cpu - self.cpu_at_start)
     }
 
     /// Whether the child has taken longer than it may.
-    pub fn is_over(&self, limits: &Limits) -> bool {
+    pub(crate) fn is_over(&self, limits: &Limits) -> bool {
         self.wall_s() > limits.cpu_s
             && (self.cpu_s() > limits.cpu_s || self.wall_s() > WALL_OVER_CPU * limits.cpu_s)
     }
@@ -85,7 +85,7 @@ fn cpu_seconds(pid: u32) -> Option<f64> {
 
 /// How a child ended.
 #[derive(Debug)]
-pub struct End {
+pub(crate) struct End {
     /// None where it was killed for its time.
     pub status: Option<ExitStatus>,
     /// Whether it was asked to stop before.
@@ -96,18 +96,18 @@ pub struct End {
 
 impl End {
     /// The exit code, unless a signal ended it.
-    pub fn code(&self) -> Option<i32> {
+    pub(crate) fn code(&self) -> Option<i32> {
         self.status.and_then(|status| status.code())
     }
 
     /// The signal that ended it.
-    pub fn signal(&self) -> Option<i32> {
+    pub(crate) fn signal(&self) -> Option<i32> {
         self.status.and_then(|status| status.signal())
     }
 }
 
 /// Waits for a child, asks it to stop in time as Ctrl-C would, and kills it in the end.
-pub fn wait(child: &mut Child, limits: &Limits) -> Result<End> {
+pub(crate) fn wait(child: &mut Child, limits: &Limits) -> Result<End> {
     let watch = Watch::new(child.id());
     let mut pause = Duration::from_micros(300);
     let mut asked = false;
@@ -132,7 +132,7 @@ pub fn wait(child: &mut Child, limits: &Limits) -> Result<End> {
 }
 
 /// The end of a text file, which may not be there.
-pub fn tail(path: &Path) -> String {
+pub(crate) fn tail(path: &Path) -> String {
     let bytes = std::fs::read(path).unwrap_or_default();
     String::from_utf8_lossy(&bytes[bytes.len().saturating_sub(4000)..]).into_owned()
 }

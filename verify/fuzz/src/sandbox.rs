@@ -30,17 +30,17 @@ const OUTSIDE: &[u8] = b"@OUTSIDE@";
 
 /// A temporary folder with the folder of the input three levels below.
 #[derive(Debug)]
-pub struct Sandbox {
+pub(crate) struct Sandbox {
     root: tempfile::TempDir,
     companions: Vec<(String, Vec<u8>)>,
 }
 
 /// Every path with size and time of the last change.
-pub type Listing = BTreeMap<PathBuf, (u64, Option<SystemTime>)>;
+pub(crate) type Listing = BTreeMap<PathBuf, (u64, Option<SystemTime>)>;
 
 impl Sandbox {
     /// A sandbox whose inputs lie beside `companions`, names and contents.
-    pub fn new(companions: Vec<(String, Vec<u8>)>) -> Result<Sandbox> {
+    pub(crate) fn new(companions: Vec<(String, Vec<u8>)>) -> Result<Sandbox> {
         let root = tempfile::Builder::new().prefix("mtled-fuzz").tempdir()?;
         for sentinel in SENTINELS {
             write(&root.path().join(sentinel), b"sentinel")?;
@@ -49,22 +49,22 @@ impl Sandbox {
     }
 
     /// The folder of the input.
-    pub fn work(&self) -> PathBuf {
+    pub(crate) fn work(&self) -> PathBuf {
         self.root.path().join(WORK)
     }
 
     /// A folder for what one child prints and for its temporary files.
-    pub fn logs(&self) -> PathBuf {
+    pub(crate) fn logs(&self) -> PathBuf {
         self.root.path().join(".logs")
     }
 
     /// A file for the messages of a worker.
-    pub fn messages(&self) -> PathBuf {
+    pub(crate) fn messages(&self) -> PathBuf {
         self.root.path().join(".messages")
     }
 
     /// Makes the folder anew with one input; returns its path from there.
-    pub fn place(&self, target: Target, input: &Input) -> Result<String> {
+    pub(crate) fn place(&self, target: Target, input: &Input) -> Result<String> {
         let work = self.work();
         remove(&work)?;
         remove(&self.logs())?;
@@ -97,7 +97,7 @@ impl Sandbox {
     }
 
     /// Everything but `excepted`, a path from the folder of the input.
-    pub fn listing(&self, excepted: &str) -> Result<Listing> {
+    pub(crate) fn listing(&self, excepted: &str) -> Result<Listing> {
         let mut listing = Listing::new();
         let excepted = [self.work().join(excepted), self.logs(), self.messages()];
         list(self.root.path(), &excepted, &mut listing)?;

@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// What became of an input.
 #[derive(Debug, Clone)]
-pub struct Trial {
+pub(crate) struct Trial {
     /// How it ended; None where there is a finding.
     pub outcome: Option<Outcome>,
     /// What must not have happened.
@@ -28,7 +28,7 @@ pub struct Trial {
 
 /// A sandbox with a worker for each target of the library.
 #[derive(Debug)]
-pub struct Station {
+pub(crate) struct Station {
     sandbox: Sandbox,
     limits: Limits,
     workers: BTreeMap<Target, Worker>,
@@ -36,12 +36,12 @@ pub struct Station {
 
 impl Station {
     /// A station whose inputs lie beside `companions`, names and contents.
-    pub fn new(companions: Vec<(String, Vec<u8>)>, limits: Limits) -> Result<Station> {
+    pub(crate) fn new(companions: Vec<(String, Vec<u8>)>, limits: Limits) -> Result<Station> {
         Ok(Station { sandbox: Sandbox::new(companions)?, limits, workers: BTreeMap::new() })
     }
 
     /// Tries one input.
-    pub fn try_input(&mut self, target: Target, input: &Input) -> Result<Trial> {
+    pub(crate) fn try_input(&mut self, target: Target, input: &Input) -> Result<Trial> {
         let place = self.sandbox.place(target, input)?;
         match target.steps() {
             None => self.in_library(target, &place),

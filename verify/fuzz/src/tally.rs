@@ -25,7 +25,7 @@ pub struct Tally {
 
 impl Tally {
     /// Counts one input.
-    pub fn count(&mut self, trial: &Trial, seconds: f64) {
+    pub(crate) fn count(&mut self, trial: &Trial, seconds: f64) {
         self.inputs += 1;
         self.seconds += seconds;
         if let Some(outcome) = trial.outcome {

@@ -39,7 +39,7 @@ pub enum Target {
 
 /// One call of the program in the folder of the input.
 #[derive(Debug)]
-pub struct Step {
+pub(crate) struct Step {
     /// Arguments.
     pub arguments: &'static [&'static str],
     /// The only folder or file, relative to the input's folder, that may change.
@@ -91,7 +91,7 @@ const ANSWER: &[Step] = &[step(&["protocol", "check", "job.json", "input.json"],
 
 impl Target {
     /// CPU time of an input over that of one call: relations solve a scene some forty times.
-    pub fn calls(self) -> f64 {
+    pub(crate) fn calls(self) -> f64 {
         if self == Target::Scene { 6.0 } else { 1.0 }
     }
 
@@ -135,7 +135,7 @@ impl Target {
     }
 
     /// The folder of its valid inputs.
-    pub fn seeds(self) -> &'static str {
+    pub(crate) fn seeds(self) -> &'static str {
         match self {
             Target::Inspect | Target::Solve => "case",
             target => target.name(),
@@ -144,7 +144,7 @@ impl Target {
 
     /// The calls of the program; None where the library is called instead, which is much
     /// faster.
-    pub fn steps(self) -> Option<&'static [Step]> {
+    pub(crate) fn steps(self) -> Option<&'static [Step]> {
         match self {
             Target::Case
             | Target::LabelMap
@@ -165,7 +165,7 @@ impl Target {
     }
 
     /// Extensions of the names that its files may have.
-    pub fn extensions(self) -> &'static [&'static str] {
+    pub(crate) fn extensions(self) -> &'static [&'static str] {
         match self {
             Target::LabelMap => &["nrrd", "nhdr", "nii", "nii.gz"],
             Target::Surface => &["stl", "obj", "ply", "vtp", "vtk"],
@@ -182,7 +182,7 @@ impl Target {
     }
 
     /// Where the input lies in its folder.
-    pub fn place(self, extension: &str) -> String {
+    pub(crate) fn place(self, extension: &str) -> String {
         match self {
             Target::Store => RECORD.into(),
             Target::Reference => "data/cook_membrane.json".into(),
@@ -192,7 +192,7 @@ impl Target {
 
     /// The input as it is written: a record with the checksum of what it has become, without
     /// which every other one would be refused at its first line.
-    pub fn sealed(self, bytes: Vec<u8>) -> Vec<u8> {
+    pub(crate) fn sealed(self, bytes: Vec<u8>) -> Vec<u8> {
         match std::str::from_utf8(&bytes) {
             Ok(text) if self == Target::Store && text.starts_with('{') => {
                 mtled_lab::lab::store::sealed(text).into_bytes()

@@ -16,7 +16,7 @@ use std::time::Duration;
 
 /// A child with a line of input and of output per file.
 #[derive(Debug)]
-pub struct Worker {
+pub(crate) struct Worker {
     child: Child,
     answers: Receiver<String>,
     stderr: PathBuf,
@@ -24,7 +24,7 @@ pub struct Worker {
 
 impl Worker {
     /// Starts a worker whose standard error goes to a file.
-    pub fn start(target: Target, stderr: &Path, limits: &Limits) -> Result<Worker> {
+    pub(crate) fn start(target: Target, stderr: &Path, limits: &Limits) -> Result<Worker> {
         let mut child = command(target.name(), limits)?
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -39,7 +39,7 @@ impl Worker {
     }
 
     /// Its answer on a file, or why it is dead now.
-    pub fn ask(&mut self, file: &Path, limits: &Limits) -> Result<Result<Answer, Finding>> {
+    pub(crate) fn ask(&mut self, file: &Path, limits: &Limits) -> Result<Result<Answer, Finding>> {
         let watch = Watch::new(self.child.id());
         let pipe = self.child.stdin.as_mut().context("a worker without standard input")?;
         // A worker that has died is found below.

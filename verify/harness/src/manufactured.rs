@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// Orientation of the cube in the background grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Orientation {
+pub(crate) enum Orientation {
     /// Its faces run along the grid.
     Along,
     /// It is turned by 1.1 rad about (1, 2, 3) and given as a surface of triangles: nodes lie on a
@@ -27,7 +27,7 @@ pub enum Orientation {
 
 /// How a solution is discretised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RecipeKind {
+pub(crate) enum RecipeKind {
     /// The defaults of the case format.
     Default,
     /// The default with 2 cells per spacing, eight points per node.
@@ -41,13 +41,13 @@ pub enum RecipeKind {
 }
 
 /// Young's modulus \[Pa\].
-pub const YOUNG_MODULUS: f64 = 3000.0;
+pub(crate) const YOUNG_MODULUS: f64 = 3000.0;
 /// Density \[kg/m³\].
-pub const DENSITY: f64 = 1000.0;
+pub(crate) const DENSITY: f64 = 1000.0;
 
 /// A solution after X → R X.
 #[derive(Debug, Clone, Copy)]
-pub struct Oriented {
+pub(crate) struct Oriented {
     solution: Manufactured,
     orientation: Orientation,
     /// Rotation R.
@@ -56,7 +56,7 @@ pub struct Oriented {
 
 impl Oriented {
     /// A solution in one of the two orientations.
-    pub fn new(solution: Manufactured, orientation: Orientation) -> Oriented {
+    pub(crate) fn new(solution: Manufactured, orientation: Orientation) -> Oriented {
         let turn = match orientation {
             Orientation::Along => Matrix3::identity(),
             Orientation::Turned => rotation(&Vector3::new(1.0, 2.0, 3.0).normalize(), 1.1),
@@ -65,18 +65,18 @@ impl Oriented {
     }
 
     /// R u(Rᵀ X) \[m\].
-    pub fn displacement(&self, X: &Vector3) -> Vector3 {
+    pub(crate) fn displacement(&self, X: &Vector3) -> Vector3 {
         self.turn * self.solution.displacement(&self.turn.tr_mul(X))
     }
 
     /// R F(Rᵀ X) Rᵀ.
-    pub fn deformation_gradient(&self, X: &Vector3) -> Matrix3 {
+    pub(crate) fn deformation_gradient(&self, X: &Vector3) -> Matrix3 {
         let F = self.solution.deformation_gradient(&self.turn.tr_mul(X));
         self.turn * F * self.turn.transpose()
     }
 
     /// R b(Rᵀ X) \[N/kg\]: the laws know no direction.
-    pub fn body_force(&self, X: &Vector3) -> Vector3 {
+    pub(crate) fn body_force(&self, X: &Vector3) -> Vector3 {
         self.turn * self.solution.body_force(&self.turn.tr_mul(X))
     }
 }
@@ -127,7 +127,7 @@ point = [0.5, 0.5, 0.5]
 }
 
 /// The problem that has the solution.
-pub fn manufactured_problem(
+pub(crate) fn manufactured_problem(
     oriented: Oriented,
     nodes_per_edge: usize,
     seed: u64,
@@ -154,7 +154,7 @@ pub fn manufactured_problem(
 
 /// Gives a body of one region with one condition the material, boundary values and
 /// body force of a solution.
-pub fn impose(problem: &mut Problem, oriented: Oriented) -> Result<()> {
+pub(crate) fn impose(problem: &mut Problem, oriented: Oriented) -> Result<()> {
     let solution = oriented.solution;
     let law = solution.family.law(solution.constants)?;
     problem.regions[0].material = Material { density: solution.density, law };
@@ -169,7 +169,7 @@ pub fn impose(problem: &mut Problem, oriented: Oriented) -> Result<()> {
 }
 
 /// Leaves three faces of the cube along the grid to the tractions P N of the solution.
-pub fn free_three_faces(problem: &mut Problem, oriented: Oriented) {
+pub(crate) fn free_three_faces(problem: &mut Problem, oriented: Oriented) {
     let law = problem.regions[0].material.law;
     let face = |axis: usize, at: f64| {
         let normal = Vector3::ith(axis, 1.0);

@@ -20,23 +20,23 @@ pub struct Answer {
 }
 
 /// Solves a problem.
-pub fn answer(problem: Problem) -> Result<Answer, Error> {
+pub(crate) fn answer(problem: Problem) -> Result<Answer, Error> {
     observed(problem, &mut Unobserved)
 }
 
 /// The answer to a problem, if it has a stable one.
-pub fn steady(problem: Problem) -> Option<Answer> {
+pub(crate) fn steady(problem: Problem) -> Option<Answer> {
     answer(problem).ok().filter(|answer| !answer.is_doubtful())
 }
 
 /// Solves a problem that somebody looks at.
-pub fn observed(problem: Problem, observer: &mut dyn Observer) -> Result<Answer, Error> {
+pub(crate) fn observed(problem: Problem, observer: &mut dyn Observer) -> Result<Answer, Error> {
     let simulation = Simulation::new(&problem)?;
     finished(problem, simulation, observer)
 }
 
 /// Solves a problem that is set up.
-pub fn finished(
+pub(crate) fn finished(
     problem: Problem,
     mut simulation: Simulation,
     observer: &mut dyn Observer,
@@ -47,12 +47,12 @@ pub fn finished(
 
 impl Answer {
     /// Reference positions \[node\] \[m\].
-    pub fn positions(&self) -> &[Vector3] {
+    pub(crate) fn positions(&self) -> &[Vector3] {
         &self.simulation.model.positions
     }
 
     /// Nodal parameters \[node\] \[m\].
-    pub fn displacements(&self) -> Vec<Vector3> {
+    pub(crate) fn displacements(&self) -> Vec<Vector3> {
         let d = self.simulation.model.components;
         (0..self.positions().len())
             .map(|node| self.simulation.state.displacement_of(node, d))
@@ -60,17 +60,17 @@ impl Answer {
     }
 
     /// Force and moment of each condition about a place \[m\].
-    pub fn reactions(&self, about: &Vector3) -> Vec<Reaction> {
+    pub(crate) fn reactions(&self, about: &Vector3) -> Vec<Reaction> {
         self.simulation.reactions(about)
     }
 
     /// Largest displacement \[m\].
-    pub fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         self.displacements().iter().map(Vector3::norm).fold(0.0, f64::max)
     }
 
     /// Whether the equilibrium may be one of several, as where a body buckles.
-    pub fn is_doubtful(&self) -> bool {
+    pub(crate) fn is_doubtful(&self) -> bool {
         self.summary.instability.is_some()
             || self.summary.smallest_jacobian.jacobian < SMALLEST_JACOBIAN
             || self.simulation.state.displacement.iter().any(|u| !u.is_finite())
@@ -79,7 +79,7 @@ impl Answer {
 
 impl Answer {
     /// Whether it is at rest and could be so after a rigid motion too.
-    pub fn is_loose(&self) -> bool {
+    pub(crate) fn is_loose(&self) -> bool {
         let Simulation { model, state, .. } = &self.simulation;
         let at_rest = !matches!(self.problem.motion, Motion::Dynamic { .. });
         let end = self.problem.motion.end();
@@ -137,7 +137,7 @@ pub fn difference(first: &Answer, other: &Answer, view: &View) -> f64 {
 }
 
 /// max |a − b| over the largest of both, or over a `floor` \[–\]; 0 where all is 0.
-pub fn relative(a: &[Vector3], b: &[Vector3], floor: f64) -> f64 {
+pub(crate) fn relative(a: &[Vector3], b: &[Vector3], floor: f64) -> f64 {
     let size = a.iter().chain(b).map(Vector3::norm).fold(floor, f64::max);
     let mut largest = 0.0;
     for (a, b) in a.iter().zip(b) {
@@ -151,7 +151,7 @@ pub fn relative(a: &[Vector3], b: &[Vector3], floor: f64) -> f64 {
 }
 
 /// Largest difference of forces and moments of conditions over the largest force \[–\].
-pub fn reaction_difference(first: &Answer, other: &Answer, view: &View) -> f64 {
+pub(crate) fn reaction_difference(first: &Answer, other: &Answer, view: &View) -> f64 {
     let [mut own, mut others] = [first.reactions(&view.about[0]), other.reactions(&view.about[1])];
     if own.len() != others.len() {
         return f64::INFINITY;
@@ -172,7 +172,7 @@ pub fn reaction_difference(first: &Answer, other: &Answer, view: &View) -> f64 {
 }
 
 /// Sum of reactions.
-pub fn sum(reactions: &[Reaction]) -> Reaction {
+pub(crate) fn sum(reactions: &[Reaction]) -> Reaction {
     let mut sum = Reaction::default();
     for reaction in reactions {
         sum.force += reaction.force;
@@ -184,7 +184,7 @@ pub fn sum(reactions: &[Reaction]) -> Reaction {
 
 /// A force that is not small in an answer \[N\]: the largest nodal stiffness times the largest
 /// displacement, or the largest nodal load.
-pub fn force_scale(answer: &Answer) -> f64 {
+pub(crate) fn force_scale(answer: &Answer) -> f64 {
     let model = &answer.simulation.model;
     let stiffness = model.stiffness.iter().copied().fold(0.0, f64::max);
     let loads = model.loads.iter().flat_map(|load| &load.force).fold(0.0, |a, b| b.abs().max(a));

@@ -252,7 +252,7 @@ fn ends_within_a_face(part: &Part) -> bool {
 
 /// The known fault by which a relation fails for a scene with this difference. A larger one has
 /// another reason.
-pub fn known(relation: &Relation, scene: &Scene, difference: f64) -> Option<&'static Known> {
+pub(crate) fn known(relation: &Relation, scene: &Scene, difference: f64) -> Option<&'static Known> {
     KNOWN.iter().find(|known| {
         known.relations.contains(&relation.name)
             && difference <= known.largest

@@ -42,20 +42,12 @@ pub fn peak_memory() -> Option<u64> {
 
 /// Memory available to a run \[bytes\]: that of the system, or what is left of the limit
 /// of this process's control group if that is less. None where it is not known.
-pub fn available_memory() -> Option<u64> {
+pub(crate) fn available_memory() -> Option<u64> {
     let mut system = sysinfo::System::new();
     system.refresh_memory();
     let free = Some(system.available_memory()).filter(|bytes| *bytes > 0)?;
     let group = system.cgroup_limits().map(|limits| limits.total_memory.saturating_sub(limits.rss));
     Some(group.map_or(free, |group| group.min(free)))
-}
-
-/// Mean number of processes that ran or waited in the last minute; None where
-/// the system does not count them.
-pub fn load_average() -> Option<f64> {
-    let load = sysinfo::System::load_average();
-    // Windows has no such figure, and all three are 0 there.
-    (load.one + load.five + load.fifteen > 0.0).then_some(load.one)
 }
 
 fn processor_field(key: &str) -> Option<String> {

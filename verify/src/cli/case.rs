@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Subcommand)]
-pub enum CaseCommand {
+pub(crate) enum CaseCommand {
     /// Print a commented case to start from, or write it to a file.
     New {
         /// Kind of case; without one the kinds are listed.
@@ -44,7 +44,7 @@ pub enum CaseCommand {
     Schema,
 }
 
-pub fn case(command: &CaseCommand, common: &Common) -> Result<u8> {
+pub(crate) fn case(command: &CaseCommand, common: &Common) -> Result<u8> {
     match command {
         CaseCommand::New { template: None, .. } => list_templates(common)?,
         CaseCommand::New { template: Some(name), out } => new(name, out.as_deref(), common)?,

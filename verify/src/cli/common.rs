@@ -8,14 +8,14 @@ use std::io::IsTerminal;
 use std::sync::OnceLock;
 
 /// Exit code where something could not be run.
-pub const COULD_NOT_RUN: u8 = 2;
+pub(crate) const COULD_NOT_RUN: u8 = 2;
 /// Exit code where a question could not be decided, or a run is doubtful.
-pub const INCONCLUSIVE: u8 = 3;
+pub(crate) const INCONCLUSIVE: u8 = 3;
 /// Exit code where the user stopped a run.
-pub const STOPPED: u8 = 130;
+pub(crate) const STOPPED: u8 = 130;
 
 #[derive(Debug, Clone, Copy, Args)]
-pub struct Common {
+pub(crate) struct Common {
     /// Number of threads; results do not depend on it [default: all processors].
     #[arg(long, global = true, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -28,7 +28,7 @@ pub struct Common {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub(crate) enum Format {
     /// Text for people.
     Human,
     /// One JSON document, and one JSON object per line on standard error.
@@ -37,17 +37,17 @@ pub enum Format {
 
 impl Common {
     /// Whether progress is drawn on standard error.
-    pub fn draws(&self) -> bool {
+    pub(crate) fn draws(&self) -> bool {
         !self.quiet && std::io::stderr().is_terminal()
     }
 
     /// Whether standard output takes colour.
-    pub fn colours(&self) -> bool {
+    pub(crate) fn colours(&self) -> bool {
         std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
     }
 
     /// Prints a result as a JSON document or as text, also if quiet.
-    pub fn print_result(
+    pub(crate) fn print_result(
         &self,
         json: &dyn Fn() -> Result<String>,
         text: &dyn Fn() -> String,
@@ -60,7 +60,7 @@ impl Common {
     }
 
     /// Prints a JSON document or, unless quiet, a summary.
-    pub fn print_summary(
+    pub(crate) fn print_summary(
         &self,
         json: &dyn Fn() -> Result<String>,
         text: &dyn Fn() -> String,
@@ -74,7 +74,7 @@ impl Common {
 
     /// As [`Self::print_summary`], for text with colours, in which texts from files have been
     /// escaped.
-    pub fn print_coloured_summary(
+    pub(crate) fn print_coloured_summary(
         &self,
         json: &dyn Fn() -> Result<String>,
         text: &dyn Fn() -> String,
@@ -89,16 +89,16 @@ impl Common {
 }
 
 /// What stands behind the name of the program on the command line.
-pub static ARGUMENTS: OnceLock<Vec<OsString>> = OnceLock::new();
+pub(crate) static ARGUMENTS: OnceLock<Vec<OsString>> = OnceLock::new();
 
 /// [`ARGUMENTS`] as text.
-pub fn arguments() -> Vec<String> {
+pub(crate) fn arguments() -> Vec<String> {
     let arguments = ARGUMENTS.get().into_iter().flatten();
     arguments.map(|argument| argument.to_string_lossy().into_owned()).collect()
 }
 
 /// The command as it was typed.
-pub fn command_line() -> String {
+pub(crate) fn command_line() -> String {
     let arguments = arguments()
         .into_iter()
         .map(|argument| if argument.contains(' ') { format!("\"{argument}\"") } else { argument });

@@ -7,7 +7,7 @@ use mtled_run::run;
 
 /// Values in place of those of a case file.
 #[derive(Debug, Args)]
-pub struct SetArgs {
+pub(crate) struct SetArgs {
     /// Use another value in place of that of the case file, as if the file had it; may be
     /// repeated. Keys are written as in messages, such as material.tissue.young_modulus,
     /// prescribe.top.displacement.z or prescribe[0].release, values as in TOML, words without
@@ -18,6 +18,6 @@ pub struct SetArgs {
 }
 
 /// An error of the solver as the mistake in the case file that causes it.
-pub fn located(case: &Case, error: &Error) -> anyhow::Error {
+pub(crate) fn located(case: &Case, error: &Error) -> anyhow::Error {
     one_error(vec![run::located(case, error)])
 }

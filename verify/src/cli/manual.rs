@@ -7,14 +7,14 @@ use clap_complete::Shell;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
-pub struct ManArgs {
+pub(crate) struct ManArgs {
     /// Folder for a page of the program and one of each command, in place of printing the first.
     #[arg(long)]
     out: Option<PathBuf>,
 }
 
 /// Prints the page of the program for `man`, or writes all pages.
-pub fn man(arguments: &ManArgs, program: Command) -> Result<u8> {
+pub(crate) fn man(arguments: &ManArgs, program: Command) -> Result<u8> {
     if let Some(folder) = &arguments.out {
         std::fs::create_dir_all(folder)
             .and_then(|()| clap_mangen::generate_to(program, folder))
@@ -28,7 +28,7 @@ pub fn man(arguments: &ManArgs, program: Command) -> Result<u8> {
 }
 
 /// Prints the completion script of a shell.
-pub fn completions(shell: Shell, mut program: Command) -> Result<u8> {
+pub(crate) fn completions(shell: Shell, mut program: Command) -> Result<u8> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut program, "mtled", &mut script);
     print_data(&String::from_utf8_lossy(&script))?;

@@ -10,21 +10,21 @@ use std::path::Path;
 
 impl Common {
     /// Reports progress or what was done, unless quiet.
-    pub fn note(&self, text: &str) {
+    pub(crate) fn note(&self, text: &str) {
         if !self.quiet {
             self.message("note", text, text, None);
         }
     }
 
     /// Reports what the user should know, unless quiet.
-    pub fn warn(&self, text: impl Display) {
+    pub(crate) fn warn(&self, text: impl Display) {
         if !self.quiet {
             self.message("warning", &format!("warning: {text}"), &text.to_string(), None);
         }
     }
 
     /// As [`Self::warn`], about a file.
-    pub fn warn_about(&self, file: &Path, text: impl Display) {
+    pub(crate) fn warn_about(&self, file: &Path, text: impl Display) {
         if !self.quiet {
             let shown = format!("{}: warning: {text}", file.display());
             let place = json!({ "file": file.display().to_string() });
@@ -33,12 +33,12 @@ impl Common {
     }
 
     /// Reports something that is wrong, also if quiet.
-    pub fn complain(&self, text: impl Display) {
+    pub(crate) fn complain(&self, text: impl Display) {
         self.message("error", &text.to_string(), &text.to_string(), None);
     }
 
     /// Reports the mistakes in a case file.
-    pub fn mistakes(&self, mistakes: &[Diagnostic]) {
+    pub(crate) fn mistakes(&self, mistakes: &[Diagnostic]) {
         for mistake in mistakes {
             let place = Some(place(mistake));
             self.message("error", &mistake.to_string(), &mistake.message, place);
@@ -46,7 +46,7 @@ impl Common {
     }
 
     /// Reports the error that ends the program.
-    pub fn failure(&self, error: &anyhow::Error) {
+    pub(crate) fn failure(&self, error: &anyhow::Error) {
         let outermost = error.chain().next().and_then(|error| error.downcast_ref::<Mistakes>());
         let inner = error.chain().find_map(|error| error.downcast_ref::<Mistakes>());
         match (outermost, inner, self.format) {
@@ -88,7 +88,7 @@ impl Common {
 }
 
 /// An error and its causes; a message that ends with its cause already is not followed by it.
-pub fn chain_text(error: &anyhow::Error) -> String {
+pub(crate) fn chain_text(error: &anyhow::Error) -> String {
     error.chain().map(ToString::to_string).fold(String::new(), |text, cause| match text.as_str() {
         "" => cause,
         known if known.ends_with(&cause) => text,
@@ -97,7 +97,7 @@ pub fn chain_text(error: &anyhow::Error) -> String {
 }
 
 /// File, line, column and key of a mistake; a mistake in a whole file has no line.
-pub fn place(mistake: &Diagnostic) -> Value {
+pub(crate) fn place(mistake: &Diagnostic) -> Value {
     let location = &mistake.location;
     let mut place = json!({ "file": location.file });
     if location.line > 0 {

@@ -22,12 +22,12 @@ fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
 }
 
 /// The bar of a single run, of a thousand parts.
-pub fn progress_bar(common: &Common) -> ProgressBar {
+pub(crate) fn progress_bar(common: &Common) -> ProgressBar {
     bar(common, 1000, "{bar:40} {percent:>3} %  {msg}  {eta} left")
 }
 
 /// Progress of many runs.
-pub struct ManyRuns {
+pub(crate) struct ManyRuns {
     common: Common,
     bar: ProgressBar,
     /// When the last line was written; none where no lines are.
@@ -35,13 +35,13 @@ pub struct ManyRuns {
 }
 
 impl ManyRuns {
-    pub fn new(common: &Common) -> ManyRuns {
+    pub(crate) fn new(common: &Common) -> ManyRuns {
         let bar = bar(common, 1, "{bar:30} {pos}/{len} runs  {eta} left  {msg}");
         let lines = (!common.quiet && !common.draws()).then(|| Mutex::new(Instant::now()));
         ManyRuns { common: *common, bar, lines }
     }
 
-    pub fn show(&self, progress: Progress) {
+    pub(crate) fn show(&self, progress: Progress) {
         self.bar.set_length(progress.of as u64);
         self.bar.set_position(progress.done as u64);
         if progress.stored {
@@ -59,7 +59,7 @@ impl ManyRuns {
 
     /// Clears the bar. Ok(Err(exit code)) where the user stopped the runs, or where they are
     /// planned for other machines.
-    pub fn finish<T>(&self, result: anyhow::Result<T>) -> anyhow::Result<Result<T, u8>> {
+    pub(crate) fn finish<T>(&self, result: anyhow::Result<T>) -> anyhow::Result<Result<T, u8>> {
         self.bar.finish_and_clear();
         match result {
             Ok(result) => Ok(Ok(result)),

@@ -18,7 +18,7 @@ use mtled_run::accuracy::ReferenceSolution;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Subcommand)]
-pub enum ProtocolCommand {
+pub(crate) enum ProtocolCommand {
     /// Print the JSON Schema of a job or of an answer.
     Schema {
         /// The file that it describes.
@@ -54,7 +54,7 @@ pub enum ProtocolCommand {
 
 /// A file of the protocol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum ProtocolFile {
+pub(crate) enum ProtocolFile {
     /// What a program reads.
     Job,
     /// What it writes.
@@ -64,7 +64,7 @@ pub enum ProtocolFile {
 /// Time limit of jobs that nobody watches \[s\].
 const TIME_LIMIT_S: f64 = 60.0;
 
-pub fn protocol(command: &ProtocolCommand, common: &Common) -> Result<u8> {
+pub(crate) fn protocol(command: &ProtocolCommand, common: &Common) -> Result<u8> {
     match command {
         ProtocolCommand::Schema { file } => {
             let schema = match file {

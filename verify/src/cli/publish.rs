@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// The report of one study that took the time since `start`.
-pub fn report_of(suite: &str, study: Study, start: Instant) -> Report {
+pub(crate) fn report_of(suite: &str, study: Study, start: Instant) -> Report {
     let wall_seconds = start.elapsed().as_secs_f64();
     Report {
         schema_version: json::SCHEMA_VERSION,
@@ -23,7 +23,7 @@ pub fn report_of(suite: &str, study: Study, start: Instant) -> Report {
 
 /// Writes a report to `out` and prints it as JSON or as `text` and the path of its page.
 /// The exit code is that of its outcome.
-pub fn publish(
+pub(crate) fn publish(
     report: &Report,
     out: &Path,
     common: &Common,
@@ -38,6 +38,6 @@ pub fn publish(
 }
 
 /// The tables of the report of a single study as Markdown.
-pub fn tables(report: &Report) -> String {
+pub(crate) fn tables(report: &Report) -> String {
     markdown_tables(&report.studies[0], &report.provenance)
 }

@@ -16,7 +16,7 @@ const VENV: &str = "Install Python 3.11 or newer with venv (Debian: apt-get inst
 
 /// An interpreter with its flags.
 #[derive(Debug, Clone)]
-pub struct Python {
+pub(crate) struct Python {
     program: PathBuf,
     flags: &'static [&'static str],
 }
@@ -29,14 +29,14 @@ impl Python {
     }
 
     /// `python -m mtled_reference` with the package in the folder `reference`.
-    pub fn module(&self, reference: &Path) -> Command {
+    pub(crate) fn module(&self, reference: &Path) -> Command {
         let mut command = self.command();
         command.args(["-m", "mtled_reference"]).env("PYTHONPATH", reference);
         command
     }
 
     /// Program and flags.
-    pub fn program_and_flags(&self) -> Vec<String> {
+    pub(crate) fn program_and_flags(&self) -> Vec<String> {
         let program = self.program.display().to_string();
         std::iter::once(program).chain(self.flags.iter().map(|flag| flag.to_string())).collect()
     }
@@ -50,7 +50,7 @@ impl Python {
 }
 
 /// The Python that runs `code`, set up if necessary; an error says what to install.
-pub fn python_for(code: &str, reference: &Path, say: &dyn Fn(&str)) -> Result<Python> {
+pub(crate) fn python_for(code: &str, reference: &Path, say: &dyn Fn(&str)) -> Result<Python> {
     match code {
         "fenicsx" => fenicsx(),
         _ => scikit_fem(reference, say),
@@ -58,7 +58,7 @@ pub fn python_for(code: &str, reference: &Path, say: &dyn Fn(&str)) -> Result<Py
 }
 
 /// A Python that imports a module, if there is one.
-pub fn with_module(module: &str, reference: &Path) -> Option<Python> {
+pub(crate) fn with_module(module: &str, reference: &Path) -> Option<Python> {
     match module {
         "dolfinx" => fenicsx().ok(),
         _ => Some(virtual_environment(reference)).filter(|python| python.imports(module)),
@@ -66,7 +66,7 @@ pub fn with_module(module: &str, reference: &Path) -> Option<Python> {
 }
 
 /// The folder `reference` of the checkout around the working directory.
-pub fn checkout() -> Result<PathBuf> {
+pub(crate) fn checkout() -> Result<PathBuf> {
     let here = std::env::current_dir()?;
     let found = here.ancestors().map(|folder| folder.join("reference"));
     let found = found.into_iter().find(|folder| folder.join("pyproject.toml").is_file());

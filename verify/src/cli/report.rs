@@ -9,7 +9,7 @@ use mtled_checks::study::Outcome;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-pub struct ReportArgs {
+pub(crate) struct ReportArgs {
     /// Folder of a report, or its results.json.
     run: PathBuf,
     /// A later report, which is compared with the first one.
@@ -27,7 +27,7 @@ pub struct ReportArgs {
     verbose: bool,
 }
 
-pub fn report(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
+pub(crate) fn report(arguments: &ReportArgs, common: &Common) -> anyhow::Result<u8> {
     match &arguments.later {
         None => rebuild(arguments, common),
         Some(later) => compare(arguments, later, common),

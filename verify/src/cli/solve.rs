@@ -16,7 +16,7 @@ use mtled_run::run::{
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-pub struct SolveArgs {
+pub(crate) struct SolveArgs {
     /// Case file (TOML), or name of a bundled case.
     case: PathBuf,
     #[command(flatten)]
@@ -37,7 +37,7 @@ pub struct SolveArgs {
     no_error_bar: bool,
 }
 
-pub fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
+pub(crate) fn solve(arguments: &SolveArgs, common: &Common) -> anyhow::Result<u8> {
     let case = load(&arguments.case, &arguments.set.overrides)?;
     let preset = || PathBuf::from("reports").join(file_name(&case.name));
     let out = arguments.out.clone().unwrap_or_else(preset);

@@ -59,7 +59,7 @@ fn strain_energy(format: &MaterialFormat) -> String {
 }
 
 /// The materials that regions of a sound case have, by their names.
-pub fn materials(format: &CaseFormat, case: &Case) -> BTreeMap<String, InNumbers> {
+pub(crate) fn materials(format: &CaseFormat, case: &Case) -> BTreeMap<String, InNumbers> {
     let pairs = format.region.iter().zip(&case.problem.regions);
     let in_numbers = |(row, region): (&RegionFormat, &Region)| {
         let table = format.material.get(&row.material)?;

@@ -9,10 +9,9 @@ mod schema;
 mod version;
 
 pub use answer::{Answer, Refusal, RefusalReason, Refused, Reply, SolverName};
-pub use job::{Factors, Job, Probe, Resolution};
-pub use material::InNumbers;
+pub use job::{Job, Probe, Resolution};
 pub use read::{
-    AnswerFault, Answered, SoundReply, parse_job, parse_reply, read_reply, reply_value, sound_reply,
+    AnswerFault, Answered, SoundReply, parse_job, read_reply, reply_value, sound_reply,
 };
 pub use schema::{answer_schema, job_schema};
 pub use version::PROTOCOL;

@@ -109,11 +109,6 @@ pub fn parse_job(text: &str) -> Result<Job, AnswerFault> {
     fitting(versioned(json(text)?)?)
 }
 
-/// The reply in a text, whatever its job.
-pub fn parse_reply(text: &str) -> Result<Reply, AnswerFault> {
-    reply_of(json(text)?)
-}
-
 fn reply_of(value: Value) -> Result<Reply, AnswerFault> {
     let value = versioned(value)?;
     match value.get("refused") {
@@ -261,6 +256,10 @@ fn count(key: &str, found: usize, expected: usize, per: &'static str) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn parse_reply(text: &str) -> Result<Reply, AnswerFault> {
+        reply_of(json(text)?)
+    }
 
     const START: &str = r#""protocol": 1, "solver": {"name": "s", "version": "1"}"#;
 

@@ -144,7 +144,7 @@ fn extrapolated(solution: &Solution, quantity: &Quantity, highest: f64, scale: f
 }
 
 /// The sizes of the families on the finest meshes.
-pub fn scales(case: &Case, file: &ReferenceFile) -> BTreeMap<Family, f64> {
+pub(crate) fn scales(case: &Case, file: &ReferenceFile) -> BTreeMap<Family, f64> {
     let finest = || file.solutions.iter().filter_map(|solution| solution.meshes.last());
     let of_mesh = |mesh: &Mesh| {
         let values = |quantity: Quantity| (quantity.family, mesh.values[&quantity.name].flat());

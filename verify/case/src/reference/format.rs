@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Version of the layout that is read here.
-pub const SCHEMA_VERSION: u32 = 1;
+pub(crate) const SCHEMA_VERSION: u32 = 1;
 
 /// Finite-element solutions of one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -86,7 +86,7 @@ pub enum Values {
 
 impl Values {
     /// The lists by instant; one where nothing changes in time.
-    pub fn instants(&self) -> Vec<&[f64]> {
+    pub(crate) fn instants(&self) -> Vec<&[f64]> {
         match self {
             Values::History(lists) => lists.iter().map(Vec::as_slice).collect(),
             Values::Once(list) => vec![list],

@@ -10,7 +10,7 @@ mod read;
 pub mod richardson;
 
 pub use agreement::{Agreement, ReferenceValues, agreements};
-pub use format::{Mesh, ReferenceFile, SCHEMA_VERSION, Solution, Values};
-pub use quantity::{Family, Quantity, is_dynamic, quantities, size_of};
-pub use read::{CODES, MESHES, ReferenceError, read_reference, title_of};
-pub use richardson::{Basis, Estimate};
+pub use format::{Mesh, ReferenceFile, Solution, Values};
+pub use quantity::{Family, Quantity, is_dynamic, quantities};
+pub use read::{CODES, ReferenceError, read_reference, title_of};
+pub use richardson::Basis;

@@ -88,6 +88,6 @@ pub fn is_dynamic(case: &Case) -> bool {
 }
 
 /// Diagonal of the box around the body \[m\].
-pub fn size_of(case: &Case) -> f64 {
+pub(crate) fn size_of(case: &Case) -> f64 {
     case.problem.body.bounding_box().map_or(0.0, |(low, high)| (high - low).norm())
 }

@@ -15,7 +15,7 @@ pub fn title_of(code: &str) -> &str {
 }
 
 /// Meshes per code, the fewest that show an order.
-pub const MESHES: usize = 3;
+pub(crate) const MESHES: usize = 3;
 
 /// Why stored values are no reference of a case.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -119,7 +119,7 @@ fn check_times(case: &Case, times: &[f64]) -> Result<(), ReferenceError> {
 }
 
 /// Checks one solution; `instants` is the number of times.
-pub fn check_solution(
+pub(crate) fn check_solution(
     case: &Case,
     solution: &Solution,
     instants: usize,

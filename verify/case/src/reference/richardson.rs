@@ -30,13 +30,13 @@ use mtled_checks::measure::{observed_order, richardson};
 use std::fmt;
 
 /// Relative size of differences that are round-off \[–\].
-pub const NOISE: f64 = 1e-8;
+pub(crate) const NOISE: f64 = 1e-8;
 /// F_s where three meshes show an order \[–\].
 pub const SAFETY: f64 = 1.25;
 /// F_s elsewhere \[–\].
-pub const SAFETY_WITHOUT_ORDER: f64 = 3.0;
+pub(crate) const SAFETY_WITHOUT_ORDER: f64 = 3.0;
 /// Lowest accepted order \[–\].
-pub const LOWEST_ORDER: f64 = 0.5;
+pub(crate) const LOWEST_ORDER: f64 = 0.5;
 /// Orders above this multiple of the highest are not accepted \[–\].
 const TOO_GOOD: f64 = 1.1;
 /// Smallest cosine between successive differences of the same direction \[–\].
@@ -162,7 +162,7 @@ fn without_order(
 }
 
 /// Root of the mean square.
-pub fn rms(numbers: &[f64]) -> f64 {
+pub(crate) fn rms(numbers: &[f64]) -> f64 {
     (numbers.iter().map(|n| n * n).sum::<f64>() / numbers.len().max(1) as f64).sqrt()
 }
 

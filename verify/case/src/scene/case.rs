@@ -156,7 +156,7 @@ impl Case {
 
 /// Where a solid lies, for those who look for it elsewhere, with three digits of its size; empty
 /// for an unbounded one.
-pub fn place(solid: &Shape) -> String {
+pub(crate) fn place(solid: &Shape) -> String {
     let Some((lower, upper)) = solid.bounding_box() else { return String::new() };
     // A cross-section has no ends along z.
     let axes = if lower.z.is_finite() && upper.z.is_finite() { 3 } else { 2 };

@@ -18,7 +18,7 @@ pub struct Location {
 
 impl Location {
     /// The place of a byte of `text`.
-    pub fn of(file: &str, text: &str, byte: usize) -> Location {
+    pub(crate) fn of(file: &str, text: &str, byte: usize) -> Location {
         let before = &text.as_bytes()[..byte.min(text.len())];
         let start = before.iter().rposition(|&b| b == b'\n').map_or(0, |at| at + 1);
         Location {
@@ -61,7 +61,7 @@ const LONGEST_LINE: usize = 160;
 
 impl Diagnostic {
     /// A mistake in some bytes of `text`.
-    pub fn at(
+    pub(crate) fn at(
         file: &str,
         text: &str,
         span: Range<usize>,

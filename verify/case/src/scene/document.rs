@@ -37,7 +37,7 @@ impl Document {
 
     /// As [`Document::parse`], with overrides. Mistakes in these are located on the command
     /// line, others where they are in `text`.
-    pub fn overridden(
+    pub(crate) fn overridden(
         text: &str,
         file: &str,
         overrides: &[Override],
@@ -52,22 +52,22 @@ impl Document {
     }
 
     /// What stands under its keys in place of what the file has.
-    pub fn overrides(&self) -> &[Override] {
+    pub(crate) fn overrides(&self) -> &[Override] {
         self.changed.as_ref().map_or(&[], |changed| &changed.overridden.overrides)
     }
 
     /// The text as it was read, with the overrides.
-    pub fn text(&self) -> &str {
+    pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
     /// The name of the file, for messages.
-    pub fn file(&self) -> &str {
+    pub(crate) fn file(&self) -> &str {
         &self.file
     }
 
     /// Its tables, with their places.
-    pub fn tree(&self) -> &toml_edit::Document<String> {
+    pub(crate) fn tree(&self) -> &toml_edit::Document<String> {
         &self.tree
     }
 
@@ -78,7 +78,12 @@ impl Document {
     }
 
     /// A mistake at bytes of the text.
-    pub fn diagnostic_at(&self, span: Range<usize>, key: String, message: String) -> Diagnostic {
+    pub(crate) fn diagnostic_at(
+        &self,
+        span: Range<usize>,
+        key: String,
+        message: String,
+    ) -> Diagnostic {
         let Some(changed) = &self.changed else {
             return Diagnostic::at(&self.file, &self.text, span, key, message);
         };
@@ -96,7 +101,7 @@ impl Document {
 
     /// Place of a key path such as `prescribe[1].where`, `None` if there is no such key. A
     /// table of an array can be named too: `prescribe.top.where`.
-    pub fn locate(&self, key: &str) -> Option<Location> {
+    pub(crate) fn locate(&self, key: &str) -> Option<Location> {
         let (exists, span) = self.span(key);
         exists.then(|| self.diagnostic_at(span, key.to_string(), String::new()).location)
     }
@@ -117,7 +122,7 @@ impl Document {
 
     /// Mistakes for the first few `nan` and `inf`, which TOML allows; the last one tells
     /// how many more there are.
-    pub fn numbers_that_are_not_finite(&self) -> Vec<Diagnostic> {
+    pub(crate) fn numbers_that_are_not_finite(&self) -> Vec<Diagnostic> {
         const A_FEW: usize = 20;
         let mut mistakes: Vec<Diagnostic> = Vec::new();
         let mut more = 0;
@@ -141,7 +146,7 @@ impl Document {
     }
 
     /// The path of the innermost key or value at a byte of the text.
-    pub fn path_at(&self, offset: usize) -> String {
+    pub(crate) fn path_at(&self, offset: usize) -> String {
         let mut best = (usize::MAX, String::new());
         visit(self.tree.as_item(), "", &mut |path, span, _| {
             let inside = span.start <= offset && offset < span.end;

@@ -4,12 +4,12 @@
 use toml_edit::{Item, TableLike};
 
 /// `a.b[2].c` as a, b, 2, c.
-pub fn segments(key: &str) -> Vec<String> {
+pub(crate) fn segments(key: &str) -> Vec<String> {
     key.split(['.', '[', ']']).filter(|part| !part.is_empty()).map(str::to_string).collect()
 }
 
 /// Number of the entry of a list that a segment means: by its number or its name.
-pub fn entry(list: &Item, segment: &str) -> Option<usize> {
+pub(crate) fn entry(list: &Item, segment: &str) -> Option<usize> {
     match segment.parse::<usize>() {
         Ok(index) => list.get(index).map(|_| index),
         Err(_) => names(list).iter().position(|name| name.as_deref() == Some(segment)),
@@ -17,14 +17,14 @@ pub fn entry(list: &Item, segment: &str) -> Option<usize> {
 }
 
 /// The names of the entries of a list, of those that have one.
-pub fn names(list: &Item) -> Vec<Option<String>> {
+pub(crate) fn names(list: &Item) -> Vec<Option<String>> {
     let entries = (0..).map_while(|index| list.get(index));
     let name = |table: &dyn TableLike| Some(table.get("name")?.as_str()?.to_string());
     entries.map(|entry| entry.as_table_like().and_then(name)).collect()
 }
 
 /// The path with numbers in place of names, as far as `root` has it; the rest as it stands.
-pub fn numbered(root: &Item, key: &str) -> String {
+pub(crate) fn numbered(root: &Item, key: &str) -> String {
     let mut path = String::new();
     let mut item = Some(root);
     for segment in segments(key) {
@@ -44,16 +44,16 @@ pub fn numbered(root: &Item, key: &str) -> String {
 }
 
 /// The path of a key in the table at `path`.
-pub fn joined(path: &str, key: &str) -> String {
+pub(crate) fn joined(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
 }
 
 /// The path of an entry of the list at `path`.
-pub fn joined_index(path: &str, index: usize) -> String {
+pub(crate) fn joined_index(path: &str, index: usize) -> String {
     format!("{path}[{index}]")
 }
 
 /// Whether a path is `outer` or below it.
-pub fn is_within(path: &str, outer: &str) -> bool {
+pub(crate) fn is_within(path: &str, outer: &str) -> bool {
     path.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }

@@ -14,9 +14,9 @@ mod nearest;
 mod problem_hash;
 mod read;
 
-pub use case::{Case, Outputs, Probe, ProbeKind};
+pub use case::{Case, Probe, ProbeKind};
 pub use deserialise::deserialise;
-pub use diagnostic::{Diagnostic, Location, Mistakes, one_error};
+pub use diagnostic::{Diagnostic, Mistakes, one_error};
 pub use document::Document;
 pub use edit::{EditError, NotAnOverride, Override, edited, with_absolute_paths, with_paths_from};
 pub use knob::{Knob, Level, Levels, Setting};

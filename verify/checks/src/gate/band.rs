@@ -5,22 +5,22 @@ use crate::study::{Band, BandSource, Bound, Check, Kind, Scale, Scatter};
 
 /// Chance that a run of unchanged code over other clouds fails \[–\]; it is
 /// divided evenly among the checks that scatter (Bonferroni 1936).
-pub const FALSE_ALARMS: f64 = 0.01;
+pub(crate) const FALSE_ALARMS: f64 = 0.01;
 
 /// √ε \[–\]: half of the digits are lost to round-off.
-pub const HALF_THE_DIGITS: f64 = 1.490_116_119_384_765_6e-8;
+pub(crate) const HALF_THE_DIGITS: f64 = 1.490_116_119_384_765_6e-8;
 
 /// ∛ε \[–\]: bounds up to this allow for round-off, finite differences and tolerances of
 /// iterations, but not for an error of a discretisation.
 const ARITHMETIC: f64 = 6.055_454_452_393_343e-6;
 
 /// Probability of a false alarm for each of `count` checks \[–\].
-pub fn tail(count: usize) -> f64 {
+pub(crate) fn tail(count: usize) -> f64 {
     FALSE_ALARMS / count.max(1) as f64
 }
 
 /// The band of a check without scatter, or whose scatter is not known.
-pub fn without_scatter(check: &Check) -> Band {
+pub(crate) fn without_scatter(check: &Check) -> Band {
     if let Some(band) = arithmetic(check) {
         return band;
     }
@@ -47,7 +47,7 @@ fn arithmetic(check: &Check) -> Option<Band> {
 
 /// Round-off of a figure. Pure numbers are relative to one, except for counts, which
 /// are whole.
-pub fn round_off(value: f64, unit: &str) -> f64 {
+pub(crate) fn round_off(value: f64, unit: &str) -> f64 {
     let relative = unit == "1" && value.fract() != 0.0;
     HALF_THE_DIGITS * if relative { value.abs().max(1.0) } else { value.abs() }
 }
@@ -80,7 +80,7 @@ fn within_bound(band: Band, bound: Bound) -> Band {
 
 /// Mean and scatter of figures of several clouds, on the scale on which they are less
 /// skewed. None where the figure is the same on every cloud.
-pub fn mean_and_scatter(samples: &[f64], unit: &str) -> Option<(f64, Scatter)> {
+pub(crate) fn mean_and_scatter(samples: &[f64], unit: &str) -> Option<(f64, Scatter)> {
     if samples.len() < 2 || samples.iter().any(|value| !value.is_finite()) {
         return None;
     }
@@ -124,14 +124,14 @@ fn skewness(samples: &[f64]) -> f64 {
 
 /// Prediction interval of one more run, left with probability `tail`:
 /// x̄ ± t(n − 1, tail) s √(1 + 1/n).
-pub fn around_mean(check: &Check, mean: f64, scatter: Scatter, tail: f64) -> Band {
+pub(crate) fn around_mean(check: &Check, mean: f64, scatter: Scatter, tail: f64) -> Band {
     let n = scatter.samples as f64;
     scattered(check, mean, scatter, tail, (1.0 + 1.0 / n).sqrt())
 }
 
 /// Prediction interval around one known run, left with probability `tail`:
 /// x ± t(n − 1, tail) s √2.
-pub fn around_value(check: &Check, scatter: Scatter, tail: f64) -> Band {
+pub(crate) fn around_value(check: &Check, scatter: Scatter, tail: f64) -> Band {
     match scatter.scale {
         Scale::Logarithmic if check.value <= 0.0 => without_scatter(check),
         scale => scattered(check, on(scale, check.value), scatter, tail, std::f64::consts::SQRT_2),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Version of the file that this program writes and reads.
-pub const SCHEMA_VERSION: u32 = 1;
+pub(crate) const SCHEMA_VERSION: u32 = 1;
 
 /// Accepted figures, with the reasons for accepting them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -47,7 +47,7 @@ impl<'a> Clouds<'a> {
 
     /// Mean and scatter of a check over the other clouds and its own; None
     /// where it is the same on every cloud.
-    pub fn mean_and_scatter(&self, check: &Check) -> Option<(f64, Scatter)> {
+    pub(crate) fn mean_and_scatter(&self, check: &Check) -> Option<(f64, Scatter)> {
         let mut samples = self.samples.get(check.id.as_str())?.clone();
         samples.push(check.value);
         mean_and_scatter(&samples, &check.unit)

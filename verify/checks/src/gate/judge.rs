@@ -47,7 +47,7 @@ fn run_band(check: &Check) -> Band {
 }
 
 /// The line of a baseline for a check.
-pub fn stored(check: &Check, band: Band) -> Stored {
+pub(crate) fn stored(check: &Check, band: Band) -> Stored {
     Stored {
         id: check.id.clone(),
         value: check.value,
@@ -123,7 +123,7 @@ fn judged(check: &Check, stored: &Stored) -> Change {
 
 /// On which side of its band a figure lies. Leaving a band between two limits
 /// is worse in either direction.
-pub fn verdict(check: &Check, band: &Band) -> Verdict {
+pub(crate) fn verdict(check: &Check, band: &Band) -> Verdict {
     let now = check.value;
     if now >= band.low && now <= band.high {
         return Verdict::Same;
@@ -137,7 +137,7 @@ pub fn verdict(check: &Check, band: &Band) -> Verdict {
 
 /// Whether a bound allows more values than before; a different relation counts as
 /// loosened.
-pub fn loosened(before: Bound, now: Bound) -> bool {
+pub(crate) fn loosened(before: Bound, now: Bound) -> bool {
     // Computed bounds may differ by round-off.
     let above = |now: f64, before: f64| now > before + HALF_THE_DIGITS * before.abs();
     match (before, now) {
@@ -162,7 +162,7 @@ fn order(a: &Change, b: &Change) -> Ordering {
 
 /// Distance of a figure from the middle of its band, in half-widths; None where it is
 /// not finite.
-pub fn beyond(change: &Change) -> Option<f64> {
+pub(crate) fn beyond(change: &Change) -> Option<f64> {
     let Band { low, high, .. } = change.band?;
     let (middle, half_width) = (0.5 * (low + high), 0.5 * (high - low));
     let beyond = (change.now - middle).abs() / half_width;

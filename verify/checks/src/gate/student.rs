@@ -2,7 +2,7 @@
 
 /// t with P(|T| ≤ t) = 1 − `tail`, for T of Student's distribution with
 /// `freedom` ≥ 1 degrees of freedom, by bisection in atan(t/√ν).
-pub fn two_sided_quantile(tail: f64, freedom: usize) -> f64 {
+pub(crate) fn two_sided_quantile(tail: f64, freedom: usize) -> f64 {
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
     // Each step gains a bit of 53.
     for _ in 0..60 {

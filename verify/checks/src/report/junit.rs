@@ -25,7 +25,7 @@ struct Failure {
 type Suite<'a> = (&'a str, f64, Vec<Case>);
 
 /// The report as JUnit XML; a study that could not run is an error.
-pub fn to_junit(report: &Report) -> String {
+pub(crate) fn to_junit(report: &Report) -> String {
     let studies = report.studies.iter();
     let mut suites: Vec<Suite> =
         studies.map(|study| (study.id.as_str(), study.wall_seconds, cases(study))).collect();

@@ -11,7 +11,7 @@ const DETAILS: &str = "<details>";
 const DETAILS_END: &str = "</details>";
 
 /// Result, failures, changes, one line per study, and all checks in a folded block.
-pub fn to_markdown(report: &Report) -> String {
+pub(crate) fn to_markdown(report: &Report) -> String {
     let mut text = String::new();
     let mark = mark(report.outcome());
     let _ = writeln!(text, "## {mark} mtled {}: {}\n", inline(&report.suite), result_line(report));

@@ -20,5 +20,5 @@ pub mod write;
 
 pub use markdown::markdown_tables;
 pub use number::{bound_text, four_digits};
-pub use read::{ReportError, read_report};
+pub use read::read_report;
 pub use write::{ensure_writable, write_atomically, write_report};

@@ -19,7 +19,7 @@ pub enum Kind {
 
 impl Kind {
     /// Its name in reports.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Kind::Exact => "exact",
             Kind::Reference => "reference",
@@ -159,13 +159,13 @@ impl Check {
 
     /// File of a report with the input that reproduces a failure, relative to the
     /// report's folder; None where the check passes or has no such input.
-    pub fn failure_file(&self) -> Option<String> {
+    pub(crate) fn failure_file(&self) -> Option<String> {
         (!self.pass && self.reproduce.is_some()).then(|| self.case_file())
     }
 
     /// File of a report for the input that reproduces a failure of this check, relative to
     /// the report's folder.
-    pub fn case_file(&self) -> String {
+    pub(crate) fn case_file(&self) -> String {
         format!("failures/{}.toml", file_name(&self.id))
     }
 }

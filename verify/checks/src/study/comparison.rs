@@ -21,11 +21,11 @@ pub enum Verdict {
 
 impl Verdict {
     /// Every verdict, the most urgent first.
-    pub const ALL: [Verdict; 5] =
+    pub(crate) const ALL: [Verdict; 5] =
         [Verdict::Worse, Verdict::Missing, Verdict::New, Verdict::Improved, Verdict::Same];
 
     /// Its name in reports.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Verdict::Worse => "worse",
             Verdict::Missing => "missing",
@@ -123,7 +123,7 @@ impl Comparison {
     }
 
     /// Changes of this verdict.
-    pub fn of(&self, verdict: Verdict) -> impl Iterator<Item = &Change> {
+    pub(crate) fn of(&self, verdict: Verdict) -> impl Iterator<Item = &Change> {
         self.changes.iter().filter(move |change| change.verdict == verdict)
     }
 

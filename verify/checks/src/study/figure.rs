@@ -38,7 +38,7 @@ impl Figure {
     }
 
     /// Explanation below the figure.
-    pub fn caption(&self) -> &str {
+    pub(crate) fn caption(&self) -> &str {
         match self {
             Figure::Plot(plot) => &plot.caption,
             Figure::Drawing(drawing) => &drawing.caption,

@@ -9,7 +9,8 @@ mod report;
 mod table;
 
 pub use check::{Better, Bound, Check, Kind};
-pub use comparison::{Band, BandSource, Change, Comparison, Scale, Scatter, Verdict};
+pub use comparison::{Band, BandSource, Comparison, Scale, Verdict};
+pub(crate) use comparison::{Change, Scatter};
 pub use figure::{
     Axis, ColourScale, Drawing, Figure, Layer, LayerStyle, Panels, Plot, Series, SeriesStyle, axis,
     curve, line, names_axis, styled,

@@ -21,12 +21,12 @@ pub fn numbers<'d, D: Deserializer<'d>>(reader: D) -> Result<Vec<f64>, D::Error>
     Ok(Vec::<Nullable>::deserialize(reader)?.into_iter().map(Nullable::number).collect())
 }
 
-pub fn points<'d, D: Deserializer<'d>>(reader: D) -> Result<Vec<(f64, f64)>, D::Error> {
+pub(crate) fn points<'d, D: Deserializer<'d>>(reader: D) -> Result<Vec<(f64, f64)>, D::Error> {
     let points = Vec::<(Nullable, Nullable)>::deserialize(reader)?;
     Ok(points.into_iter().map(|(x, y)| (x.number(), y.number())).collect())
 }
 
-pub fn lines<'d, D: Deserializer<'d>>(reader: D) -> Result<Vec<Vec<[f64; 2]>>, D::Error> {
+pub(crate) fn lines<'d, D: Deserializer<'d>>(reader: D) -> Result<Vec<Vec<[f64; 2]>>, D::Error> {
     let lines = Vec::<Vec<[Nullable; 2]>>::deserialize(reader)?;
     let line =
         |points: Vec<[Nullable; 2]>| points.into_iter().map(|p| p.map(Nullable::number)).collect();

@@ -18,7 +18,7 @@ pub enum Outcome {
 
 impl Outcome {
     /// As it is written in reports.
-    pub fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Outcome::Passed => "pass",
             Outcome::Inconclusive => "inconclusive",
@@ -40,7 +40,7 @@ impl Outcome {
 
 impl Check {
     /// Whether it passed or failed; a figure that nothing judges has done neither.
-    pub fn outcome(&self) -> Outcome {
+    pub(crate) fn outcome(&self) -> Outcome {
         match (self.pass, self.is_judged()) {
             (false, _) => Outcome::Failed,
             (true, true) => Outcome::Passed,
@@ -51,7 +51,7 @@ impl Check {
 
 impl Study {
     /// How it ended.
-    pub fn outcome(&self) -> Outcome {
+    pub(crate) fn outcome(&self) -> Outcome {
         if self.failure.is_some() {
             return Outcome::CouldNotRun;
         }
@@ -60,7 +60,7 @@ impl Study {
     }
 
     /// Its open questions, and the number of figures that nothing judges.
-    pub fn questions(&self) -> Vec<String> {
+    pub(crate) fn questions(&self) -> Vec<String> {
         let mut questions = self.undecided.clone();
         let new: Vec<&Check> = self.checks.iter().filter(|check| !check.is_judged()).collect();
         if let Some(first) = new.first() {
@@ -91,12 +91,12 @@ impl Report {
 
     /// Whether every study ran, every question was decided, every bound is kept and nothing got
     /// worse.
-    pub fn passed(&self) -> bool {
+    pub(crate) fn passed(&self) -> bool {
         self.outcome() == Outcome::Passed
     }
 
     /// Whether every study ran and every bound is kept.
-    pub fn bounds_hold(&self) -> bool {
+    pub(crate) fn bounds_hold(&self) -> bool {
         self.studies.iter().all(|study| study.outcome() < Outcome::Failed)
     }
 }

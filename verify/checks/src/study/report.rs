@@ -80,7 +80,7 @@ pub struct Provenance {
 
 impl Report {
     /// All checks of all studies.
-    pub fn checks(&self) -> impl Iterator<Item = &Check> {
+    pub(crate) fn checks(&self) -> impl Iterator<Item = &Check> {
         self.studies.iter().flat_map(|study| &study.checks)
     }
 }

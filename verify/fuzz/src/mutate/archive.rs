@@ -18,13 +18,17 @@ pub(crate) fn start(bytes: &[u8]) -> Option<usize> {
 }
 
 /// Gzip data of some bytes.
-pub fn compressed(bytes: &[u8]) -> Vec<u8> {
+pub(crate) fn compressed(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(bytes).and_then(|()| encoder.finish()).unwrap_or_default()
 }
 
 /// The inflated data changed by `change`, or followed by members of zeros.
-pub fn mutated(data: &[u8], rng: &mut Rng, change: impl Fn(&[u8], &mut Rng) -> Vec<u8>) -> Vec<u8> {
+pub(crate) fn mutated(
+    data: &[u8],
+    rng: &mut Rng,
+    change: impl Fn(&[u8], &mut Rng) -> Vec<u8>,
+) -> Vec<u8> {
     if rng.usize(..40) == 0 {
         let member = compressed(&vec![0; MEMBER]);
         return [data, &member.repeat(1 + rng.usize(..MOST_MEMBERS))].concat();

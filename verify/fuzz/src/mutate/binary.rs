@@ -7,7 +7,7 @@ use fastrand::Rng;
 const HEADER: usize = 400;
 
 /// A changed copy.
-pub fn mutated(bytes: &[u8], rng: &mut Rng) -> Vec<u8> {
+pub(crate) fn mutated(bytes: &[u8], rng: &mut Rng) -> Vec<u8> {
     let mut new = bytes.to_vec();
     if new.is_empty() {
         return vec![rng.u8(..)];
@@ -29,7 +29,7 @@ pub fn mutated(bytes: &[u8], rng: &mut Rng) -> Vec<u8> {
 }
 
 /// The front of one file and the rest of another.
-pub fn spliced(bytes: &[u8], other: &[u8], rng: &mut Rng) -> Vec<u8> {
+pub(crate) fn spliced(bytes: &[u8], other: &[u8], rng: &mut Rng) -> Vec<u8> {
     let cut = |bytes: &[u8], rng: &mut Rng| rng.usize(..=bytes.len());
     let (first, second) = (cut(bytes, rng), cut(other, rng));
     [&bytes[..first], &other[second..]].concat()

@@ -10,9 +10,9 @@ mod scene;
 mod text;
 mod token;
 
-pub use archive::compressed;
+pub(crate) use archive::compressed;
 pub use input::Input;
-pub use scene::{drawn_scene, smaller_scenes};
+pub(crate) use scene::{drawn_scene, smaller_scenes};
 
 use fastrand::Rng;
 
@@ -21,7 +21,7 @@ const LARGEST: usize = 4 << 20;
 
 /// A changed copy of `input`; parts of `other` may be taken over. `extensions` are those that
 /// the name may have.
-pub fn mutated(input: &Input, other: &Input, extensions: &[&str], rng: &mut Rng) -> Input {
+pub(crate) fn mutated(input: &Input, other: &Input, extensions: &[&str], rng: &mut Rng) -> Input {
     let mut new = input.clone();
     // One change is most often accepted.
     for _ in 0..1 + rng.usize(..6).saturating_sub(3) {

@@ -8,7 +8,7 @@ use fastrand::Rng;
 const MOST_REPEATED: usize = 200_000;
 
 /// A changed copy; `donor` is another text of the kind.
-pub fn mutated(text: &str, donor: &str, rng: &mut Rng) -> String {
+pub(crate) fn mutated(text: &str, donor: &str, rng: &mut Rng) -> String {
     match rng.usize(..20) {
         0..9 => with_other_token(text, donor, rng),
         9..11 => with_swapped_tokens(text, rng),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// Kind of token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Class {
+pub(crate) enum Class {
     /// Digits, with sign, point and exponent.
     Number,
     /// Letters, digits and underscores.
@@ -16,10 +16,10 @@ pub enum Class {
 }
 
 /// A token and its bytes.
-pub type Token = (Class, Range<usize>);
+pub(crate) type Token = (Class, Range<usize>);
 
 /// The tokens of a text, white space left out.
-pub fn tokens(text: &str) -> Vec<Token> {
+pub(crate) fn tokens(text: &str) -> Vec<Token> {
     let bytes = text.as_bytes();
     let mut all = Vec::new();
     let mut at = 0;

@@ -6,7 +6,7 @@ use mtled_run::run::vtu::{PointArray, VtuFrame, to_vtu};
 use std::fmt::Write;
 
 /// Labels of 4 × 4 × 4 voxels.
-pub const VOXELS: [u8; 64] = {
+pub(crate) const VOXELS: [u8; 64] = {
     let mut voxels = [1; 64];
     voxels[21] = 2;
     voxels[22] = 2;
@@ -19,7 +19,7 @@ const HEADER: &str = "NRRD0005\n# a comment\ntype: uint8\ndimension: 3\nspace: l
                       space origin: (0,0,0)\nsource:=made up\n";
 
 /// NRRD of every encoding, NIfTI plain and compressed.
-pub fn label_maps() -> Vec<Input> {
+pub(crate) fn label_maps() -> Vec<Input> {
     let text = VOXELS.map(|voxel| voxel.to_string()).join(" ");
     let nrrd = |encoding: &str, data: &[u8]| {
         Input::new([format!("{HEADER}encoding: {encoding}\n\n").as_bytes(), data].concat(), "nrrd")
@@ -64,7 +64,7 @@ fn nifti() -> Vec<u8> {
 }
 
 /// The companion surface in every format.
-pub fn surfaces(companions: &[(String, Vec<u8>)]) -> Vec<Input> {
+pub(crate) fn surfaces(companions: &[(String, Vec<u8>)]) -> Vec<Input> {
     let ascii = companions.iter().find(|(name, _)| name == "ball.stl");
     let Some((_, ascii)) = ascii else { return Vec::new() };
     let text = String::from_utf8_lossy(ascii).into_owned();
@@ -141,7 +141,7 @@ fn other_surfaces(values: &[f32]) -> Vec<Input> {
 }
 
 /// A lattice of 5 × 5 × 5 nodes in every format.
-pub fn points() -> Result<Vec<Input>> {
+pub(crate) fn points() -> Result<Vec<Input>> {
     let at = |n: usize| [n % 5, n / 5 % 5, n / 25].map(|index| 0.01 * index as f64);
     let points: Vec<[f64; 3]> = (0..125).map(at).collect();
     let lines = |separator: &str| {

@@ -16,7 +16,7 @@ pub fn folder() -> PathBuf {
 }
 
 /// Names and contents of the files beside every input.
-pub fn companions() -> Result<Vec<(String, Vec<u8>)>> {
+pub(crate) fn companions() -> Result<Vec<(String, Vec<u8>)>> {
     let mut all = files(&folder().join("seeds/companions"))?;
     all.push(("slice.nrrd".into(), read(&folder().join("../../reference/brain/slice.nrrd"))?));
     all.push(("voxels.raw".into(), binary::VOXELS.to_vec()));

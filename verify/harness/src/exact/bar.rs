@@ -5,7 +5,7 @@ use mtled::material::ElasticConstants;
 
 /// A column on a fixed base at z = 0, free on top, sides on rollers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ConfinedColumn {
+pub(crate) struct ConfinedColumn {
     /// \[m\]
     pub height: f64,
     /// \[kg/m³\]
@@ -18,18 +18,18 @@ pub struct ConfinedColumn {
 
 impl ConfinedColumn {
     /// Oedometric modulus M = K + 4μ/3 \[Pa\].
-    pub fn oedometric_modulus(&self) -> f64 {
+    pub(crate) fn oedometric_modulus(&self) -> f64 {
         self.constants.bulk_modulus + 4.0 / 3.0 * self.constants.shear_modulus
     }
 
     /// u_z(z) = −ρg/M (H z − z²/2) \[m\], downwards negative.
-    pub fn displacement(&self, z: f64) -> f64 {
+    pub(crate) fn displacement(&self, z: f64) -> f64 {
         let weight = self.density * self.gravity;
         -weight / self.oedometric_modulus() * (self.height * z - 0.5 * z * z)
     }
 
     /// Speed of the waves in the column c = √(M/ρ) \[m/s\].
-    pub fn wave_speed(&self) -> f64 {
+    pub(crate) fn wave_speed(&self) -> f64 {
         (self.oedometric_modulus() / self.density).sqrt()
     }
 
@@ -38,15 +38,10 @@ impl ConfinedColumn {
     /// arrives at H/c, and swings about its static sag with the period 4H/c
     /// (d'Alembert; Graff 1975, section 2.1). The departure from the sag is odd
     /// about H/c: w(τ) = u_s(τ² − 1) for |τ| ≤ 1, w(τ) = −w(2 − τ), τ = ct/H.
-    pub fn top_after_release(&self, t: f64) -> f64 {
+    pub(crate) fn top_after_release(&self, t: f64) -> f64 {
         let tau = (self.wave_speed() * t / self.height + 1.0).rem_euclid(4.0) - 1.0;
         let departure = if tau <= 1.0 { tau * tau - 1.0 } else { 1.0 - (2.0 - tau).powi(2) };
         self.displacement(self.height) * (1.0 + departure)
-    }
-
-    /// σ_zz(z) = −ρg(H − z) \[Pa\], compression negative.
-    pub fn axial_stress(&self, z: f64) -> f64 {
-        -self.density * self.gravity * (self.height - z)
     }
 }
 
@@ -67,7 +62,7 @@ mod tests {
         for z in [0.01, 0.05, 0.09] {
             let strain = (c.displacement(z + 1e-6) - c.displacement(z - 1e-6)) / 2e-6;
             let stress = c.oedometric_modulus() * strain;
-            assert_relative_eq!(stress, c.axial_stress(z), max_relative = 1e-6);
+            assert_relative_eq!(stress, -1000.0 * 9.81 * (0.1 - z), max_relative = 1e-6);
         }
     }
 
@@ -95,7 +90,6 @@ mod tests {
     fn the_base_is_fixed_and_the_top_settles_most() {
         let c = column();
         assert_eq!(c.displacement(0.0), 0.0);
-        assert_eq!(c.axial_stress(c.height), 0.0);
         let top = -1000.0 * 9.81 * 0.1 * 0.1 / (2.0 * c.oedometric_modulus());
         assert_relative_eq!(c.displacement(c.height), top, max_relative = 1e-14);
     }

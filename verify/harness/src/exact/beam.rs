@@ -1,17 +1,14 @@
-//! First frequencies of slender beams and bars at small displacements.
+//! First frequency of a slender beam at small displacements.
 
 use std::f64::consts::PI;
 
 /// First root β of cos β cosh β = −1: clamped and free ends (Blevins 1979,
 /// table 8-1).
-pub const CANTILEVER_ROOT: f64 = 1.875_104_068_711_961;
-/// First non-zero root β of cos β cosh β = 1: both ends free (Blevins 1979,
-/// table 8-1).
-pub const FREE_FREE_ROOT: f64 = 4.730_040_744_862_704;
+pub(crate) const CANTILEVER_ROOT: f64 = 1.875_104_068_711_961;
 
 /// A prismatic beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Beam {
+pub(crate) struct Beam {
     /// \[m\]
     pub length: f64,
     /// \[m²\]
@@ -27,44 +24,24 @@ pub struct Beam {
 impl Beam {
     /// First bending frequency, one end clamped \[Hz\]:
     /// f = β²/(2π) √(EI/(ρA L⁴)) (Euler and Bernoulli).
-    pub fn cantilever_frequency(&self) -> f64 {
+    pub(crate) fn cantilever_frequency(&self) -> f64 {
         self.bending_frequency(CANTILEVER_ROOT)
     }
 
     /// Shape of the first mode, one end clamped, at the distance x \[m\] from the
     /// clamp, up to a factor: cosh ξ − cos ξ − σ(sinh ξ − sin ξ), ξ = βx/L,
     /// σ = (cosh β + cos β)/(sinh β + sin β) (Blevins 1979, table 8-1).
-    pub fn cantilever_mode(&self, x: f64) -> f64 {
+    pub(crate) fn cantilever_mode(&self, x: f64) -> f64 {
         let beta = CANTILEVER_ROOT;
         let sigma = (beta.cosh() + beta.cos()) / (beta.sinh() + beta.sin());
         let xi = beta * x / self.length;
         xi.cosh() - xi.cos() - sigma * (xi.sinh() - xi.sin())
     }
 
-    /// First bending frequency, both ends free \[Hz\].
-    pub fn free_free_frequency(&self) -> f64 {
-        self.bending_frequency(FREE_FREE_ROOT)
-    }
-
     fn bending_frequency(&self, root: f64) -> f64 {
         let stiffness = self.young_modulus * self.second_moment;
         let mass = self.density * self.area * self.length.powi(4);
         root * root / (2.0 * PI) * (stiffness / mass).sqrt()
-    }
-
-    /// Speed of a longitudinal wave in a slender bar c = √(E/ρ) \[m/s\].
-    pub fn bar_wave_speed(&self) -> f64 {
-        (self.young_modulus / self.density).sqrt()
-    }
-
-    /// Period of the first longitudinal mode, one end fixed: 4L/c \[s\].
-    pub fn fixed_free_period(&self) -> f64 {
-        4.0 * self.length / self.bar_wave_speed()
-    }
-
-    /// Period of the first longitudinal mode, both ends free: 2L/c \[s\].
-    pub fn free_free_period(&self) -> f64 {
-        2.0 * self.length / self.bar_wave_speed()
     }
 }
 
@@ -74,9 +51,8 @@ mod tests {
     use approx::assert_relative_eq;
 
     #[test]
-    fn the_roots_solve_their_characteristic_equations() {
+    fn the_root_solves_its_characteristic_equation() {
         assert!((CANTILEVER_ROOT.cos() * CANTILEVER_ROOT.cosh() + 1.0).abs() < 1e-13);
-        assert!((FREE_FREE_ROOT.cos() * FREE_FREE_ROOT.cosh() - 1.0).abs() < 1e-11);
     }
 
     #[test]
@@ -90,8 +66,6 @@ mod tests {
             density: 1000.0,
         };
         assert_relative_eq!(flag.cantilever_frequency(), 1.0995, max_relative = 0.03);
-        let ratio = flag.free_free_frequency() / flag.cantilever_frequency();
-        assert_relative_eq!(ratio, 6.3632, max_relative = 1e-4);
     }
 
     #[test]
@@ -103,19 +77,5 @@ mod tests {
         assert!(mode(0.0).abs() < 1e-15 && mode(1e-4).abs() < 1e-7);
         assert!(bend(2.0).abs() < 1e-5 && (bend(2.0) - bend(1.99)).abs() < 1e-3);
         assert!(mode(2.0) > mode(1.0));
-    }
-
-    #[test]
-    fn a_wave_runs_there_and_back_in_the_free_period() {
-        let bar = Beam {
-            length: 2.0,
-            area: 1.0,
-            second_moment: 1.0,
-            young_modulus: 900.0,
-            density: 100.0,
-        };
-        assert_relative_eq!(bar.bar_wave_speed(), 3.0);
-        assert_relative_eq!(bar.free_free_period(), 4.0 / 3.0);
-        assert_relative_eq!(bar.fixed_free_period(), 8.0 / 3.0);
     }
 }

@@ -6,7 +6,7 @@ use mtled::algebra::tensor::{Matrix3, Vector3};
 
 /// The ball, whose centre is the origin, and the body around it, with one Poisson ratio.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inclusion {
+pub(crate) struct Inclusion {
     /// Of the ball \[m\].
     pub radius: f64,
     /// Young's modulus of the ball over that around it \[–\].
@@ -38,7 +38,7 @@ impl Inclusion {
     /// u = (1 + (c − 1) t³) ε X/3 + (1 + B (1.2 t⁵ + (2 − 4ν) t³)) E′X + 3 B (t³ − t⁵) n (n·E′X),
     /// B = (c′ − 1)/(3.2 − 4ν), from a centre of dilatation, a force dipole and the gradient of a
     /// harmonic function, which meet the displacement of the ball.
-    pub fn displacement(&self, X: &Vector3) -> Vector3 {
+    pub(crate) fn displacement(&self, X: &Vector3) -> Vector3 {
         let (mean, rest) = self.parts();
         let (of_volume, of_shape) = self.concentrations();
         let (r, change) = (X.norm(), rest * X);

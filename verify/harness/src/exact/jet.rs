@@ -8,7 +8,7 @@ use std::ops::{Add, Mul};
 
 /// The value of a function at a point, its gradient and its Hessian.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Jet {
+pub(crate) struct Jet {
     /// f
     pub value: f64,
     /// ∂f/∂X_i
@@ -19,7 +19,7 @@ pub struct Jet {
 
 impl Jet {
     /// The coordinates x, y, z themselves.
-    pub fn coordinates(X: &Vector3) -> [Jet; 3] {
+    pub(crate) fn coordinates(X: &Vector3) -> [Jet; 3] {
         [0, 1, 2].map(|k| Jet {
             value: X[k],
             gradient: Vector3::ith(k, 1.0),
@@ -28,13 +28,13 @@ impl Jet {
     }
 
     /// sin f.
-    pub fn sin(self) -> Jet {
+    pub(crate) fn sin(self) -> Jet {
         let (sine, cosine) = self.value.sin_cos();
         self.chain(sine, cosine, -sine)
     }
 
     /// ln f.
-    pub fn ln(self) -> Jet {
+    pub(crate) fn ln(self) -> Jet {
         let f = self.value;
         self.chain(f.ln(), 1.0 / f, -1.0 / (f * f))
     }

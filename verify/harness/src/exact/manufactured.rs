@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 /// Constitutive laws, with their first Piola–Kirchhoff stress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Family {
+pub(crate) enum Family {
     /// P = μF + (λ ln J − μ)F⁻ᵀ.
     LogJ,
     /// P = μJ^(−2/3)(F − I₁/3 F⁻ᵀ) + K(J − 1)J F⁻ᵀ.
@@ -26,7 +26,7 @@ pub enum Family {
 
 /// Displacement fields on the unit cube \[m\].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FieldKind {
+pub(crate) enum FieldKind {
     /// u = ½ (sin(πX)/10, Y²Z/2, X ln(1 + Y)/5): J runs from 0.82 to 1.74.
     General,
     /// Three shears, one after the other, of determinant 1:
@@ -37,7 +37,7 @@ pub enum FieldKind {
 
 /// A field in a material.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Manufactured {
+pub(crate) struct Manufactured {
     /// The displacement.
     pub field: FieldKind,
     /// The constitutive law.
@@ -50,18 +50,18 @@ pub struct Manufactured {
 
 impl Manufactured {
     /// The displacement u(X) \[m\].
-    pub fn displacement(&self, X: &Vector3) -> Vector3 {
+    pub(crate) fn displacement(&self, X: &Vector3) -> Vector3 {
         let [x, y, z] = self.jets(X);
         Vector3::new(x.value, y.value, z.value)
     }
 
     /// F = I + Grad u.
-    pub fn deformation_gradient(&self, X: &Vector3) -> Matrix3 {
+    pub(crate) fn deformation_gradient(&self, X: &Vector3) -> Matrix3 {
         deformation_gradient(&self.jets(X))
     }
 
     /// b = −Div P/ρ \[N/kg\], with ∂P_iJ/∂X_J = (∂P/∂F : ∂F/∂X_J)_iJ.
-    pub fn body_force(&self, X: &Vector3) -> Vector3 {
+    pub(crate) fn body_force(&self, X: &Vector3) -> Vector3 {
         let u = self.jets(X);
         let F = deformation_gradient(&u);
         let mut divergence = Vector3::zeros();
@@ -111,7 +111,7 @@ fn mooney_rivlin(constants: &ElasticConstants) -> [f64; 4] {
 
 impl Family {
     /// The solver's law of this family.
-    pub fn law(self, constants: ElasticConstants) -> Result<Law, MaterialError> {
+    pub(crate) fn law(self, constants: ElasticConstants) -> Result<Law, MaterialError> {
         Ok(match self {
             Family::LogJ => Law::NeoHookeanLogJ(NeoHookeanLogJ::new(constants)),
             Family::Isochoric => Law::NeoHookeanIsochoric(NeoHookeanIsochoric::new(

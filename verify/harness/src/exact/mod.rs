@@ -1,17 +1,16 @@
 //! Closed forms and published values.
 
-pub mod bar;
-pub mod beam;
-pub mod cook;
-pub mod hertz;
-pub mod homogeneous;
-pub mod inclusion;
+pub(crate) mod bar;
+pub(crate) mod beam;
+pub(crate) mod cook;
+pub(crate) mod hertz;
+pub(crate) mod homogeneous;
+pub(crate) mod inclusion;
 mod jet;
-pub mod land;
-pub mod manufactured;
+pub(crate) mod land;
+pub(crate) mod manufactured;
 mod published;
-pub mod shell;
-pub mod torsion;
-pub mod turek_hron;
+pub(crate) mod torsion;
+pub(crate) mod turek_hron;
 
-pub use published::Published;
+pub(crate) use published::Published;

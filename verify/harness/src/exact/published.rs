@@ -2,7 +2,7 @@
 
 /// A published value with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Published {
+pub(crate) struct Published {
     /// In `unit`.
     pub value: f64,
     /// Half-width of the interval of the exact value, in `unit`.

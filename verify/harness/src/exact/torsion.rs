@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 
 /// Moment M = πμψR⁴/2 \[N m\] for the shear modulus μ \[Pa\], the twist per
 /// length ψ \[rad/m\] and the radius R \[m\].
-pub fn moment(shear_modulus: f64, twist: f64, radius: f64) -> f64 {
+pub(crate) fn moment(shear_modulus: f64, twist: f64, radius: f64) -> f64 {
     0.5 * PI * shear_modulus * twist * radius.powi(4)
 }
 
 /// Axial force N = −πμψ²R⁴/4 \[N\]: negative, because the cylinder is kept from
 /// growing longer (Poynting effect).
-pub fn axial_force(shear_modulus: f64, twist: f64, radius: f64) -> f64 {
+pub(crate) fn axial_force(shear_modulus: f64, twist: f64, radius: f64) -> f64 {
     -0.25 * PI * shear_modulus * twist * twist * radius.powi(4)
 }
 

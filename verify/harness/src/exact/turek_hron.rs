@@ -13,16 +13,17 @@ const fn printed(value: f64, uncertainty: f64) -> Published {
 }
 
 /// CSM1, E = 1.4 MPa, steady: u_x and u_y of A \[m\].
-pub const CSM1: [Published; 2] = [printed(-7.18767e-3, 5e-9), printed(-66.1023e-3, 5e-8)];
+pub(crate) const CSM1: [Published; 2] = [printed(-7.18767e-3, 5e-9), printed(-66.1023e-3, 5e-8)];
 
 /// CSM2, E = 5.6 MPa, steady: u_x and u_y of A \[m\].
-pub const CSM2: [Published; 2] = [printed(-0.469000e-3, 5e-10), printed(-16.9739e-3, 5e-8)];
+#[cfg(test)]
+pub(crate) const CSM2: [Published; 2] = [printed(-0.469000e-3, 5e-10), printed(-16.9739e-3, 5e-8)];
 
 /// CSM3, E = 1.4 MPa, let go at t = 0: mean of the swinging u_y of A \[m\].
-pub const CSM3_MEAN: Published = printed(-63.6e-3, 0.05e-3);
+pub(crate) const CSM3_MEAN: Published = printed(-63.6e-3, 0.05e-3);
 
 /// CSM3: amplitude of the swinging u_y of A \[m\].
-pub const CSM3_AMPLITUDE: Published = printed(65.2e-3, 0.05e-3);
+pub(crate) const CSM3_AMPLITUDE: Published = printed(65.2e-3, 0.05e-3);
 
 #[cfg(test)]
 mod tests {

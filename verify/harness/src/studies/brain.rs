@@ -35,7 +35,7 @@ struct Moment {
 /// tumour).
 const DIFFERENCE_OF_CODES: f64 = 0.32e-3;
 
-pub fn brain(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn brain(bench: &Workbench, study: &mut Study) -> Result<()> {
     let case = bench.case("brain_slice")?;
     let spacing = spacing_of(&case.problem)?;
     let finer = respaced(&case, bench.pick(0.75, 0.5) * spacing)?;

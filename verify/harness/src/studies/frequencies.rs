@@ -71,7 +71,7 @@ fn search(problem: &Problem, count: usize, kind: MassKind) -> Result<NaturalMode
     Ok(NaturalModes::find(&rest, &discretisation, &model, (count, kind), &mut |_| true)?)
 }
 
-pub fn frequencies(_: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn frequencies(_: &Workbench, study: &mut Study) -> Result<()> {
     let mut results = Results::default();
     for cube in CUBES {
         free_cube(cube, study, &mut results)?;

@@ -27,7 +27,7 @@ struct Tried {
 }
 
 /// Draws scenes and holds all relations against them.
-pub fn metamorphic(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn metamorphic(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut rng = fastrand::Rng::with_seed(bench.seed(SEED));
     let mut tried: BTreeMap<&str, Tried> = BTreeMap::new();
     let (mut scenes, mut without_answer) = (0, 0);

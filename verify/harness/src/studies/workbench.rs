@@ -53,12 +53,12 @@ impl Workbench {
     }
 
     /// Random seed of a cloud in this family, from its seed in family 0.
-    pub fn seed(&self, seed: u64) -> u64 {
+    pub(crate) fn seed(&self, seed: u64) -> u64 {
         seed + SEEDS_PER_FAMILY * self.family
     }
 
     /// Replaces the random seed of a jittered or graded cloud by that of this family.
-    pub fn reseed(&self, problem: &mut Problem) {
+    pub(crate) fn reseed(&self, problem: &mut Problem) {
         if let Cloud::Jittered { seed, .. } | Cloud::Graded { seed, .. } = &mut problem.recipe.cloud
         {
             *seed = self.seed(*seed);
@@ -67,7 +67,7 @@ impl Workbench {
 
     /// A bundled case; in another family than 0 its lattice is jittered by `VARIATION` of the
     /// spacing, or its graded cloud reseeded.
-    pub fn case(&self, name: &str) -> Result<Case> {
+    pub(crate) fn case(&self, name: &str) -> Result<Case> {
         let mut case = self.unvaried_case(name)?;
         if self.family > 0 {
             if let Cloud::Regular { spacing } = case.problem.recipe.cloud {
@@ -80,19 +80,19 @@ impl Workbench {
     }
 
     /// A bundled case on the cloud of its file, in every family.
-    pub fn unvaried_case(&self, name: &str) -> Result<Case> {
+    pub(crate) fn unvaried_case(&self, name: &str) -> Result<Case> {
         read_case(&self.cases.join(format!("{name}.toml"))).map_err(one_error)
     }
 
     /// The bundled reference of a case.
-    pub fn reference(&self, case: &Case) -> Result<ReferenceFile, ReferenceError> {
+    pub(crate) fn reference(&self, case: &Case) -> Result<ReferenceFile, ReferenceError> {
         let absent = || ReferenceError::Absent { case: case.name.clone() };
         let text = mtled_case::bundled::bundled_reference(&case.name).ok_or_else(absent)?;
         read_reference(case, text)
     }
 
     /// One of two values, by suite.
-    pub fn pick<T>(&self, quick: T, full: T) -> T {
+    pub(crate) fn pick<T>(&self, quick: T, full: T) -> T {
         match self.suite {
             Suite::Quick => quick,
             Suite::Full => full,
@@ -101,7 +101,14 @@ impl Workbench {
 
     /// A check of our own figure against its stored bound; `remark` is what else is known of it.
     /// See `StoredBounds` for a check that has none yet.
-    pub fn regression(&self, id: &str, label: &str, value: f64, unit: &str, remark: &str) -> Check {
+    pub(crate) fn regression(
+        &self,
+        id: &str,
+        label: &str,
+        value: f64,
+        unit: &str,
+        remark: &str,
+    ) -> Check {
         let (bound, mut source) = self.bounds.bound(id);
         if !remark.is_empty() {
             source = format!("{source}; {remark}");
@@ -111,7 +118,14 @@ impl Workbench {
 
     /// A check of a target of theory or of our own, in units of 1. Where `is_missed` says that
     /// the target is known to be missed, and nowhere else, the check is a regression.
-    pub fn target(&self, id: &str, label: &str, value: f64, target: Bound, source: &str) -> Check {
+    pub(crate) fn target(
+        &self,
+        id: &str,
+        label: &str,
+        value: f64,
+        target: Bound,
+        source: &str,
+    ) -> Check {
         if !is_missed(self.suite == Suite::Full, id) {
             return Check::new(id, label, Kind::Exact, value, target, "1", source);
         }
@@ -132,17 +146,17 @@ impl Workbench {
 }
 
 /// A check of an exact claim: `value` \[–\] is at most `bound`.
-pub fn exact(id: &str, label: &str, value: f64, bound: f64, source: &str) -> Check {
+pub(crate) fn exact(id: &str, label: &str, value: f64, bound: f64, source: &str) -> Check {
     Check::new(id, label, Kind::Exact, value, Bound::AtMost(bound), "1", source)
 }
 
 /// |computed − exact|/|exact| \[–\].
-pub fn relative_error(computed: f64, exact: f64) -> f64 {
+pub(crate) fn relative_error(computed: f64, exact: f64) -> f64 {
     (computed - exact).abs() / exact.abs()
 }
 
 /// Smallest and largest of positive values; NaN is skipped.
-pub fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, 0.0), |(low, high), x| (low.min(x), high.max(x)))
 }
 

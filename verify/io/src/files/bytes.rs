@@ -6,10 +6,10 @@ use std::io::{BufReader, ErrorKind, Read, sink};
 use std::path::Path;
 
 /// The longest file that is read as a whole \[byte\].
-pub const LONGEST: u64 = 1 << 32;
+pub(crate) const LONGEST: u64 = 1 << 32;
 
 /// A regular file and its length \[byte\]. Devices and pipes, which need not end, are refused.
-pub fn open(path: &Path) -> Result<(BufReader<File>, u64), FileError> {
+pub(crate) fn open(path: &Path) -> Result<(BufReader<File>, u64), FileError> {
     let unreadable = |error| Mistake::Unreadable(error).of(path);
     let found = std::fs::metadata(path).map_err(unreadable)?;
     if !found.is_file() {
@@ -19,7 +19,7 @@ pub fn open(path: &Path) -> Result<(BufReader<File>, u64), FileError> {
 }
 
 /// The bytes of a file.
-pub fn bytes_of(path: &Path) -> Result<Vec<u8>, FileError> {
+pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, FileError> {
     let (file, length) = open(path)?;
     if length > LONGEST {
         return Err(Mistake::TooLong { length, longest: LONGEST }.of(path));
@@ -41,14 +41,17 @@ pub fn visit_bytes(path: &Path, mut see: impl FnMut(&[u8])) -> Result<(), FileEr
 
 /// The next bytes of a stream, fewer than `count` where it ends before. Memory is taken
 /// as they come, not as a header promises them.
-pub fn at_most(stream: impl Read, count: u64) -> Result<Vec<u8>, Mistake> {
+pub(crate) fn at_most(stream: impl Read, count: u64) -> Result<Vec<u8>, Mistake> {
     let mut bytes = Vec::new();
     readable(stream.take(count).read_to_end(&mut bytes))?;
     Ok(bytes)
 }
 
 /// The next `expected` bytes of a stream, and a few behind them.
-pub fn voxel_bytes(mut stream: impl Read, expected: usize) -> Result<(Vec<u8>, Vec<u8>), Mistake> {
+pub(crate) fn voxel_bytes(
+    mut stream: impl Read,
+    expected: usize,
+) -> Result<(Vec<u8>, Vec<u8>), Mistake> {
     const A_FEW: u64 = 8;
     let bytes = at_most(&mut stream, expected as u64)?;
     if bytes.len() < expected {
@@ -64,7 +67,7 @@ pub fn voxel_bytes(mut stream: impl Read, expected: usize) -> Result<(Vec<u8>, V
 }
 
 /// Reads past the next `count` bytes of a stream, or to its end.
-pub fn skip(stream: impl Read, count: u64) -> Result<(), Mistake> {
+pub(crate) fn skip(stream: impl Read, count: u64) -> Result<(), Mistake> {
     readable(std::io::copy(&mut stream.take(count), &mut sink()).map(drop))
 }
 
@@ -80,7 +83,7 @@ fn readable<T: Default>(read: std::io::Result<T>) -> Result<T, Mistake> {
 }
 
 /// Removes the first line, and gives it without the spaces around it.
-pub fn take_line(rest: &mut &[u8]) -> Option<String> {
+pub(crate) fn take_line(rest: &mut &[u8]) -> Option<String> {
     if rest.is_empty() {
         return None;
     }
@@ -91,7 +94,7 @@ pub fn take_line(rest: &mut &[u8]) -> Option<String> {
 }
 
 /// Removes the first numbers.
-pub fn take_numbers(
+pub(crate) fn take_numbers(
     rest: &mut &[u8],
     count: usize,
     scalar: Scalar,
@@ -110,7 +113,7 @@ pub fn numbers(bytes: &[u8], scalar: Scalar, order: ByteOrder) -> impl Iterator<
 }
 
 /// The first characters of a file for a message.
-pub fn start_of(bytes: &[u8]) -> String {
+pub(crate) fn start_of(bytes: &[u8]) -> String {
     let start = &bytes[..bytes.len().min(12)];
     String::from_utf8_lossy(start).escape_default().to_string()
 }
@@ -141,7 +144,7 @@ pub enum ByteOrder {
 
 impl ByteOrder {
     /// Its name in messages.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             ByteOrder::Little => "little",
             ByteOrder::Big => "big",
@@ -151,7 +154,7 @@ impl ByteOrder {
 
 impl Scalar {
     /// Size \[byte\].
-    pub fn size(self) -> usize {
+    pub(crate) fn size(self) -> usize {
         match self {
             Scalar::I8 | Scalar::U8 => 1,
             Scalar::I16 | Scalar::U16 => 2,
@@ -161,7 +164,7 @@ impl Scalar {
     }
 
     /// The number stored in the first bytes, which must be enough.
-    pub fn read(self, bytes: &[u8], order: ByteOrder) -> f64 {
+    pub(crate) fn read(self, bytes: &[u8], order: ByteOrder) -> f64 {
         let mut word = [0u8; 8];
         let n = self.size();
         word[..n].copy_from_slice(&bytes[..n]);
@@ -181,7 +184,7 @@ impl Scalar {
     }
 
     /// Appends a number; one that the type cannot hold becomes the nearest that it can.
-    pub fn write(self, value: f64, order: ByteOrder, out: &mut Vec<u8>) {
+    pub(crate) fn write(self, value: f64, order: ByteOrder, out: &mut Vec<u8>) {
         let word = match self {
             Scalar::U8 => u64::from(value.round() as u8),
             Scalar::I8 => value.round() as i8 as u64,

@@ -18,7 +18,7 @@ mod vtk_xml;
 pub use bytes::visit_bytes;
 pub use error::{FileError, Mistake};
 pub use unit::LengthUnit;
-pub use voxels::LabelMapFile;
+pub(crate) use voxels::LabelMapFile;
 
 use std::path::Path;
 

@@ -56,7 +56,7 @@ pub(super) fn open_image(path: &Path) -> Result<Opened, FileError> {
 
 /// Reads a label map into RAS metres; `unit` overrides the file's. Of a file of several layers
 /// `layer` says which is read, from 0.
-pub fn read(
+pub(crate) fn read(
     path: &Path,
     unit: Option<LengthUnit>,
     layer: Option<usize>,

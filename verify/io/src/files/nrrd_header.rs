@@ -8,7 +8,7 @@ use mtled::algebra::tensor::{Matrix3, Vector3};
 use std::collections::HashMap;
 
 /// Fields by name in lower case, as text.
-pub struct Header {
+pub(crate) struct Header {
     fields: HashMap<String, String>,
     /// Keys with their values, which other programs add.
     pairs: HashMap<String, String>,
@@ -18,7 +18,7 @@ pub struct Header {
 
 /// How the voxels are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Encoding {
+pub(crate) enum Encoding {
     Raw,
     Gzip,
     Text,
@@ -26,7 +26,7 @@ pub enum Encoding {
 
 impl Header {
     /// Splits the header into fields.
-    pub fn parse(bytes: &[u8]) -> Result<Header, Mistake> {
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Header, Mistake> {
         if !(bytes.starts_with(b"NRRD000")
             && bytes.get(7).is_some_and(|v| (b'1'..=b'5').contains(v)))
         {
@@ -69,7 +69,7 @@ impl Header {
     }
 
     /// A field by its name without spaces.
-    pub fn get(&self, name: &str) -> Option<&str> {
+    pub(crate) fn get(&self, name: &str) -> Option<&str> {
         self.fields.get(name).map(String::as_str)
     }
 
@@ -77,7 +77,7 @@ impl Header {
         self.get(name).ok_or(Mistake::MissingField { field })
     }
 
-    pub fn sizes(&self) -> Result<[usize; 3], Mistake> {
+    pub(crate) fn sizes(&self) -> Result<[usize; 3], Mistake> {
         match self.layers_and_sizes()? {
             (1, sizes) => Ok(sizes),
             _ => Err(Mistake::bad_field("dimension", "4", "3, one number per voxel")),
@@ -85,7 +85,7 @@ impl Header {
     }
 
     /// Numbers of a voxel, which 3D Slicer calls layers, and voxels along the three axes.
-    pub fn layers_and_sizes(&self) -> Result<(usize, [usize; 3]), Mistake> {
+    pub(crate) fn layers_and_sizes(&self) -> Result<(usize, [usize; 3]), Mistake> {
         let dimension = self.need("dimension", "dimension")?;
         if dimension != "3" && !(dimension == "4" && self.starts_with_layers()) {
             let expected = "3, one label per voxel, or 4, the first of layers as of 3D Slicer";
@@ -107,7 +107,7 @@ impl Header {
     }
 
     /// The segments that 3D Slicer names: layer, label, name.
-    pub fn segments(&self) -> Vec<(usize, u32, String)> {
+    pub(crate) fn segments(&self) -> Vec<(usize, u32, String)> {
         let of = |segment: usize, what: &str| self.pairs.get(&format!("Segment{segment}_{what}"));
         let segment = |segment: usize| {
             let layer = of(segment, "Layer")?.trim().parse().ok()?;
@@ -118,7 +118,7 @@ impl Header {
         (0..).map_while(segment).collect()
     }
 
-    pub fn scalar(&self) -> Result<Scalar, Mistake> {
+    pub(crate) fn scalar(&self) -> Result<Scalar, Mistake> {
         let text = self.need("type", "type")?;
         Ok(match text.to_lowercase().as_str() {
             "signed char" | "int8" | "int8_t" => Scalar::I8,
@@ -155,7 +155,7 @@ impl Header {
         })
     }
 
-    pub fn encoding(&self) -> Result<Encoding, Mistake> {
+    pub(crate) fn encoding(&self) -> Result<Encoding, Mistake> {
         let text = self.need("encoding", "encoding")?;
         match text.to_lowercase().as_str() {
             "raw" => Ok(Encoding::Raw),
@@ -170,7 +170,11 @@ impl Header {
     }
 
     /// Byte order, which numbers of one byte and text need not state.
-    pub fn byte_order(&self, scalar: Scalar, encoding: Encoding) -> Result<ByteOrder, Mistake> {
+    pub(crate) fn byte_order(
+        &self,
+        scalar: Scalar,
+        encoding: Encoding,
+    ) -> Result<ByteOrder, Mistake> {
         match self.get("endian").map(str::to_lowercase).as_deref() {
             Some("little") => Ok(ByteOrder::Little),
             Some("big") => Ok(ByteOrder::Big),
@@ -181,7 +185,7 @@ impl Header {
     }
 
     /// A count such as `byte skip`, 0 if absent; -1 is `None`.
-    pub fn skip(&self, name: &str, field: &'static str) -> Result<Option<u64>, Mistake> {
+    pub(crate) fn skip(&self, name: &str, field: &'static str) -> Result<Option<u64>, Mistake> {
         match self.get(name) {
             None => Ok(Some(0)),
             Some("-1") => Ok(None),
@@ -207,7 +211,7 @@ impl Header {
     }
 
     /// Centre of the first voxel and steps along the indices in RAS \[m\]; `unit` overrides the file's.
-    pub fn frame(&self, unit: Option<LengthUnit>) -> Result<(Vector3, Matrix3), Mistake> {
+    pub(crate) fn frame(&self, unit: Option<LengthUnit>) -> Result<(Vector3, Matrix3), Mistake> {
         let signs = self.to_ras()?;
         let origin = match self.get("spaceorigin") {
             Some(text) => {
@@ -246,13 +250,13 @@ impl Header {
     }
 
     /// The unit of length \[m\]; `unit` overrides the file's.
-    pub fn metres(&self, unit: Option<LengthUnit>) -> Result<f64, Mistake> {
+    pub(crate) fn metres(&self, unit: Option<LengthUnit>) -> Result<f64, Mistake> {
         Ok(unit.map_or_else(|| self.unit(), Ok)?.in_metres())
     }
 
     /// What turns the components of a vector into RAS: the columns of the measurement frame, or
     /// the axes of the space without one.
-    pub fn measurement_frame(&self) -> Result<Matrix3, Mistake> {
+    pub(crate) fn measurement_frame(&self) -> Result<Matrix3, Mistake> {
         let space = Matrix3::from_diagonal(&self.to_ras()?);
         let Some(text) = self.get("measurementframe") else {
             return Ok(space);
@@ -268,7 +272,7 @@ impl Header {
     }
 
     /// Reasons to doubt where the voxels lie.
-    pub fn doubts(&self) -> Vec<String> {
+    pub(crate) fn doubts(&self) -> Vec<String> {
         let none = "the header has no `space`, so that the file does not say which way its voxels \
                     run: x is taken as R, y as A, z as S; other programs may mirror such an image";
         if self.get("space").is_some() { Vec::new() } else { vec![none.to_string()] }

@@ -3,12 +3,12 @@
 use mtled::algebra::tensor::{Matrix3, Vector3};
 
 /// Cosines of steps that count as perpendicular are less.
-pub const PERPENDICULAR: f64 = 1e-4;
+pub(crate) const PERPENDICULAR: f64 = 1e-4;
 /// Images with larger ones are refused.
-pub const LARGEST_SHEAR: f64 = 0.5;
+pub(crate) const LARGEST_SHEAR: f64 = 0.5;
 
 /// The largest cosine between two steps \[–\].
-pub fn largest_cosine(directions: &Matrix3) -> f64 {
+pub(crate) fn largest_cosine(directions: &Matrix3) -> f64 {
     let pairs = [(0, 1), (0, 2), (1, 2)].map(|(first, second)| {
         let (a, b) = (directions.column(first), directions.column(second));
         (a.dot(&b) / (a.norm() * b.norm())).abs()
@@ -18,7 +18,7 @@ pub fn largest_cosine(directions: &Matrix3) -> f64 {
 
 /// Size, centre of the first voxel and steps of the grid around all voxels of a sheared one. Its
 /// steps are as long and turned as little as possible: by the rotation of the polar decomposition.
-pub fn upright(
+pub(crate) fn upright(
     size: [usize; 3],
     origin: &Vector3,
     directions: &Matrix3,

@@ -21,7 +21,7 @@ pub struct LabelMapFile {
 
 /// An image in metres from its parts, with what must be said about its labels. Where the
 /// steps are not perpendicular, labels are those of the nearest voxels on a grid that is.
-pub fn label_map(
+pub(crate) fn label_map(
     size: [usize; 3],
     origin: Vector3,
     directions: Matrix3,
@@ -55,7 +55,7 @@ pub fn label_map(
 }
 
 /// Whether directions span no volume.
-pub fn are_singular(directions: &Matrix3) -> bool {
+pub(crate) fn are_singular(directions: &Matrix3) -> bool {
     let volume: f64 = directions.column_iter().map(|step| step.norm()).product();
     !(directions.determinant().abs() > 1e-9 * volume && volume.is_finite())
 }
@@ -67,7 +67,7 @@ const LARGEST: f64 = u32::MAX as f64;
 const MOST_VOXELS: usize = 1 << 30;
 
 /// Number of voxels of an image, refused where it is 0 or more than can be used.
-pub fn voxel_count(sizes: &[usize]) -> Result<usize, Mistake> {
+pub(crate) fn voxel_count(sizes: &[usize]) -> Result<usize, Mistake> {
     let count = sizes.iter().try_fold(1usize, |product, &n| product.checked_mul(n));
     match count {
         Some(count) if (1..=MOST_VOXELS).contains(&count) => Ok(count),
@@ -77,14 +77,14 @@ pub fn voxel_count(sizes: &[usize]) -> Result<usize, Mistake> {
 
 /// Labels of an image, first index fastest, and what must be said about them.
 #[derive(Debug)]
-pub struct Labels {
+pub(crate) struct Labels {
     values: Vec<u32>,
     notes: Vec<String>,
 }
 
 impl Labels {
     /// From numbers; negative ones and NaN mean outside, as 0 does.
-    pub fn of(
+    pub(crate) fn of(
         numbers: impl IntoIterator<Item = f64>,
         scalar: Scalar,
         order: ByteOrder,

@@ -10,10 +10,10 @@ use quick_xml::events::{BytesStart, Event};
 use std::collections::HashMap;
 use std::io::Read;
 
-pub type Attributes = HashMap<String, String>;
+pub(crate) type Attributes = HashMap<String, String>;
 
 /// How binary arrays of a file are stored.
-pub struct Storage {
+pub(crate) struct Storage {
     order: ByteOrder,
     /// Type of the lengths in front of the data.
     lengths: Scalar,
@@ -21,7 +21,7 @@ pub struct Storage {
 }
 
 /// An array of a file: its piece, its section, its attributes, its text.
-pub struct Array {
+pub(crate) struct Array {
     pub piece: usize,
     pub section: &'static str,
     pub attributes: Attributes,
@@ -29,7 +29,7 @@ pub struct Array {
 }
 
 /// A file with all arrays of some sections.
-pub struct XmlFile<'a> {
+pub(crate) struct XmlFile<'a> {
     storage: Storage,
     pub arrays: Vec<Array>,
     tail: Option<&'a [u8]>,
@@ -37,7 +37,7 @@ pub struct XmlFile<'a> {
 
 impl<'a> XmlFile<'a> {
     /// Of a file that is called `format` where it is none.
-    pub fn parse(
+    pub(crate) fn parse(
         bytes: &'a [u8],
         sections: &[&'static str],
         format: &'static str,
@@ -54,7 +54,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The letters of an array of text, which has a code for each.
-    pub fn letters(&self, array: &Array) -> Result<String, Mistake> {
+    pub(crate) fn letters(&self, array: &Array) -> Result<String, Mistake> {
         let mut attributes = array.attributes.clone();
         attributes.insert("type".to_string(), "UInt8".to_string());
         let codes = self.storage.values(&attributes, &array.text, self.tail, usize::MAX)?;
@@ -65,18 +65,18 @@ impl<'a> XmlFile<'a> {
 
 impl Array {
     /// Its name, if it has one.
-    pub fn name(&self) -> Option<&str> {
+    pub(crate) fn name(&self) -> Option<&str> {
         self.attributes.get("Name").map(String::as_str)
     }
 
     /// Whether it has letters, no numbers.
-    pub fn is_text(&self) -> bool {
+    pub(crate) fn is_text(&self) -> bool {
         self.attributes.get("type").is_some_and(|kind| kind == "String")
     }
 }
 
 /// The XML of a file and the data appended to it.
-pub fn split(bytes: &[u8]) -> (&[u8], Option<&[u8]>) {
+pub(crate) fn split(bytes: &[u8]) -> (&[u8], Option<&[u8]>) {
     match find(bytes, b"<AppendedData") {
         Some(at) => (&bytes[..at], Some(&bytes[at..])),
         None => (bytes, None),
@@ -131,7 +131,7 @@ fn arrays(
     Ok((file, arrays))
 }
 
-pub fn damaged(encoding: &'static str, reason: String) -> Mistake {
+pub(crate) fn damaged(encoding: &'static str, reason: String) -> Mistake {
     Mistake::Undecodable { encoding, reason }
 }
 
@@ -139,7 +139,7 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
     bytes.windows(what.len()).position(|window| window == what)
 }
 
-pub fn attributes(tag: &BytesStart) -> Attributes {
+pub(crate) fn attributes(tag: &BytesStart) -> Attributes {
     let pairs = tag.attributes().flatten();
     pairs
         .map(|pair| {
@@ -176,7 +176,7 @@ fn base64_bytes(text: &[u8]) -> Result<Vec<u8>, Mistake> {
 
 impl Storage {
     /// That of a file, by the attributes of VTKFile.
-    pub fn of(file: &Attributes) -> Result<Storage, Mistake> {
+    pub(crate) fn of(file: &Attributes) -> Result<Storage, Mistake> {
         let get = |name: &str| file.get(name).map(String::as_str);
         Ok(Storage {
             order: match get("byte_order") {

@@ -46,7 +46,7 @@ pub enum Doubt {
 
 /// Whether the values of a family are those of the reference times a power of ten. The factor is
 /// that of the least squares.
-pub fn wrong_units(answered: &Answered, reference: &[ReferenceValues]) -> Option<Doubt> {
+pub(crate) fn wrong_units(answered: &Answered, reference: &[ReferenceValues]) -> Option<Doubt> {
     let families = [Family::Displacement, Family::Force, Family::Moment, Family::StrainEnergy];
     let names = ["the displacement", "the reaction", "the moment", "the strain energy"];
     families.into_iter().zip(names).find_map(|(family, name)| {
@@ -64,7 +64,7 @@ pub fn wrong_units(answered: &Answered, reference: &[ReferenceValues]) -> Option
 
 /// Whether a series of runs from coarse to fine looks as if no system had been solved. Answers
 /// that are the same are right where none `differs` from the reference.
-pub fn about_series(
+pub(crate) fn about_series(
     runs: &[SolverRun],
     reference: &[ReferenceValues],
     differs: bool,
@@ -113,27 +113,27 @@ fn telling(answered: &Answered, reference: &[ReferenceValues]) -> Vec<f64> {
 }
 
 /// Whether a run answers that nothing moves; of a case without probes, that nothing happens.
-pub fn is_nothing(run: &SolverRun, reference: &[ReferenceValues]) -> bool {
+pub(crate) fn is_nothing(run: &SolverRun, reference: &[ReferenceValues]) -> bool {
     let Some(answered) = run.outcome.answered() else { return false };
     telling(answered, reference).iter().all(|part| *part == 0.0)
 }
 
 /// Whether a run took more processor time than one thread can.
-pub fn about_threads(run: &SolverRun) -> Option<Doubt> {
+pub(crate) fn about_threads(run: &SolverRun) -> Option<Doubt> {
     let usage = run.usage?;
     let more = usage.cpu_s > THREADS * usage.wall_s + CLAIM_S;
     more.then(|| Doubt::Threads { threads: four_digits(usage.cpu_s / usage.wall_s) })
 }
 
 /// Whether a run tells more processor time apart than it has taken.
-pub fn about_time_apart(run: &SolverRun) -> Option<Doubt> {
+pub(crate) fn about_time_apart(run: &SolverRun) -> Option<Doubt> {
     let (apart, measured) = (run.apart_cpu_s()?, run.cpu_s()?);
     let possible = (0.0..=measured).contains(&apart);
     (!possible).then(|| Doubt::Apart { apart: four_digits(apart), measured: four_digits(measured) })
 }
 
 /// What a run claims and what was measured, where they differ strongly.
-pub fn false_claim(run: &SolverRun) -> Option<String> {
+pub(crate) fn false_claim(run: &SolverRun) -> Option<String> {
     let (claimed, measured) = (run.outcome.answered()?.claimed_cpu_s?, run.cpu_s()?);
     let difference = (claimed - measured).abs();
     (difference > CLAIM * measured && difference > CLAIM_S).then(|| {

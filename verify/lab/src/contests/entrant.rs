@@ -20,11 +20,11 @@ pub struct Entrant {
 }
 
 /// What a name must be, since folders and pages are called after it.
-pub const NAME_RULE: &str = "a name has 1 to 40 letters, digits, spaces, `-`, `_`, `+` or `.` and \
+pub(crate) const NAME_RULE: &str = "a name has 1 to 40 letters, digits, spaces, `-`, `_`, `+` or `.` and \
                              starts with a letter or a digit";
 
 /// Whether a text is the name of a solver.
-pub fn is_name(text: &str) -> bool {
+pub(crate) fn is_name(text: &str) -> bool {
     let allowed = |c: char| c.is_alphanumeric() || " -_+.".contains(c);
     text.chars().count() <= 40
         && text.chars().all(allowed)
@@ -83,7 +83,7 @@ impl Entrant {
     }
 
     /// The command with the two files in place.
-    pub fn words(&self, job: &Path, answer: &Path) -> Vec<String> {
+    pub(crate) fn words(&self, job: &Path, answer: &Path) -> Vec<String> {
         let (job, answer) = (job.to_string_lossy(), answer.to_string_lossy());
         let filled = |word: &String| word.replace(JOB, &job).replace(ANSWER, &answer);
         self.command.iter().map(filled).collect()

@@ -1,9 +1,7 @@
 //! Identities of the problems of the benchmark: a name with a version, and the hashes of what is
 //! asked and of what answers are compared with.
 
-use mtled_case::bundled::bundled_reference;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::sync::LazyLock;
 
 /// A problem of the benchmark. Where its inputs or its references change it becomes the next
@@ -42,27 +40,28 @@ pub fn benchmark() -> &'static [Identity] {
 
 impl Identity {
     /// The problem with these inputs.
-    pub fn of_inputs(inputs: &str) -> Option<&'static Identity> {
+    pub(crate) fn of_inputs(inputs: &str) -> Option<&'static Identity> {
         benchmark().iter().find(|identity| identity.inputs == inputs)
     }
-}
-
-/// SHA-256, in hexadecimal, of the files that a case is compared with.
-pub fn hash_of_references(case: &str, inputs: &str) -> String {
-    let mut hash = Sha256::new();
-    hash.update(bundled_reference(case).unwrap_or_default());
-    let finer = mtled_reference::FINEST_BLOCK;
-    if finer.contains(inputs) {
-        hash.update(finer);
-    }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::lab::store::Source;
-    use mtled_case::bundled::REFERENCES;
+    use mtled_case::bundled::{REFERENCES, bundled_reference};
+    use sha2::{Digest, Sha256};
+
+    /// SHA-256, in hexadecimal, of the files that a case is compared with.
+    fn hash_of_references(case: &str, inputs: &str) -> String {
+        let mut hash = Sha256::new();
+        hash.update(bundled_reference(case).unwrap_or_default());
+        let finer = mtled_reference::FINEST_BLOCK;
+        if finer.contains(inputs) {
+            hash.update(finer);
+        }
+        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
 
     #[test]
     fn every_bundled_reference_is_a_problem_whose_hashes_are_those_of_the_manifest() {

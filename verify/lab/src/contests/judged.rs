@@ -57,7 +57,7 @@ pub struct RunCost {
 
 /// Which CPU time counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Spent {
+pub(crate) enum Spent {
     /// That of the whole process.
     Process,
     /// That of the solution, without what programs tell apart.
@@ -66,7 +66,7 @@ pub enum Spent {
 
 impl Spent {
     /// CPU time \[s\] and error \[–\] of runs.
-    pub fn points(self, costs: &[RunCost]) -> Vec<(f64, f64)> {
+    pub(crate) fn points(self, costs: &[RunCost]) -> Vec<(f64, f64)> {
         let spent = |cost: &RunCost| match self {
             Spent::Process => cost.process_s,
             Spent::Solution => cost.solution_s,
@@ -75,7 +75,7 @@ impl Spent {
     }
 
     /// In captions.
-    pub fn label(self) -> &'static str {
+    pub(crate) fn label(self) -> &'static str {
         match self {
             Spent::Process => "CPU time of the whole process",
             Spent::Solution => "CPU time of the solution",
@@ -157,7 +157,7 @@ impl JudgedSolver {
 
 impl Judged<'_> {
     /// Which CPU time is compared: that of the solution where a program tells others apart.
-    pub fn spent(&self) -> Spent {
+    pub(crate) fn spent(&self) -> Spent {
         let mut costs = self.cases.iter().flat_map(|case| case.costs.iter().flatten());
         if costs.any(|cost| cost.solution_s < cost.process_s) {
             Spent::Solution
@@ -210,7 +210,7 @@ impl<'a> CaseRuns<'a> {
     }
 
     /// The error of a run in the group that is compared first.
-    pub fn error(&self, run: &SolverRun) -> Option<Difference> {
+    pub(crate) fn error(&self, run: &SolverRun) -> Option<Difference> {
         self.of.error(self.of.group, run.outcome.answered()?)
     }
 }

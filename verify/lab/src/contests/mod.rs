@@ -20,15 +20,13 @@ mod run_tables;
 mod tables;
 
 pub use contest::{Contest, absolute};
-pub use entrant::{Entrant, NotAnEntrant};
-pub use identity::{Identity, benchmark, hash_of_references};
-pub use judged::{CaseRuns, Judged, doubts, judge, problem_of};
+pub use entrant::Entrant;
+pub use identity::{Identity, benchmark};
+pub use judged::{Judged, doubts, judge, problem_of};
 pub use outcome::{Outcome, SolverRun};
 pub use own::solve_job;
 pub use pages::{History, write_pages};
-pub use problem::{ContestCase, NotASpacing, Spacing};
+pub use problem::{ContestCase, Spacing};
 pub use race::RaceList;
 pub use report::study;
-pub use results::{
-    LONGEST_RUN_S, Machine, Results, ResultsFault, Seen, StoredEnd, StoredRun, result_files,
-};
+pub use results::{LONGEST_RUN_S, Results, ResultsFault, Seen, StoredEnd, result_files};

@@ -41,7 +41,7 @@ enum Fault {
 
 /// The last lines of standard error.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LastWords(String);
+pub(crate) struct LastWords(String);
 
 impl std::fmt::Display for LastWords {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -60,7 +60,7 @@ impl LastWords {
 
 impl Outcome {
     /// What a stored end is worth, where the job had so many instants.
-    pub fn judged(ended: &StoredEnd, case: &Case, instants: usize) -> Outcome {
+    pub(crate) fn judged(ended: &StoredEnd, case: &Case, instants: usize) -> Outcome {
         match ended {
             StoredEnd::TimedOut => Outcome::TimedOut,
             StoredEnd::Fault(what) => Outcome::Faulty(what.clone()),
@@ -83,7 +83,7 @@ impl Outcome {
     }
 
     /// Who replied.
-    pub fn solver(&self) -> Option<&SolverName> {
+    pub(crate) fn solver(&self) -> Option<&SolverName> {
         match self {
             Outcome::Answered(answered) => Some(&answered.solver),
             Outcome::Refused(solver, _) => Some(solver),
@@ -107,7 +107,7 @@ impl Outcome {
 impl StoredEnd {
     /// Of a process that has ended; its answer is read. None where the user has stopped this
     /// program.
-    pub fn of(run: &ChildRun, answer: &Path) -> Option<StoredEnd> {
+    pub(crate) fn of(run: &ChildRun, answer: &Path) -> Option<StoredEnd> {
         let status = match run.ended {
             Ended::Stopped => return None,
             Ended::TimedOut => return Some(StoredEnd::TimedOut),
@@ -126,7 +126,7 @@ impl StoredEnd {
     }
 
     /// Of a program that could not be started.
-    pub fn not_started(error: &std::io::Error) -> StoredEnd {
+    pub(crate) fn not_started(error: &std::io::Error) -> StoredEnd {
         StoredEnd::Fault(format!("does not start: {}", printable(&error.to_string())))
     }
 }
@@ -176,12 +176,12 @@ pub struct SolverRun {
 
 impl SolverRun {
     /// Measured CPU time \[s\].
-    pub fn cpu_s(&self) -> Option<f64> {
+    pub(crate) fn cpu_s(&self) -> Option<f64> {
         self.usage.map(|usage| usage.cpu_s)
     }
 
     /// Processor time \[s\] that the program tells apart from that of the solution.
-    pub fn apart_cpu_s(&self) -> Option<f64> {
+    pub(crate) fn apart_cpu_s(&self) -> Option<f64> {
         self.outcome.answered()?.apart_cpu_s
     }
 }

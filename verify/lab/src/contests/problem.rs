@@ -112,7 +112,7 @@ impl ContestCase {
     }
 
     /// The error bar of the reference in the group that is compared first \[–\].
-    pub fn bar(&self) -> f64 {
+    pub(crate) fn bar(&self) -> f64 {
         self.reference.bar(&self.source.case, self.group)
     }
 }

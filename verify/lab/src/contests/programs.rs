@@ -12,7 +12,7 @@ use mtled_run::accuracy::Cost;
 
 /// The cheapest recipe of every program over mtled, a row per problem and error. None where mtled
 /// did not take part, or no program with several recipes.
-pub fn programs(all: &Judged) -> Option<Table> {
+pub(crate) fn programs(all: &Judged) -> Option<Table> {
     let default = all.solvers.iter().position(|solver| solver.name == OWN)?;
     let mut names: Vec<&str> = all.solvers.iter().map(|solver| &*solver.program).collect();
     names.sort_unstable();

@@ -78,7 +78,7 @@ fn check(all: &Judged, solver: usize) -> Check {
 }
 
 /// Error over CPU time, a panel per problem.
-pub fn overview(all: &Judged) -> Figure {
+pub(crate) fn overview(all: &Judged) -> Figure {
     let names: Vec<String> = all.solvers.iter().map(|solver| printable(&solver.name)).collect();
     let panels = all.cases.iter().map(|case| {
         let plot = plot(&names, case, all.spent(), SeriesStyle::Floor);
@@ -96,7 +96,12 @@ pub fn overview(all: &Judged) -> Figure {
 }
 
 /// Error over CPU time, a curve per program; the error bar of the reference as a line or a floor.
-pub fn plot(names: &[String], case: &CaseRuns, spent: Spent, bar_style: SeriesStyle) -> Plot {
+pub(crate) fn plot(
+    names: &[String],
+    case: &CaseRuns,
+    spent: Spent,
+    bar_style: SeriesStyle,
+) -> Plot {
     let mut series: Vec<Series> = Vec::new();
     let mut range = (f64::INFINITY, 0.0f64);
     for (n, name) in names.iter().enumerate() {
@@ -125,7 +130,7 @@ pub fn plot(names: &[String], case: &CaseRuns, spent: Spent, bar_style: SeriesSt
 }
 
 /// How it was measured, on which machines, and how each program was started.
-pub fn notes(all: &Judged) -> Vec<String> {
+pub(crate) fn notes(all: &Judged) -> Vec<String> {
     let machines = all
         .machines
         .iter()
@@ -149,7 +154,7 @@ pub fn notes(all: &Judged) -> Vec<String> {
 }
 
 /// Command and method of a program.
-pub fn about_solver(all: &Judged, n: usize) -> String {
+pub(crate) fn about_solver(all: &Judged, n: usize) -> String {
     let solver = &all.solvers[n];
     let answers = all.cases.iter().flat_map(|case| &case.runs[n]);
     let mut methods: Vec<&str> =

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Version of the layout.
-pub const RESULTS: u32 = 1;
+pub(crate) const RESULTS: u32 = 1;
 
 /// The runs of a solver on a problem.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -110,7 +110,7 @@ pub enum ResultsFault {
 
 impl StoredRun {
     /// The name under which a program replies.
-    pub fn program(&self) -> Option<&str> {
+    pub(crate) fn program(&self) -> Option<&str> {
         let StoredEnd::Reply(reply) = &self.ended else { return None };
         reply["solver"]["name"].as_str()
     }
@@ -236,7 +236,7 @@ impl Results {
 }
 
 /// Name of this program among the solvers.
-pub const OWN: &str = "mtled";
+pub(crate) const OWN: &str = "mtled";
 /// The longest time limit \[s\]: a week.
 pub const LONGEST_RUN_S: f64 = 604_800.0;
 /// What a process may take to be killed beyond its time limit \[s\].
@@ -251,7 +251,7 @@ const LENGTHS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 const LONGEST: u64 = 1 << 27;
 
 /// Whether a text is a day, YYYY-MM-DD.
-pub fn is_date(text: &str) -> bool {
+pub(crate) fn is_date(text: &str) -> bool {
     let parts: Vec<&str> = text.split('-').collect();
     let number = |part: &str, digits: usize| {
         let whole = part.len() == digits && part.bytes().all(|byte| byte.is_ascii_digit());

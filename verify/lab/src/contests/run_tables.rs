@@ -15,12 +15,12 @@ use mtled_run::accuracy::Group;
 const SIGNIFICANT: f64 = 2.0;
 
 /// A cell of text.
-pub fn label(text: impl Into<String>) -> Cell {
+pub(crate) fn label(text: impl Into<String>) -> Cell {
     Cell::Text(text.into())
 }
 
 /// All runs of a program.
-pub fn runs_of(name: &str, cases: &[CaseRuns], solver: usize) -> Table {
+pub(crate) fn runs_of(name: &str, cases: &[CaseRuns], solver: usize) -> Table {
     let rows = cases.iter().flat_map(|case| {
         case.runs[solver].iter().map(move |run| run_row(label(&case.of.id), case, run))
     });
@@ -28,7 +28,7 @@ pub fn runs_of(name: &str, cases: &[CaseRuns], solver: usize) -> Table {
 }
 
 /// All runs of a problem by programs with these names.
-pub fn runs_on(case: &CaseRuns, names: &[String]) -> Table {
+pub(crate) fn runs_on(case: &CaseRuns, names: &[String]) -> Table {
     let rows = case.runs.iter().zip(names).flat_map(|(runs, name)| {
         runs.iter().map(move |run| run_row(label(printable(name)), case, run))
     });
@@ -92,7 +92,7 @@ fn run_row(first: Cell, case: &CaseRuns, run: &SolverRun) -> Vec<Cell> {
 }
 
 /// Peak memory \[MB\]; an upper bound where the system cannot tell it from that of this program.
-pub fn memory_cell(usage: Option<Usage>) -> Cell {
+pub(crate) fn memory_cell(usage: Option<Usage>) -> Cell {
     let Some(usage) = usage else { return label("–") };
     let megabytes = usage.peak_memory_bytes as f64 / 1e6;
     if usage.peak_memory_bytes <= usage.least_memory_bytes {
@@ -103,7 +103,7 @@ pub fn memory_cell(usage: Option<Usage>) -> Cell {
 }
 
 /// Orders and doubts of a program, a row per case with an answer.
-pub fn orders_of(name: &str, cases: &[CaseRuns], solver: usize) -> Table {
+pub(crate) fn orders_of(name: &str, cases: &[CaseRuns], solver: usize) -> Table {
     let row = |case: &CaseRuns| {
         let answers = case.runs[solver].iter().filter(|run| run.outcome.answered().is_some());
         let errors: Vec<(f64, mtled_run::accuracy::Difference)> =

@@ -17,7 +17,7 @@ const BUDGETS_S: [f64; 4] = [0.1, 1.0, 10.0, 100.0];
 
 /// Counts of the endings of the runs of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Endings {
+pub(crate) struct Endings {
     pub runs: usize,
     pub answered: usize,
     pub refused: usize,
@@ -28,7 +28,7 @@ pub struct Endings {
 }
 
 /// The endings of a program on some cases.
-pub fn endings(cases: &[CaseRuns], solver: usize) -> Endings {
+pub(crate) fn endings(cases: &[CaseRuns], solver: usize) -> Endings {
     let mut endings = Endings::default();
     for case in cases {
         for run in &case.runs[solver] {
@@ -46,7 +46,7 @@ pub fn endings(cases: &[CaseRuns], solver: usize) -> Endings {
 }
 
 /// A row per program: who it is and how its runs ended.
-pub fn robustness(all: &Judged) -> Table {
+pub(crate) fn robustness(all: &Judged) -> Table {
     let row = |(n, entrant): (usize, &JudgedSolver)| {
         let counts = endings(&all.cases, n);
         let runs = || all.cases.iter().flat_map(|case| &case.runs[n]);
@@ -94,7 +94,7 @@ pub fn robustness(all: &Judged) -> Table {
 }
 
 /// CPU time at equal error, a column per program.
-pub fn equal_errors(all: &Judged, spent: Spent) -> Table {
+pub(crate) fn equal_errors(all: &Judged, spent: Spent) -> Table {
     let mut columns = vec![text("problem"), text("quantity"), text("rms error")];
     columns.extend(names(all).map(|name| number(&name, "s")));
     let title = match spent {
@@ -113,7 +113,7 @@ fn names(all: &Judged) -> impl Iterator<Item = String> {
 }
 
 /// What an error costs each program on a case.
-pub struct ErrorCosts<'a> {
+pub(crate) struct ErrorCosts<'a> {
     pub case: &'a CaseRuns<'a>,
     pub error: f64,
     /// \[program\]
@@ -121,7 +121,7 @@ pub struct ErrorCosts<'a> {
 }
 
 /// The errors above the error bar of the reference that a program reaches between two runs.
-pub fn error_costs<'a>(case: &'a CaseRuns<'a>, spent: Spent) -> Vec<ErrorCosts<'a>> {
+pub(crate) fn error_costs<'a>(case: &'a CaseRuns<'a>, spent: Spent) -> Vec<ErrorCosts<'a>> {
     let bar = case.of.bar();
     let swapped = |(cpu, error): (f64, f64)| (error, cpu);
     let series: Vec<Vec<(f64, f64)>> = case
@@ -148,7 +148,7 @@ fn costs_of(case: &CaseRuns, spent: Spent) -> Vec<Vec<Cell>> {
     error_costs(case, spent).iter().map(row).collect()
 }
 
-pub fn cost_cell(answered: bool, cost: Option<Cost>) -> Cell {
+pub(crate) fn cost_cell(answered: bool, cost: Option<Cost>) -> Cell {
     match cost {
         _ if !answered => label("–"),
         None => label("not reached"),
@@ -158,7 +158,7 @@ pub fn cost_cell(answered: bool, cost: Option<Cost>) -> Cell {
 }
 
 /// Error and CPU time of the finest answered run, a pair of columns per program.
-pub fn finest(all: &Judged) -> Table {
+pub(crate) fn finest(all: &Judged) -> Table {
     let mut columns = vec![text("problem"), text("quantity"), number("error bar", "1")];
     for name in names(all) {
         columns.push(number(&format!("{name}: rms error"), "1"));
@@ -201,7 +201,7 @@ fn short(outcome: &Outcome) -> &'static str {
 
 /// The smallest error that each program reaches within a CPU time, a table per time; below the
 /// error bar of the reference nothing is decided.
-pub fn budgets(all: &Judged) -> Vec<Table> {
+pub(crate) fn budgets(all: &Judged) -> Vec<Table> {
     BUDGETS_S.into_iter().map(|budget_s| best_errors(all, budget_s)).collect()
 }
 
@@ -234,7 +234,7 @@ fn best_errors(all: &Judged, budget_s: f64) -> Table {
 
 /// Where another program reaches an error for less, or alone: a row per problem and error. None
 /// where mtled did not take part.
-pub fn losses(all: &Judged) -> Option<Table> {
+pub(crate) fn losses(all: &Judged) -> Option<Table> {
     let own = all.solvers.iter().position(|solver| solver.name == OWN)?;
     let row = |at: &ErrorCosts| {
         let value = |n: usize| at.costs[n].map(|cost| cost.value);
@@ -268,7 +268,7 @@ pub fn losses(all: &Judged) -> Option<Table> {
 }
 
 /// At how many errors of all problems each program is the cheapest, and of how many it reaches.
-pub fn wins(all: &Judged) -> Table {
+pub(crate) fn wins(all: &Judged) -> Table {
     let at: Vec<ErrorCosts> =
         all.cases.iter().flat_map(|case| error_costs(case, Spent::Process)).collect();
     let row = |(n, solver): (usize, &JudgedSolver)| {

@@ -4,21 +4,21 @@ use mtled_case::scene::{Knob, Setting};
 use mtled_checks::study::Cell;
 
 /// Label of a knob that a run does not change.
-pub const AS_IN_CASE: &str = "as in the case";
+pub(crate) const AS_IN_CASE: &str = "as in the case";
 
 /// Name of a knob, such as "weight function".
-pub fn knob_label(knob: Knob) -> String {
+pub(crate) fn knob_label(knob: Knob) -> String {
     knob.name().replace('_', " ")
 }
 
 /// Knobs and their levels, separated by commas.
-pub fn settings_label<'a>(settings: impl Iterator<Item = &'a Setting>) -> String {
+pub(crate) fn settings_label<'a>(settings: impl Iterator<Item = &'a Setting>) -> String {
     let labels = settings.map(|setting| format!("{} {}", knob_label(setting.knob), setting.level));
     labels.collect::<Vec<_>>().join(", ")
 }
 
 /// A number, or a dash where there is none.
-pub fn optional(value: Option<f64>) -> Cell {
+pub(crate) fn optional(value: Option<f64>) -> Cell {
     value.map_or(Cell::Text("–".into()), Cell::Number)
 }
 

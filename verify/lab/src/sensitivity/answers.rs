@@ -12,7 +12,7 @@ const NOTHING: f64 = 1e-6;
 
 /// An answer.
 #[derive(Debug, Clone)]
-pub struct Asked {
+pub(crate) struct Asked {
     /// Such as `force/top`, the length of a vector, or `force/top.z`, a component.
     pub name: String,
     /// SI unit.
@@ -39,7 +39,7 @@ pub struct NoAnswer {
 
 /// The answers that `names` name, such as `force/top` or `force/top.z`; where there are none, those
 /// of all probes and supports without moments.
-pub fn asked(
+pub(crate) fn asked(
     case: &Case,
     simulation: &Simulation,
     names: &[String],
@@ -61,7 +61,7 @@ pub fn asked(
 
 /// Why answers cannot be asked for.
 #[derive(Debug)]
-pub enum AskedError {
+pub(crate) enum AskedError {
     /// A name.
     Name(NoAnswer),
     /// A probe outside of the body.

@@ -5,5 +5,5 @@ mod measure;
 mod numbers;
 mod text;
 
-pub use measure::{Sensitivities, Unmeasured, measure};
+pub use measure::{Unmeasured, measure};
 pub use text::{to_json, to_text};

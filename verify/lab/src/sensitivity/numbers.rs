@@ -28,7 +28,7 @@ pub struct Number {
 
 impl Number {
     /// Half of the distance of the two values between which it is varied.
-    pub fn step(&self) -> f64 {
+    pub(crate) fn step(&self) -> f64 {
         let step = STEP * self.value.abs();
         if self.key.ends_with(".poisson_ratio") {
             step.min(STEP_TO_HALF * (0.5 - self.value))

@@ -6,5 +6,5 @@ mod read;
 mod run;
 mod study;
 
-pub use init::{Draft, DraftCase, Limits, draft, find_cases};
-pub use read::{Suite, SuiteCase};
+pub use init::{Draft, Limits, draft, find_cases};
+pub use read::Suite;

@@ -183,7 +183,7 @@ impl SuiteCase {
     }
 
     /// Instants of the values of its runs \[s\].
-    pub fn times(&self) -> Result<Vec<f64>> {
+    pub(crate) fn times(&self) -> Result<Vec<f64>> {
         match &self.reference {
             Some(reference) => Ok(reference.times.clone()),
             None => (ReferenceSource::Own(REFINEMENT).times(&self.source))

@@ -18,13 +18,13 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 const BASELINE: &str = "our own earlier figure, by the band of the baseline";
 
 /// The runs of a case on one cloud.
-pub struct CaseRuns {
+pub(crate) struct CaseRuns {
     pub solve: RunRecord,
     pub patch: Option<RunRecord>,
 }
 
 /// The study of a case on one cloud.
-pub fn case_study(suite: &Suite, case: &SuiteCase, runs: &CaseRuns) -> Study {
+pub(crate) fn case_study(suite: &Suite, case: &SuiteCase, runs: &CaseRuns) -> Study {
     let (name, file) = (&case.source.name, suite.file.display());
     let mut study = Study {
         id: name.clone(),

@@ -11,20 +11,20 @@ use mtled::problem::{
 };
 
 /// When loads are complete \[s\]: at the end of a static problem, at half of a motion.
-pub fn ramp(scene: &Scene) -> Amplitude {
+pub(crate) fn ramp(scene: &Scene) -> Amplitude {
     let part = if scene.is_static() { 1.0 } else { 0.5 };
     Amplitude::Smooth { duration: part * duration(scene) }
 }
 
 /// How long a run lasts \[s\].
-pub fn duration(scene: &Scene) -> f64 {
+pub(crate) fn duration(scene: &Scene) -> f64 {
     match scene.way {
         Way::Newton => 1.0,
         Way::Motion { end, .. } => end * scene.wave_time(),
     }
 }
 
-pub fn conditions(scene: &Scene, frame: &Frame) -> Vec<EssentialCondition> {
+pub(crate) fn conditions(scene: &Scene, frame: &Frame) -> Vec<EssentialCondition> {
     let end = duration(scene);
     let condition = |(n, hold): (usize, &crate::scene::Hold)| EssentialCondition {
         name: format!("hold {n}"),
@@ -99,7 +99,7 @@ pub fn load(scene: &Scene, frame: &Frame, loads: &mut Loads) {
 }
 
 /// Adds the springs of a scene, and its hole with what fills it.
-pub fn load_more(scene: &Scene, frame: &Frame, loads: &mut Loads) {
+pub(crate) fn load_more(scene: &Scene, frame: &Frame, loads: &mut Loads) {
     if let Some(bed) = &scene.bed {
         let unit = scene.young_modulus / scene.size;
         loads.springs.push(Spring {
@@ -120,7 +120,7 @@ pub fn load_more(scene: &Scene, frame: &Frame, loads: &mut Loads) {
     }
 }
 
-pub fn obstacles(scene: &Scene, frame: &Frame) -> Vec<Obstacle> {
+pub(crate) fn obstacles(scene: &Scene, frame: &Frame) -> Vec<Obstacle> {
     let Some(Wall { round, gap, drift, rubs }) = scene.obstacle else { return Vec::new() };
     let mut below = frame.middle();
     below.y = -gap;
@@ -157,6 +157,6 @@ fn motions(scene: &Scene, frame: &Frame, top: &Vector3, drift: &Drift) -> Vec<Ri
 }
 
 /// A frictionless obstacle.
-pub fn solid(name: &str, shape: Shape) -> Obstacle {
+pub(crate) fn solid(name: &str, shape: Shape) -> Obstacle {
     Obstacle::new(name, shape)
 }

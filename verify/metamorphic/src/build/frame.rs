@@ -11,7 +11,7 @@ const UNEVEN: f64 = 0.9713;
 
 /// From coordinates over the size to places in space: x = size (Q X + shift).
 #[derive(Debug, Clone, Copy)]
-pub struct Frame {
+pub(crate) struct Frame {
     /// \[m\]
     pub size: f64,
     /// Rotation or mirror image that maps axes to axes.
@@ -26,7 +26,7 @@ pub struct Frame {
 
 impl Frame {
     /// The box with a corner at the origin and its edges along the axes.
-    pub fn home(scene: &Scene) -> Frame {
+    pub(crate) fn home(scene: &Scene) -> Frame {
         Frame {
             size: scene.size,
             turn: Matrix3::identity(),
@@ -38,7 +38,7 @@ impl Frame {
 
     /// One of the 48 rotations and mirror images that map axes to axes; of the eight that
     /// leave z in a plane.
-    pub fn turned(scene: &Scene, which: usize) -> Frame {
+    pub(crate) fn turned(scene: &Scene, which: usize) -> Frame {
         const ORDERS: [[usize; 3]; 6] =
             [[1, 0, 2], [0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0]];
         let (orders, signs) = if scene.components() == 2 { (2, 4) } else { (6, 8) };
@@ -51,32 +51,32 @@ impl Frame {
     }
 
     /// Middle of the box over the size, at home.
-    pub fn middle(&self) -> Vector3 {
+    pub(crate) fn middle(&self) -> Vector3 {
         0.5 * self.edges
     }
 
     /// A place \[m\].
-    pub fn point(&self, at: &Vector3) -> Vector3 {
+    pub(crate) fn point(&self, at: &Vector3) -> Vector3 {
         self.size * (self.turn * at + self.shift)
     }
 
     /// A direction.
-    pub fn direction(&self, along: &Vector3) -> Vector3 {
+    pub(crate) fn direction(&self, along: &Vector3) -> Vector3 {
         self.turn * along
     }
 
     /// A displacement \[m\].
-    pub fn length(&self, by: &Vector3) -> Vector3 {
+    pub(crate) fn length(&self, by: &Vector3) -> Vector3 {
         self.size * (self.turn * by)
     }
 
     /// A place over the size, at home, from a place in space \[m\].
-    pub fn home_of(&self, place: &Vector3) -> Vector3 {
+    pub(crate) fn home_of(&self, place: &Vector3) -> Vector3 {
         self.turn.transpose() * (place / self.size - self.shift)
     }
 
     /// The axis to which one is mapped.
-    pub fn axis(&self, axis: usize) -> usize {
+    pub(crate) fn axis(&self, axis: usize) -> usize {
         (0..3).find(|&to| self.turn[(to, axis)] != 0.0).unwrap_or(axis)
     }
 }

@@ -28,7 +28,7 @@ fn fibres(scene: &Scene, frame: &Frame) -> Option<Fibres> {
 
 /// A region with the material of a scene, `stiffness` times as stiff, its fibres, memory and
 /// tension.
-pub fn region(
+pub(crate) fn region(
     scene: &Scene,
     frame: &Frame,
     name: &str,
@@ -52,7 +52,7 @@ pub fn region(
 }
 
 /// The materials of the regions of a scene when all has relaxed that does.
-pub fn relaxed_materials(scene: &Scene) -> Result<Vec<Material>> {
+pub(crate) fn relaxed_materials(scene: &Scene) -> Result<Vec<Material>> {
     let left = scene.memory.map_or(1.0, |memory| 1.0 - memory.part);
     let half = scene.inclusion.map(|inclusion| inclusion.stiffness);
     half.into_iter().chain([1.0]).map(|stiffness| material(scene, stiffness, left)).collect()

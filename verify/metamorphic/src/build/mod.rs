@@ -5,12 +5,10 @@ mod frame;
 mod material;
 mod shape;
 
-pub use conditions::solid;
-pub use frame::Frame;
-pub use material::relaxed_materials;
-pub use shape::{
-    as_surface, as_voxels, closed_form_volume, hole, part, volume_of_hole, wedge_in_another_order,
-};
+pub(crate) use conditions::solid;
+pub(crate) use frame::Frame;
+pub(crate) use material::relaxed_materials;
+pub(crate) use shape::{as_surface, as_voxels, closed_form_volume, part, wedge_in_another_order};
 
 use crate::scene::{Basis, Cloud, Gradients, Scene, Way};
 use anyhow::Result;
@@ -24,7 +22,7 @@ use mtled::problem::{
 /// Residual of a static solution over its largest nodal force \[–\]: ten thousand times
 /// round-off, so that two ways to the same solution differ by no more than their
 /// condition times this.
-pub const RESIDUAL: f64 = 1e-12;
+pub(crate) const RESIDUAL: f64 = 1e-12;
 /// Of consistent gradients \[–\], for the same reason.
 const GRADIENT_TOLERANCE: f64 = 1e-11;
 /// Parts of the time in which materials with memory are followed.
@@ -33,12 +31,12 @@ const PARTS: usize = 4;
 const JITTER: f64 = 0.2;
 
 /// The problem of a scene at home.
-pub fn problem(scene: &Scene) -> Result<Problem> {
+pub(crate) fn problem(scene: &Scene) -> Result<Problem> {
     problem_in(scene, &Frame::home(scene))
 }
 
 /// The problem of a scene in a frame.
-pub fn problem_in(scene: &Scene, frame: &Frame) -> Result<Problem> {
+pub(crate) fn problem_in(scene: &Scene, frame: &Frame) -> Result<Problem> {
     let plane = scene.thickness.map(|thickness| Dimension::PlaneStrain {
         thickness: thickness * scene.size,
         z: frame.point(&frame.middle()).z,
@@ -59,7 +57,7 @@ pub fn problem_in(scene: &Scene, frame: &Frame) -> Result<Problem> {
 }
 
 /// Newton's method to a time \[s\]; few parts of it are enough for what compares with itself.
-pub fn newton(load_end: f64, tolerance: f64) -> Motion {
+pub(crate) fn newton(load_end: f64, tolerance: f64) -> Motion {
     Motion::Newton(Newton { load_end, tolerance, parts: PARTS })
 }
 

@@ -15,7 +15,7 @@ const BEYOND: f64 = 10.0;
 const VOXELS: f64 = 20.0;
 
 /// The body of a scene.
-pub fn body(scene: &Scene, frame: &Frame) -> Result<Shape> {
+pub(crate) fn body(scene: &Scene, frame: &Frame) -> Result<Shape> {
     let (edges, middle) = (frame.edges, frame.middle());
     let flat = scene.components() == 2;
     Ok(match scene.form {
@@ -83,7 +83,7 @@ fn upright(frame: &Frame, radius: f64) -> Shape {
 const HOLE: f64 = 0.5;
 
 /// What is cut out of the middle of a hollow body, so many times as large.
-pub fn hole(scene: &Scene, frame: &Frame, factor: f64) -> Shape {
+pub(crate) fn hole(scene: &Scene, frame: &Frame, factor: f64) -> Shape {
     let (middle, flat) = (frame.middle(), scene.components() == 2);
     let half = factor * HOLE;
     match scene.form {
@@ -106,7 +106,7 @@ pub fn hole(scene: &Scene, frame: &Frame, factor: f64) -> Shape {
 }
 
 /// The volume of the hole, in a plane of that of the slab \[m³\].
-pub fn volume_of_hole(scene: &Scene) -> f64 {
+pub(crate) fn volume_of_hole(scene: &Scene) -> f64 {
     let [x, y, z] = scene.edges;
     let unit = match (scene.form, scene.thickness) {
         (Form::Chamber, None) => HOLE.powi(3) * x * y * z,
@@ -185,7 +185,7 @@ fn surface((corners, triangles): Mesh) -> Result<Shape> {
 }
 
 /// The wedge of a scene at home, its triangles and vertices in another order.
-pub fn wedge_in_another_order(scene: &Scene) -> Result<Shape> {
+pub(crate) fn wedge_in_another_order(scene: &Scene) -> Result<Shape> {
     let (corners, triangles) = wedge(&Frame::home(scene));
     let last = corners.len() as u32 - 1;
     let corners = corners.into_iter().rev().collect();
@@ -194,14 +194,14 @@ pub fn wedge_in_another_order(scene: &Scene) -> Result<Shape> {
 }
 
 /// The box as triangles; `None` for other forms.
-pub fn as_surface(scene: &Scene, frame: &Frame) -> Option<Result<Shape>> {
+pub(crate) fn as_surface(scene: &Scene, frame: &Frame) -> Option<Result<Shape>> {
     let e = frame.edges;
     let corner = |x: f64, y: f64, z: f64| Vector3::new(x, y, z).component_mul(&e);
     (scene.form == Form::Box).then(|| surface(hexahedron(frame, corner)))
 }
 
 /// The box as voxels.
-pub fn as_voxels(scene: &Scene, frame: &Frame) -> Result<Shape> {
+pub(crate) fn as_voxels(scene: &Scene, frame: &Frame) -> Result<Shape> {
     let counts = scene.edges.map(|edge| (edge * VOXELS).round() as usize);
     let steps = Vector3::from_fn(|k, _| scene.edges[k] / counts[k] as f64);
     let directions = frame.size * frame.turn * Matrix3::from_diagonal(&steps);
@@ -211,7 +211,7 @@ pub fn as_voxels(scene: &Scene, frame: &Frame) -> Result<Shape> {
 }
 
 /// The volume of a form in space \[m³\], where a formula has it.
-pub fn closed_form_volume(scene: &Scene) -> Option<f64> {
+pub(crate) fn closed_form_volume(scene: &Scene) -> Option<f64> {
     let [x, y, z] = scene.edges;
     let round = 0.5 * x.min(y);
     let unit = match scene.form {
@@ -228,7 +228,7 @@ pub fn closed_form_volume(scene: &Scene) -> Option<f64> {
 }
 
 /// A ball about a place over the size.
-pub fn ball(frame: &Frame, centre: &Vector3, radius: f64) -> Selector {
+pub(crate) fn ball(frame: &Frame, centre: &Vector3, radius: f64) -> Selector {
     let shape = Shape::Sphere { centre: frame.point(centre), radius: frame.size * radius };
     Selector::Inside { shape, tolerance: frame.tolerance }
 }
@@ -240,7 +240,7 @@ fn side(frame: &Frame, point: &Vector3, normal: &Vector3) -> Selector {
 }
 
 /// What is of another material.
-pub fn piece(frame: &Frame, inclusion: &Inclusion) -> Selector {
+pub(crate) fn piece(frame: &Frame, inclusion: &Inclusion) -> Selector {
     // Not in the middle of cells or nodes, where round-off would choose.
     let at = 0.513 * frame.edges;
     let axis = usize::from(inclusion.axis);
@@ -264,7 +264,7 @@ pub fn piece(frame: &Frame, inclusion: &Inclusion) -> Selector {
 }
 
 /// A part of the body of a scene.
-pub fn part(scene: &Scene, frame: &Frame, part: &Part) -> Selector {
+pub(crate) fn part(scene: &Scene, frame: &Frame, part: &Part) -> Selector {
     let edges = frame.edges;
     let end = |axis: usize, upper: bool| {
         let outwards = Vector3::ith(axis, if upper { 1.0 } else { -1.0 });

@@ -14,7 +14,7 @@ use mtled::motion::step::{add_following, external_force};
 use mtled::problem::{self, Problem};
 use mtled::{Continue, Observer, Simulation};
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "forces_add_up",
         claim: "At rest reactions, loads and contact forces add up to nothing",

@@ -9,7 +9,7 @@ use mtled::geometry::{Selector, Shape};
 use mtled::problem::{Cavity, Pressure, Problem};
 use mtled::{Discretisation, Model, Vector3};
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "pressure_of_a_fluid",
         claim: "The pressure that a fluid finds, stated as a load on the same walls, moves the body alike",

@@ -11,7 +11,7 @@ use mtled::problem::Region;
 const SAME_BODY: &str = "Distances, panels and cells are those of the one body, to round-off, times a \
                          condition of up to 1e5";
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "united_with_itself",
         claim: "A ∪ A is A",

@@ -13,7 +13,7 @@ const NEARLY_LINEAR: &str = "Terms of second order in the strain, some 1e-5 here
 /// Factor by which loads are made small.
 const SMALL: f64 = 1e-4;
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "reversed",
         claim: "Reversed loads of the linear law reverse the displacements",

@@ -14,7 +14,8 @@ mod springs;
 mod subject;
 mod viscosity;
 
-pub use subject::{Compared, Relation, Subject};
+pub(crate) use subject::Subject;
+pub use subject::{Compared, Relation};
 
 /// All relations.
 pub fn all() -> impl Iterator<Item = &'static Relation> {
@@ -34,9 +35,4 @@ pub fn all() -> impl Iterator<Item = &'static Relation> {
     ]
     .into_iter()
     .flatten()
-}
-
-/// The relation of a name.
-pub fn by_name(name: &str) -> Option<&'static Relation> {
-    all().find(|relation| relation.name == name)
 }

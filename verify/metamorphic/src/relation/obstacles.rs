@@ -8,7 +8,7 @@ use crate::scene::{Drift, Place, Rubs, Scene, Wall};
 use mtled::Vector3;
 use mtled::problem::{Field, Motion, Prescribed, Relaxation};
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "obstacle_or_body_that_moves",
         claim: "Whether an obstacle moves against a body or the body against it, the body is pressed alike",

@@ -11,7 +11,7 @@ use mtled::problem::{BodyForce, Pressure, Region, Spring, Traction};
 const SUMS: &str = "Sums in another order differ by round-off, 1e-16 of their largest member, \
                     times a condition of up to 1e5; Newton's method ends at 1e-12 of the largest force";
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "order_of_nodes",
         claim: "Nodes in another order have the same displacements",

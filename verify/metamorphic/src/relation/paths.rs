@@ -21,7 +21,7 @@ fn relaxation(mass: RelaxationMass) -> Relaxation {
     Relaxation { tolerance: TOLERANCE, max_steps: MOST_STEPS, mass, ..Relaxation::default() }
 }
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "newton_against_relaxation",
         claim: "Newton's method and relaxation end at the same place",

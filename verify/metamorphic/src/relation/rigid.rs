@@ -13,7 +13,7 @@ const OBJECTIVE: &str = "Stresses and energies do not know a rigid motion of the
 /// Rotation \[rad\].
 const ANGLE: f64 = 0.6;
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "everything_shifted",
         claim: "A translation on top of every prescribed displacement moves the body by it",

@@ -9,7 +9,7 @@ use mtled::{Continue, Observer, Shape, Vector3};
 
 const EXACT: &str = "The same operations in the same order";
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "obstacle_out_of_reach",
         claim: "An obstacle that the body never comes near changes nothing",
@@ -93,7 +93,7 @@ fn bits(first: &Answer, other: &Answer) -> Compared {
 }
 
 /// A problem with one thing changed.
-pub fn changed(subject: &Subject, change: impl FnOnce(&mut Problem)) -> Problem {
+pub(crate) fn changed(subject: &Subject, change: impl FnOnce(&mut Problem)) -> Problem {
     let mut problem = subject.problem();
     change(&mut problem);
     problem

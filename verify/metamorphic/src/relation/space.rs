@@ -11,7 +11,7 @@ use mtled::{Discretisation, Vector3};
 const ROUND_OFF: &str = "Coordinates are rounded to 1e-16 of their size, times a condition of up to \
                          1e6; no cell, node or panel may hang on the last digit";
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "translated",
         claim: "The same nodes elsewhere in space move in the same way",

@@ -17,7 +17,7 @@ const COARSE: u32 = 3;
 /// Of springs on which the body swings as if it were rigid \[–\].
 const SOFT: f64 = 1e-9;
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "springs_that_hold",
         claim: "Springs 300 times as stiff as the body hold a surface nearly as a condition does",

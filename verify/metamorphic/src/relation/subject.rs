@@ -51,7 +51,7 @@ const NOTHING: f64 = 1e-9;
 
 impl Subject {
     /// A scene that has an answer of which relations say something.
-    pub fn new(scene: &Scene) -> Result<Subject, String> {
+    pub(crate) fn new(scene: &Scene) -> Result<Subject, String> {
         let problem = build::problem(scene).map_err(|error| error.to_string())?;
         let base = answer(problem).map_err(|error| error.to_string())?;
         if base.is_doubtful() {
@@ -77,12 +77,12 @@ impl Subject {
     }
 
     /// The problem of the scene.
-    pub fn problem(&self) -> Problem {
+    pub(crate) fn problem(&self) -> Problem {
         self.base.problem.clone()
     }
 
     /// The same with the nodes given one by one.
-    pub fn given(&self) -> Option<&Answer> {
+    pub(crate) fn given(&self) -> Option<&Answer> {
         let made = || {
             let given = with_nodes(self.problem(), self.free_nodes()?);
             answer(given).ok().filter(|answer| !answer.is_doubtful() && !answer.is_loose())
@@ -91,12 +91,12 @@ impl Subject {
     }
 
     /// Compares the first answer with that to another problem.
-    pub fn with(&self, other: Problem, view: &View) -> Option<Compared> {
+    pub(crate) fn with(&self, other: Problem, view: &View) -> Option<Compared> {
         Some(against(&self.base, other, view))
     }
 
     /// Compares the answer on given nodes with that to another problem on the same.
-    pub fn given_with(&self, mut other: Problem, view: &View) -> Option<Compared> {
+    pub(crate) fn given_with(&self, mut other: Problem, view: &View) -> Option<Compared> {
         let given = self.given()?;
         if !matches!(other.recipe.cloud, Cloud::Given { .. }) {
             other.recipe.cloud = given.problem.recipe.cloud.clone();
@@ -107,7 +107,7 @@ impl Subject {
     /// As [`Subject::given_with`], motions in steps of one length: the critical step is iterated from
     /// random nodal values, which go with the number of a node and do not turn with the body, and
     /// of contact another step makes another motion.
-    pub fn stepped_with(&self, mut other: Problem, view: &View) -> Option<Compared> {
+    pub(crate) fn stepped_with(&self, mut other: Problem, view: &View) -> Option<Compared> {
         let given = self.given()?;
         if self.scene.is_static() {
             return self.given_with(other, view);
@@ -124,7 +124,7 @@ impl Subject {
     }
 
     /// The problem in another frame with the same nodes, and how its answer is to be seen.
-    pub fn in_frame(&self, frame: &Frame) -> Option<(Problem, View)> {
+    pub(crate) fn in_frame(&self, frame: &Frame) -> Option<(Problem, View)> {
         let home = Frame::home(&self.scene);
         let moved = build::problem_in(&self.scene, frame).ok()?;
         let nodes = self.given()?.positions().iter();
@@ -135,13 +135,13 @@ impl Subject {
 }
 
 /// A problem whose nodes are given one by one.
-pub fn with_nodes(mut problem: Problem, nodes: Vec<Vector3>) -> Problem {
+pub(crate) fn with_nodes(mut problem: Problem, nodes: Vec<Vector3>) -> Problem {
     problem.recipe.cloud = Cloud::Given { nodes };
     problem
 }
 
 /// Compares an answer with that to another problem.
-pub fn against(base: &Answer, other: Problem, view: &View) -> Compared {
+pub(crate) fn against(base: &Answer, other: Problem, view: &View) -> Compared {
     match answer(other) {
         Err(error) => Compared::Refused(error.to_string()),
         Ok(other) if other.is_doubtful() => {

@@ -9,7 +9,7 @@ use mtled::material::{PronySeries, PronyTerm};
 /// Relaxation time over that of the run, of what does not relax in it \[–\].
 const NEVER: f64 = 1e12;
 
-pub const RELATIONS: &[Relation] = &[
+pub(crate) const RELATIONS: &[Relation] = &[
     Relation {
         name: "term_in_two_halves",
         claim: "Two terms of half the size and of the same time relax as one does",

@@ -6,8 +6,8 @@ mod more;
 mod part;
 mod smaller;
 
-pub use more::{Bed, Drift, Filling, Memory, Piece, Rubs, Wall};
-pub use part::Part;
+pub(crate) use more::{Bed, Drift, Filling, Memory, Piece, Rubs, Wall};
+pub(crate) use part::Part;
 
 use serde::{Deserialize, Serialize};
 
@@ -100,12 +100,12 @@ pub enum Law {
 
 impl Law {
     /// Whether it has fibres.
-    pub fn has_fibres(self) -> bool {
+    pub(crate) fn has_fibres(self) -> bool {
         matches!(self, Law::Muscle | Law::Sheets)
     }
 
     /// Whether its isochoric stress stands apart, so that it can relax.
-    pub fn is_split(self) -> bool {
+    pub(crate) fn is_split(self) -> bool {
         matches!(self, Law::Isochoric | Law::Ogden | Law::Muscle | Law::Sheets)
     }
 }
@@ -142,7 +142,7 @@ pub enum Form {
 
 impl Form {
     /// Whether its surface encloses a hole.
-    pub fn has_hole(self) -> bool {
+    pub(crate) fn has_hole(self) -> bool {
         matches!(self, Form::Hollow | Form::Chamber)
     }
 }
@@ -256,38 +256,38 @@ pub enum Push {
 
 impl Scene {
     /// Displacement components.
-    pub fn components(&self) -> usize {
+    pub(crate) fn components(&self) -> usize {
         if self.thickness.is_some() { 2 } else { 3 }
     }
 
     /// Time that a wave takes along the size \[s\].
-    pub fn wave_time(&self) -> f64 {
+    pub(crate) fn wave_time(&self) -> f64 {
         self.size / (self.young_modulus / self.density).sqrt()
     }
 
     /// Whether it is a static problem.
-    pub fn is_static(&self) -> bool {
+    pub(crate) fn is_static(&self) -> bool {
         self.way == Way::Newton
     }
 
     /// Fraction of the bulk energy that is projected on patches is not zero.
-    pub fn has_patches(&self) -> bool {
+    pub(crate) fn has_patches(&self) -> bool {
         self.projected && self.poisson_ratio > 0.3 && self.law != Law::Linear
     }
 
     /// Whether what it comes to rest at depends on its way there, and not on the end alone.
-    pub fn depends_on_way(&self) -> bool {
+    pub(crate) fn depends_on_way(&self) -> bool {
         self.memory.is_some() || self.obstacle.is_some_and(|wall| wall.rubs != Rubs::Free)
     }
 
     /// Whether a load goes with the panels of its surface.
-    pub fn loads_surface(&self) -> bool {
+    pub(crate) fn loads_surface(&self) -> bool {
         let on_panels = |push: &Push| matches!(push, Push::Traction(..) | Push::Pressure(..));
         self.bed.is_some() || self.filling.is_some() || self.pushes.iter().any(on_panels)
     }
 
     /// Whether what holds it and loads it is there from the start to the end.
-    pub fn has_releases(&self) -> bool {
+    pub(crate) fn has_releases(&self) -> bool {
         self.holds.iter().any(|hold| hold.release.is_some())
     }
 

@@ -23,7 +23,7 @@ struct Stored {
 
 /// Displacements of a quantity, x, y, z of each position in turn.
 #[derive(Debug)]
-pub struct FinestField {
+pub(crate) struct FinestField {
     /// Its key in a reference file.
     pub quantity: String,
     /// \[m\]
@@ -37,7 +37,7 @@ pub struct FinestField {
 /// The finest field of a case, if one is stored for exactly this problem. At the bonded
 /// edges no element converges faster than with order 1, so that the error bar is
 /// |f₁ − f₂|/(r − 1) after the last refinement by r.
-pub fn finest(case: &Case) -> Result<Option<FinestField>> {
+pub(crate) fn finest(case: &Case) -> Result<Option<FinestField>> {
     let stored: Stored = serde_json::from_str(mtled_reference::FINEST_BLOCK)
         .context("reference/finest/bonded_block.json")?;
     if stored.problem_hash != case.problem_hash {

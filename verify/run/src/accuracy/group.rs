@@ -69,7 +69,7 @@ impl Group {
     }
 
     /// The kind of its quantities.
-    pub fn family(self) -> Family {
+    pub(crate) fn family(self) -> Family {
         match self {
             Group::Displacement | Group::CentreOfMass => Family::Displacement,
             Group::Force => Family::Force,

@@ -13,7 +13,6 @@ mod values;
 
 pub use difference::{Difference, difference};
 pub use equal_error::{Cost, cost_at};
-pub use finest::{FinestField, finest};
 pub use group::Group;
 pub use own_reference::{own_reference_text, stored_reference};
 pub use own_runs::from_own_runs;

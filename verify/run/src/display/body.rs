@@ -29,7 +29,7 @@ const MOST_REFINEMENTS: usize = 3;
 
 /// A mesh that fills the body, to look at and never to compute on.
 #[derive(Debug, Clone)]
-pub struct DisplayMesh {
+pub(crate) struct DisplayMesh {
     /// Its cells, each with its region.
     pub mesh: Mesh,
     /// Whether a vertex is on the boundary.
@@ -41,7 +41,7 @@ pub struct DisplayMesh {
 /// The display mesh of the body of a problem with this many nodes, whose volume \[m³\] is known.
 /// Its lattice has about eight boxes per node for small bodies, one for large ones and at most
 /// 60 000 in all, and is refined where thin parts would be lost.
-pub fn display_mesh(
+pub(crate) fn display_mesh(
     problem: &Problem,
     nodes: usize,
     volume: f64,
@@ -71,13 +71,17 @@ pub fn display_mesh(
 }
 
 /// Boxes of the lattice in a body with this many nodes, unless thin parts need more.
-pub fn expected_boxes(nodes: f64) -> f64 {
+pub(crate) fn expected_boxes(nodes: f64) -> f64 {
     (PER_NODE * nodes).min(BOXES).max(nodes).min(MOST_BOXES)
 }
 
 /// The cells of a lattice of steps of about `edge` \[m\] inside a solid, which is a cross-section
 /// in a plane.
-pub fn body_mesh(shape: &Shape, dimension: &Dimension, edge: f64) -> Result<Mesh, GeometryError> {
+pub(crate) fn body_mesh(
+    shape: &Shape,
+    dimension: &Dimension,
+    edge: f64,
+) -> Result<Mesh, GeometryError> {
     let unbounded = GeometryError::Unbounded { shape: "body" };
     let (mut lower, mut upper) = shape.bounding_box().ok_or(unbounded)?;
     if let Dimension::PlaneStrain { z, .. } = dimension {

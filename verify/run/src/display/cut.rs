@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// What a vertex was made of: the fraction `t` of the way from one vertex to another; 0 for a
 /// vertex that was there before.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parents {
+pub(crate) struct Parents {
     pub from: u32,
     pub to: u32,
     pub t: f64,
@@ -22,7 +22,11 @@ const LEFT: f64 = 1e-4;
 
 /// Where a level is zero between two points at which it has values of opposite signs: the
 /// fraction of the way from the first, by regula falsi and bisection in turn.
-pub fn crossing(level: impl Fn(&Vector3) -> f64, ends: [&Vector3; 2], values: [f64; 2]) -> f64 {
+pub(crate) fn crossing(
+    level: impl Fn(&Vector3) -> f64,
+    ends: [&Vector3; 2],
+    values: [f64; 2],
+) -> f64 {
     let ([mut a, mut b], [mut f_a, mut f_b]) = ([0.0, 1.0], values);
     let secant = |a: f64, b: f64, f_a: f64, f_b: f64| a + (b - a) * f_a / (f_a - f_b);
     let mut t = secant(a, b, f_a, f_b);
@@ -42,7 +46,7 @@ pub fn crossing(level: impl Fn(&Vector3) -> f64, ends: [&Vector3; 2], values: [f
 }
 
 /// Edges of cells whose ends lie on opposite sides, the lower number first, in ascending order.
-pub fn crossed_edges(mesh: &Mesh, values: &[f64]) -> Vec<[u32; 2]> {
+pub(crate) fn crossed_edges(mesh: &Mesh, values: &[f64]) -> Vec<[u32; 2]> {
     let mut edges = Vec::new();
     for cell in mesh.iter() {
         for (n, &a) in cell.iter().enumerate() {
@@ -61,7 +65,7 @@ pub fn crossed_edges(mesh: &Mesh, values: &[f64]) -> Vec<[u32; 2]> {
 /// The cells cut along the zero level of `values` \[vertex\], which `level` is everywhere: the new
 /// mesh, whether each of its cells lies inside, where the level is negative, and what its
 /// vertices are made of. A cell with all vertices on the level is inside if its centre is.
-pub fn split(
+pub(crate) fn split(
     mesh: &Mesh,
     values: &[f64],
     level: &(dyn Fn(&Vector3) -> f64 + Sync),
@@ -108,7 +112,7 @@ pub fn split(
 }
 
 /// The part of a mesh where a level is negative, and what its vertices are made of.
-pub fn cut_away(
+pub(crate) fn cut_away(
     mesh: &Mesh,
     values: &[f64],
     level: &(dyn Fn(&Vector3) -> f64 + Sync),

@@ -20,7 +20,7 @@ struct Notch {
 /// Adds a cell wherever two sides of the boundary make a notch in which the solid has none: a
 /// lattice cuts a sharp edge into steps, of which only the tips are on the edge. Returns whether
 /// there were any.
-pub fn fill_notches(mesh: &mut Mesh, shape: &Shape, edge: f64) -> bool {
+pub(crate) fn fill_notches(mesh: &mut Mesh, shape: &Shape, edge: f64) -> bool {
     let sides = mesh.boundary();
     let mut meeting: HashMap<[u32; 2], Vec<(u32, u32)>> = HashMap::new();
     let mut order: Vec<[u32; 2]> = Vec::new();

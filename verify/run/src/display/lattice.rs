@@ -25,7 +25,7 @@ const TRIANGLES: [[usize; 3]; 2] = [[0, 1, 3], [0, 3, 2]];
 /// A lattice over the bounding box of a solid, whose sides are planes of the lattice: a box has
 /// exact faces.
 #[derive(Debug, Clone)]
-pub struct Lattice {
+pub(crate) struct Lattice {
     lower: Vector3,
     step: Vector3,
     /// Boxes along each axis; 0 across a plane.
@@ -35,7 +35,7 @@ pub struct Lattice {
 impl Lattice {
     /// A lattice with steps of about `edge` \[m\] between two corners; flat where they have the
     /// same z.
-    pub fn new(lower: Vector3, upper: Vector3, edge: f64) -> Lattice {
+    pub(crate) fn new(lower: Vector3, upper: Vector3, edge: f64) -> Lattice {
         let extent = upper - lower;
         let plane = extent.z <= 0.0;
         let count: [usize; 3] = std::array::from_fn(|axis| match axis {
@@ -47,7 +47,7 @@ impl Lattice {
     }
 
     /// Number of its boxes, near the solid or not.
-    pub fn boxes(lower: &Vector3, upper: &Vector3, edge: f64) -> f64 {
+    pub(crate) fn boxes(lower: &Vector3, upper: &Vector3, edge: f64) -> f64 {
         let axes = (upper - lower).map(|extent| (extent / edge).round().max(2.0));
         if upper.z <= lower.z { axes.x * axes.y } else { axes.product() }
     }
@@ -66,12 +66,12 @@ impl Lattice {
     }
 
     /// Volume \[m³\] or area \[m²\] of a cell.
-    pub fn cell_measure(&self) -> f64 {
+    pub(crate) fn cell_measure(&self) -> f64 {
         if self.is_plane() { self.step.x * self.step.y / 2.0 } else { self.step.product() / 6.0 }
     }
 
     /// A bit for each side of the lattice that a vertex of it is on.
-    pub fn sides(&self, X: &Vector3) -> u8 {
+    pub(crate) fn sides(&self, X: &Vector3) -> u8 {
         let (low, high) = (self.lower, self.at(self.count));
         let axes = if self.is_plane() { 0..2 } else { 0..3 };
         axes.map(|k| u8::from(X[k] == low[k]) << k | u8::from(X[k] == high[k]) << (k + 3)).sum()
@@ -79,7 +79,7 @@ impl Lattice {
 
     /// Signed distance \[m\] with faces of the solid that lie on sides of the lattice a little
     /// inside of it: where such a face ends, the level changes its sign along the side.
-    pub fn level(&self, shape: &Shape, X: &Vector3) -> f64 {
+    pub(crate) fn level(&self, shape: &Shape, X: &Vector3) -> f64 {
         let inset = INSET * self.step;
         let (low, high) = (self.lower + inset, self.at(self.count) - inset);
         shape.signed_distance(&X.sup(&low).inf(&high))
@@ -87,7 +87,7 @@ impl Lattice {
 
     /// The cells of the blocks that may have a part of the solid inside, with the level of each
     /// vertex \[m\]; cells without a vertex inside are left out.
-    pub fn cells(&self, shape: &Shape) -> (Mesh, Vec<f64>) {
+    pub(crate) fn cells(&self, shape: &Shape) -> (Mesh, Vec<f64>) {
         let blocks = self.count.map(|n| n.div_ceil(BLOCK).max(1));
         let near: Vec<[usize; 3]> = (0..blocks.iter().product::<usize>())
             .into_par_iter()

@@ -19,27 +19,27 @@ pub struct Mesh {
 
 impl Mesh {
     /// Without vertices and cells.
-    pub fn empty(corners: usize) -> Mesh {
+    pub(crate) fn empty(corners: usize) -> Mesh {
         Mesh { corners, vertices: Vec::new(), cells: Vec::new(), regions: Vec::new() }
     }
 
     /// The cells, each by its vertices.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+    pub(crate) fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> {
         self.cells.chunks_exact(self.corners)
     }
 
     /// Number of cells.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.cells.len() / self.corners
     }
 
     /// Whether there are no cells.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
 
     /// A cell by its vertices.
-    pub fn cell(&self, index: usize) -> &[u32] {
+    pub(crate) fn cell(&self, index: usize) -> &[u32] {
         &self.cells[self.corners * index..self.corners * (index + 1)]
     }
 
@@ -54,19 +54,19 @@ impl Mesh {
     }
 
     /// Volume \[m³\] or area \[m²\] of all cells.
-    pub fn volume(&self) -> f64 {
+    pub(crate) fn volume(&self) -> f64 {
         self.iter().map(|cell| self.measure(cell)).sum()
     }
 
     /// Mean of the corners of a cell \[m\].
-    pub fn centre(&self, cell: &[u32]) -> Vector3 {
+    pub(crate) fn centre(&self, cell: &[u32]) -> Vector3 {
         let sum: Vector3 = cell.iter().map(|&n| self.vertices[n as usize]).sum();
         sum / cell.len() as f64
     }
 
     /// Sides that belong to one cell only, anticlockwise seen from outside: triangles, in a plane
     /// edges with the body on their left; each with the number of its cell.
-    pub fn boundary(&self) -> Vec<(Vec<u32>, usize)> {
+    pub(crate) fn boundary(&self) -> Vec<(Vec<u32>, usize)> {
         let mut sides: Vec<([u32; 3], u32, u32)> = Vec::with_capacity(self.cells.len());
         for (index, cell) in self.iter().enumerate() {
             for (number, side) in SIDES[self.corners - 3].iter().take(self.corners).enumerate() {
@@ -88,7 +88,7 @@ impl Mesh {
     }
 
     /// The cells around each vertex.
-    pub fn cells_around(&self) -> CellsAround {
+    pub(crate) fn cells_around(&self) -> CellsAround {
         let mut starts = vec![0; self.vertices.len() + 1];
         for &vertex in &self.cells {
             starts[vertex as usize + 1] += 1;
@@ -105,7 +105,7 @@ impl Mesh {
     }
 
     /// Takes away the vertices that no cell has, and says which are left.
-    pub fn drop_unused_vertices(&mut self) -> Vec<u32> {
+    pub(crate) fn drop_unused_vertices(&mut self) -> Vec<u32> {
         let mut used = vec![false; self.vertices.len()];
         self.cells.iter().for_each(|&vertex| used[vertex as usize] = true);
         let mut number = vec![0; used.len()];
@@ -126,14 +126,14 @@ const SIDES: [[[usize; 3]; 4]; 2] =
     [[[0, 1, 3], [1, 2, 3], [2, 0, 3], [3, 3, 3]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]];
 
 /// The cells around vertices.
-pub struct CellsAround {
+pub(crate) struct CellsAround {
     starts: Vec<usize>,
     cells: Vec<u32>,
 }
 
 impl CellsAround {
     /// Those of a vertex.
-    pub fn of(&self, vertex: usize) -> &[u32] {
+    pub(crate) fn of(&self, vertex: usize) -> &[u32] {
         &self.cells[self.starts[vertex]..self.starts[vertex + 1]]
     }
 }

@@ -10,10 +10,10 @@ mod regions;
 mod sharpen;
 mod snap;
 
-pub use body::{DisplayMesh, display_mesh, expected_boxes};
-pub use cut::{Parents, cut_away};
+pub(crate) use body::{DisplayMesh, display_mesh, expected_boxes};
+pub(crate) use cut::{Parents, cut_away};
 pub use mesh::Mesh;
-pub use regions::solid;
+pub(crate) use regions::solid;
 
 #[cfg(test)]
 mod tests;

@@ -14,7 +14,7 @@ use std::sync::Arc;
 const AROUND: usize = 16;
 
 /// What a selection takes of a body; `None` where that is no solid.
-pub fn solid(part: &Selector, body: &Shape) -> Option<Shape> {
+pub(crate) fn solid(part: &Selector, body: &Shape) -> Option<Shape> {
     let selected = selected(part, body)?;
     // What both have: one without what is left of it without the other. The first bounds it.
     let (first, second) = match (part, selected.bounding_box()) {
@@ -58,7 +58,12 @@ const NONE: u16 = u16::MAX;
 
 /// Cuts cells along the surfaces of the regions and gives each its region: the first that has
 /// it. Selections that are no solids take whole cells, by their centres.
-pub fn into_regions(mesh: &mut Mesh, regions: &[Region], body: &Shape, dimension: &Dimension) {
+pub(crate) fn into_regions(
+    mesh: &mut Mesh,
+    regions: &[Region],
+    body: &Shape,
+    dimension: &Dimension,
+) {
     mesh.regions.fill(NONE);
     let last = regions.len().saturating_sub(1);
     for (number, region) in regions.iter().enumerate().take(last) {

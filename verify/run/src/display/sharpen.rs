@@ -37,7 +37,7 @@ struct Face {
 
 /// Moves vertices of the boundary of a mesh with cells of about `edge` \[m\] to where the planes
 /// of the faces around them meet.
-pub fn sharpen(mesh: &mut Mesh, shape: &Shape, edge: f64) {
+pub(crate) fn sharpen(mesh: &mut Mesh, shape: &Shape, edge: f64) {
     if !has_edges(shape) {
         return;
     }

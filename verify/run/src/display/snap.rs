@@ -21,7 +21,7 @@ struct Candidate {
 }
 
 /// How vertices may move.
-pub struct Freedom {
+pub(crate) struct Freedom {
     /// Those that stay where they are.
     pub fixed: Vec<bool>,
     /// A bit for each side of the lattice that a vertex is on, and stays on.
@@ -30,7 +30,7 @@ pub struct Freedom {
 
 impl Freedom {
     /// All vertices may move but those that are fixed.
-    pub fn but(fixed: Vec<bool>) -> Freedom {
+    pub(crate) fn but(fixed: Vec<bool>) -> Freedom {
         Freedom { sides: vec![0; fixed.len()], fixed }
     }
 }
@@ -38,7 +38,7 @@ impl Freedom {
 /// Moves vertices that are near to the zero of `level`, of which they have `values`, onto it
 /// where no cell around becomes too small, and sets their values to 0; those of fixed vertices
 /// too, which stay where they are.
-pub fn snap(
+pub(crate) fn snap(
     mesh: &mut Mesh,
     values: &mut [f64],
     level: &(dyn Fn(&Vector3) -> f64 + Sync),
@@ -70,7 +70,7 @@ pub fn snap(
 }
 
 /// Moves a vertex unless a cell around it would keep less than a fraction of its measure.
-pub fn moved(
+pub(crate) fn moved(
     mesh: &mut Mesh,
     around: &CellsAround,
     vertex: usize,

@@ -5,5 +5,5 @@ mod measure;
 mod text;
 
 pub use files::write_modes_of;
-pub use measure::{Found, Unfound, find_modes};
+pub use measure::{Unfound, find_modes};
 pub use text::{to_json, to_text};

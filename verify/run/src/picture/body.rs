@@ -30,7 +30,7 @@ impl Body {
     }
 
     /// Displacement \[vertex\] \[m\]; none where there is no such field.
-    pub fn displacement(&self) -> Vec<Vector3> {
+    pub(crate) fn displacement(&self) -> Vec<Vector3> {
         match self.field(DISPLACEMENT).filter(|field| field.components == 3) {
             Some(field) => field.values.chunks(3).map(Vector3::from_column_slice).collect(),
             None => vec![Vector3::zeros(); self.mesh.vertices.len()],
@@ -40,7 +40,7 @@ impl Body {
 
 impl Field {
     /// One number per vertex: the size of a vector, the largest of principal values.
-    pub fn scalars(&self) -> Vec<f64> {
+    pub(crate) fn scalars(&self) -> Vec<f64> {
         let principal = self.name.starts_with("principal");
         let scalar = |values: &[f64]| match values {
             [value] => *value,
@@ -58,7 +58,7 @@ impl Field {
     }
 
     /// Its unit; empty for pure numbers and what is not known.
-    pub fn unit(&self) -> &'static str {
+    pub(crate) fn unit(&self) -> &'static str {
         match self.name.as_str() {
             DISPLACEMENT | "displacement_error_bar" | "contact_gap" | "nodal_spacing" => "m",
             "von_mises_stress" | "pressure" | "cauchy_stress" | "contact_pressure" => "Pa",
@@ -67,7 +67,7 @@ impl Field {
     }
 
     /// Whether its colours start at zero.
-    pub fn from_zero(&self) -> bool {
+    pub(crate) fn from_zero(&self) -> bool {
         matches!(
             self.name.as_str(),
             DISPLACEMENT | "displacement_error_bar" | "von_mises_stress" | "contact_pressure"

@@ -9,19 +9,19 @@ pub struct Direction(pub Vector3);
 
 impl Direction {
     /// From the front, the right and above.
-    pub fn oblique() -> Direction {
+    pub(crate) fn oblique() -> Direction {
         Direction(Vector3::new(0.55, -1.0, 0.55))
     }
 
     /// From above, for bodies in a plane.
-    pub fn above() -> Direction {
+    pub(crate) fn above() -> Direction {
         Direction(Vector3::z())
     }
 }
 
 /// Unit vectors to the right, upwards and towards the viewer.
 #[derive(Debug, Clone, Copy)]
-pub struct Camera {
+pub(crate) struct Camera {
     pub right: Vector3,
     pub up: Vector3,
     pub towards: Vector3,
@@ -29,7 +29,7 @@ pub struct Camera {
 
 impl Camera {
     /// z is up, and y where one looks along z.
-    pub fn new(direction: Direction) -> Camera {
+    pub(crate) fn new(direction: Direction) -> Camera {
         let towards = direction.0.try_normalize(0.0).unwrap_or_else(Vector3::z);
         let upright = if towards.z.abs() > 0.999 { Vector3::y() } else { Vector3::z() };
         let right = upright.cross(&towards).normalize();
@@ -37,7 +37,7 @@ impl Camera {
     }
 
     /// To the right, upwards and towards the viewer \[m\].
-    pub fn seen(&self, x: &Vector3) -> Vector3 {
+    pub(crate) fn seen(&self, x: &Vector3) -> Vector3 {
         Vector3::new(x.dot(&self.right), x.dot(&self.up), x.dot(&self.towards))
     }
 }

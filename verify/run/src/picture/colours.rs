@@ -1,6 +1,6 @@
 //! Colours of values and of regions.
 
-pub type Colour = [f64; 3];
+pub(crate) type Colour = [f64; 3];
 
 /// Viridis at equal steps (van der Walt, Smith 2015).
 const VIRIDIS: [[u8; 3]; 10] = [
@@ -33,7 +33,7 @@ fn unit(colour: [u8; 3]) -> Colour {
 }
 
 /// The colour at a fraction of the scale from 0 to 1.
-pub fn viridis(fraction: f64) -> Colour {
+pub(crate) fn viridis(fraction: f64) -> Colour {
     let last = VIRIDIS.len() - 1;
     let place = fraction.clamp(0.0, 1.0) * last as f64;
     let low = (place as usize).min(last - 1);
@@ -42,7 +42,7 @@ pub fn viridis(fraction: f64) -> Colour {
 }
 
 /// The colour of one of several regions. The last one, which is what no other has taken, is grey.
-pub fn of_region(region: u16, regions: usize) -> Colour {
+pub(crate) fn of_region(region: u16, regions: usize) -> Colour {
     let number = usize::from(region);
     if number + 1 >= regions {
         unit(REGIONS[0])
@@ -52,17 +52,17 @@ pub fn of_region(region: u16, regions: usize) -> Colour {
 }
 
 /// The colour of a region, as text.
-pub fn region_colour(region: usize, regions: usize) -> String {
+pub(crate) fn region_colour(region: usize, regions: usize) -> String {
     hexadecimal(of_region(region as u16, regions))
 }
 
 /// `#rrggbb`.
-pub fn hexadecimal(colour: Colour) -> String {
+pub(crate) fn hexadecimal(colour: Colour) -> String {
     let [r, g, b] = colour.map(byte);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// 0 to 255.
-pub fn byte(part: f64) -> u8 {
+pub(crate) fn byte(part: f64) -> u8 {
     (255.0 * part.clamp(0.0, 1.0)).round() as u8
 }

@@ -12,9 +12,11 @@ mod svg;
 
 pub use body::{Body, Field};
 pub use camera::Direction;
-pub use colours::region_colour;
-pub use panel::{Choice, Panel, Shown, panels};
-pub use svg::{bar_svg, panel_svg, picture_svg};
+pub(crate) use colours::region_colour;
+pub(crate) use panel::Panel;
+pub use panel::{Choice, Shown, panels};
+pub use svg::picture_svg;
+pub(crate) use svg::{bar_svg, panel_svg};
 
 #[cfg(test)]
 mod tests;

@@ -12,7 +12,7 @@ const FINER: usize = 2;
 
 /// What part of a plane is seen, and in how many pixels.
 #[derive(Debug, Clone, Copy)]
-pub struct Window {
+pub(crate) struct Window {
     /// Middle, to the right and upwards \[m\].
     pub middle: [f64; 2],
     /// Length of a pixel \[m\].
@@ -23,7 +23,7 @@ pub struct Window {
 
 /// Colours with opacity.
 #[derive(Debug, Clone)]
-pub struct Pixels {
+pub(crate) struct Pixels {
     pub size: [usize; 2],
     /// From the left, then from the top: red, green, blue, opacity.
     pub bytes: Vec<u8>,
@@ -37,7 +37,7 @@ struct Fine {
 }
 
 /// Draws triangles, the colour of which is a function of value and region.
-pub fn draw(
+pub(crate) fn draw(
     triangles: &[Triangle],
     camera: &Camera,
     window: &Window,
@@ -140,7 +140,7 @@ impl Pixels {
     }
 
     /// Draws the outline of another picture of the same size above this one.
-    pub fn outline(&mut self, other: &Pixels) {
+    pub(crate) fn outline(&mut self, other: &Pixels) {
         let [width, height] = self.size;
         for row in 1..height.saturating_sub(1) {
             for column in 1..width.saturating_sub(1) {
@@ -157,7 +157,7 @@ impl Pixels {
     }
 
     /// A PNG file.
-    pub fn png(&self) -> Result<Vec<u8>> {
+    pub(crate) fn png(&self) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let [width, height] = self.size.map(|n| n as u32);
         let mut encoder = png::Encoder::new(&mut bytes, width, height);

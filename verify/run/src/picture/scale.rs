@@ -21,7 +21,7 @@ pub struct Scale {
 
 impl Scale {
     /// The scale of the values of a field.
-    pub fn of(field: &Field, values: &[f64]) -> Scale {
+    pub(crate) fn of(field: &Field, values: &[f64]) -> Scale {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let at = |part: f64| {
@@ -47,12 +47,12 @@ impl Scale {
     }
 
     /// Where a value lies on the scale, from 0 to 1 between its ends.
-    pub fn fraction(&self, value: f64) -> f64 {
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
         (value - self.low) / (self.high - self.low)
     }
 
     /// Round values between the ends, in the unit that is written.
-    pub fn ticks(&self) -> Vec<f64> {
+    pub(crate) fn ticks(&self) -> Vec<f64> {
         let (low, high) = (self.low * self.factor, self.high * self.factor);
         let rough = (high - low) / 5.0;
         let power = 10f64.powf(rough.log10().floor());

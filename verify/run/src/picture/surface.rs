@@ -10,7 +10,7 @@ const SMOOTH: f64 = 0.75;
 
 /// A corner of a triangle as it is drawn.
 #[derive(Debug, Clone, Copy)]
-pub struct Corner {
+pub(crate) struct Corner {
     /// Where it is drawn \[m\].
     pub at: Vector3,
     /// Towards the outside.
@@ -21,14 +21,14 @@ pub struct Corner {
 
 /// A triangle of the boundary, or of a plane body.
 #[derive(Debug, Clone, Copy)]
-pub struct Triangle {
+pub(crate) struct Triangle {
     pub corners: [Corner; 3],
     pub region: u16,
 }
 
 /// The triangles that show a mesh whose vertices are drawn at `places` \[m\] with these values:
 /// its boundary in space, all of it in a plane.
-pub fn triangles(mesh: &Mesh, places: &[Vector3], values: &[f64]) -> Vec<Triangle> {
+pub(crate) fn triangles(mesh: &Mesh, places: &[Vector3], values: &[f64]) -> Vec<Triangle> {
     let sides: Vec<(Vec<u32>, usize)> = match mesh.corners {
         3 => mesh.iter().map(<[u32]>::to_vec).zip(0..).collect(),
         _ => mesh.boundary(),

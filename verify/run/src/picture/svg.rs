@@ -63,12 +63,12 @@ fn round_length(most: f64) -> (f64, String) {
 }
 
 /// A panel as a picture of its own, without its title.
-pub fn panel_svg(panel: &Panel) -> String {
+pub(crate) fn panel_svg(panel: &Panel) -> String {
     svg(panel.size.map(|n| n as f64), &panel.title, &image(panel, [0.0, 0.0]))
 }
 
 /// The bar that explains the colours.
-pub fn bar_svg(scale: &Scale) -> String {
+pub(crate) fn bar_svg(scale: &Scale) -> String {
     svg(BAR_PICTURE, &title(scale), &bar(scale, [LEFT, 4.0]))
 }
 

@@ -9,7 +9,7 @@ use mtled_checks::report::four_digits;
 use serde_json::{Value, json};
 
 /// `contacts` of `result.json`.
-pub fn contacts_json(case: &Case, results: &[ContactResult]) -> Vec<Value> {
+pub(crate) fn contacts_json(case: &Case, results: &[ContactResult]) -> Vec<Value> {
     let obstacles = case.problem.obstacles.iter().zip(results);
     obstacles
         .map(|(obstacle, result)| {
@@ -34,7 +34,7 @@ pub fn contacts_json(case: &Case, results: &[ContactResult]) -> Vec<Value> {
 }
 
 /// A line for each obstacle.
-pub fn contacts_text(case: &Case, results: &[ContactResult]) -> Vec<String> {
+pub(crate) fn contacts_text(case: &Case, results: &[ContactResult]) -> Vec<String> {
     let line = |(obstacle, result): (&mtled::problem::Obstacle, &ContactResult)| {
         let name = printable(&obstacle.name);
         if result.nodes == 0 {
@@ -56,7 +56,7 @@ pub fn contacts_text(case: &Case, results: &[ContactResult]) -> Vec<String> {
 
 /// The gap to the nearest obstacle \[m\] at time `t` \[s\] at positions that have moved by `displacement`
 /// \[position\]\[x, y, z\] \[m\].
-pub fn contact_gaps(
+pub(crate) fn contact_gaps(
     (plan, t): (&ContactPlan, f64),
     positions: &[Vector3],
     displacement: &[f64],

@@ -86,7 +86,7 @@ fn refuse_beyond(footprint: Footprint, available: f64) -> Result<(), MemoryShort
 }
 
 /// Peak memory, in total, per point and per node, beside the estimate.
-pub fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
+pub(crate) fn memory_text(case: &Case, solved: &Solved) -> Option<String> {
     let peak = peak_memory()? as f64;
     let (d, model) = (&solved.simulation.discretisation, &solved.simulation.model);
     let (nodes, points) = (model.positions.len() as f64, d.supports.len() as f64);

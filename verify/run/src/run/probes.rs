@@ -61,7 +61,7 @@ pub fn centres_of_mass(problem: &Problem, discretisation: &Discretisation) -> Ve
 }
 
 /// A line for every lattice that reaches beyond the body.
-pub fn left_out_text(case: &Case) -> Vec<String> {
+pub(crate) fn left_out_text(case: &Case) -> Vec<String> {
     let reaching = case.probes.iter().filter(|probe| probe.kind.left_out() > 0);
     let line = |probe: &Probe| {
         format!(

@@ -191,7 +191,10 @@ impl<'a> Recorder<'a> {
     }
 
     /// Calls `report(progress, step)` during the run, which it can end.
-    pub fn with_progress(mut self, report: &'a dyn Fn(f64, usize) -> Continue) -> Recorder<'a> {
+    pub(crate) fn with_progress(
+        mut self,
+        report: &'a dyn Fn(f64, usize) -> Continue,
+    ) -> Recorder<'a> {
         self.progress = Some(report);
         self
     }

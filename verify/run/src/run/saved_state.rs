@@ -36,7 +36,7 @@ pub struct SavedState {
 
 impl SavedState {
     /// Of a model.
-    pub fn new(model: &Model, state: &State) -> SavedState {
+    pub(crate) fn new(model: &Model, state: &State) -> SavedState {
         SavedState { body: fingerprint(model), state: state.clone() }
     }
 
@@ -89,13 +89,13 @@ impl SavedState {
 }
 
 /// Whether a name is that of a state of a run.
-pub fn is_state(name: &str) -> bool {
+pub(crate) fn is_state(name: &str) -> bool {
     let number = name.strip_prefix("state_").and_then(|rest| rest.strip_suffix(".json"));
     number.is_some_and(|number| number.parse::<usize>().is_ok())
 }
 
 /// Writes states to `state_1.json`, `state_2.json`, … in a folder.
-pub fn write_states(states: &[SavedState], dir: &Path) -> Result<()> {
+pub(crate) fn write_states(states: &[SavedState], dir: &Path) -> Result<()> {
     for (number, saved) in states.iter().enumerate() {
         let path = dir.join(format!("state_{}.json", number + 1));
         write_atomically(&path, saved.text()?.as_bytes())?;

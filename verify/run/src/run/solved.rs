@@ -29,7 +29,7 @@ impl Solved {
     ///
     /// # Errors
     /// Those of [`Simulation::run`], with the simulation at the last state that it reached.
-    pub fn of(
+    pub(crate) fn of(
         mut simulation: Simulation,
         observer: &mut dyn Observer,
     ) -> Result<Solved, Box<(Error, Simulation)>> {
@@ -52,14 +52,14 @@ impl Solved {
 
     /// The smallest J of the patches on which changes of volume are projected, if any are, at the
     /// end \[–\].
-    pub fn smallest_patch_jacobian(&self) -> Option<f64> {
+    pub(crate) fn smallest_patch_jacobian(&self) -> Option<f64> {
         let Simulation { model, discretisation, state, .. } = &self.simulation;
         smallest_patch_jacobian(model, discretisation, &state.displacement)
     }
 
     /// J at points over the whole run. Where changes of volume are projected on patches, the volume is
     /// that of the patches, at the end, and both are named.
-    pub fn smallest_jacobian_text(&self) -> String {
+    pub(crate) fn smallest_jacobian_text(&self) -> String {
         let at_points = four_digits(self.summary.smallest_jacobian.jacobian);
         match self.smallest_patch_jacobian() {
             Some(of_patches) => format!(

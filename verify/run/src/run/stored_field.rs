@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Name of the file in the folder of a run.
-pub const FIELD_FILE: &str = "displacement_field.json";
+pub(crate) const FIELD_FILE: &str = "displacement_field.json";
 
 /// Version of the layout of the file.
 const SCHEMA_VERSION: u32 = 1;
@@ -110,7 +110,7 @@ impl StoredField {
     }
 
     /// Writes it to the folder of a run.
-    pub fn write(&self, folder: &Path) -> Result<()> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<()> {
         let text = printable_json(&serde_json::to_string(self)?) + "\n";
         write_atomically(&folder.join(FIELD_FILE), text.as_bytes())
     }
@@ -156,7 +156,7 @@ impl StoredField {
     }
 
     /// Reference positions \[node\] \[m\].
-    pub fn nodes(&self) -> Vec<Vector3> {
+    pub(crate) fn nodes(&self) -> Vec<Vector3> {
         self.nodes_m.iter().map(|X| Vector3::from(*X)).collect()
     }
 }

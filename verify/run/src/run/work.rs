@@ -41,7 +41,7 @@ impl Work {
     }
 
     /// A line for people.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         format!(
             "  {} evaluations of the internal force ({} for the critical step), {:.2e} points and {:.2e} \
              neighbours visited, {} GB read; {} iterations for the gradients",

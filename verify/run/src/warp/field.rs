@@ -97,13 +97,13 @@ impl DisplacementField {
     }
 
     /// Smallest influence radius of a node over the dilation \[m\].
-    pub fn smallest_spacing(&self, dilation: f64) -> f64 {
+    pub(crate) fn smallest_spacing(&self, dilation: f64) -> f64 {
         let radii = self.approximation.influence_radius.iter();
         radii.fold(f64::INFINITY, |least, radius| least.min(*radius)) / dilation
     }
 
     /// Corners of the box around the nodes \[m\].
-    pub fn node_bounds(&self) -> (Vector3, Vector3) {
+    pub(crate) fn node_bounds(&self) -> (Vector3, Vector3) {
         corners(self.nodes())
     }
 

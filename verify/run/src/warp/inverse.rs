@@ -8,7 +8,7 @@ use mtled::algebra::tensor::{Matrix3, Vector3};
 pub const TOLERANCE: f64 = 1e-7;
 
 /// Iterations after which a point counts as one without a source.
-pub const MOST_ITERATIONS: usize = 200;
+pub(crate) const MOST_ITERATIONS: usize = 200;
 
 /// Evaluations of the field after which secants are given up.
 const MOST_SECANTS: usize = 30;

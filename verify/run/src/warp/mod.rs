@@ -10,6 +10,6 @@ mod surfaces;
 pub use deform::{Deformed, deform, forward_field, nodes_outside};
 pub use error::WarpError;
 pub use field::DisplacementField;
-pub use inverse::{MOST_ITERATIONS, Source, TOLERANCE, source_of};
+pub use inverse::{TOLERANCE, source_of};
 pub use landmarks::{MovedLandmark, move_landmarks, to_csv};
 pub use surfaces::{RegionSurface, region_surfaces};

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 const MOST: i64 = 1000;
 
 #[derive(Debug, Args)]
-pub struct FrequenciesArgs {
+pub(crate) struct FrequenciesArgs {
     /// Case file (TOML), or name of a bundled case. What its conditions prescribe counts as held; its
     /// loads and obstacles are left out; springs and fluids count with their stiffness.
     case: PathBuf,
@@ -38,7 +38,7 @@ enum Masses {
     Lumped,
 }
 
-pub fn frequencies(arguments: &FrequenciesArgs, common: &Common) -> Result<u8> {
+pub(crate) fn frequencies(arguments: &FrequenciesArgs, common: &Common) -> Result<u8> {
     let case = load(&arguments.case, &arguments.set.overrides)?;
     let masses = match arguments.mass {
         Masses::Consistent => MassKind::Consistent,

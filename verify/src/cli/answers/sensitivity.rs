@@ -11,7 +11,7 @@ use mtled_lab::sensitivity::{Unmeasured, measure, to_json, to_text};
 use mtled_run::run::{audit_doubts, ensure_fits};
 
 #[derive(Debug, Args)]
-pub struct SensitivityArgs {
+pub(crate) struct SensitivityArgs {
     /// Case file (TOML), or name of a bundled case. Its solution is static, without friction.
     case: String,
     #[command(flatten)]
@@ -27,7 +27,7 @@ pub struct SensitivityArgs {
     check: bool,
 }
 
-pub fn sensitivity(arguments: &SensitivityArgs, common: &Common) -> Result<u8> {
+pub(crate) fn sensitivity(arguments: &SensitivityArgs, common: &Common) -> Result<u8> {
     let folder = tempfile::tempdir().context("cannot make a folder for a bundled case")?;
     let source = Source::find(&arguments.case, folder.path(), &arguments.set.overrides)?;
     ensure_fits(&source.case)?;

@@ -11,7 +11,7 @@ use mtled_run::run::load;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
-pub struct UnloadArgs {
+pub(crate) struct UnloadArgs {
     /// Case file (TOML), or name of a bundled case, whose shape is that under its pressures and
     /// uniform body forces.
     case: PathBuf,
@@ -35,7 +35,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-pub fn unload(arguments: &UnloadArgs, common: &Common) -> Result<u8> {
+pub(crate) fn unload(arguments: &UnloadArgs, common: &Common) -> Result<u8> {
     let case = load(&arguments.case, &arguments.set.overrides)?;
     let bar = progress_bar(common);
     let notify = |fraction: f64, count: usize| {

@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-pub struct CheckArgs {
+pub(crate) struct CheckArgs {
     /// Files of results, or folders of them.
     #[arg(required = true)]
     results: Vec<PathBuf>,
@@ -33,7 +33,7 @@ struct Verdict {
 
 /// Says of every file whether it is believed, and how its runs ended. Exit code 1 where one is not
 /// believed, 3 where answers are doubtful.
-pub fn check(arguments: &CheckArgs, common: &Common) -> Result<u8> {
+pub(crate) fn check(arguments: &CheckArgs, common: &Common) -> Result<u8> {
     let folder = tempfile::tempdir().context("cannot make a folder for the bundled cases")?;
     let cases = problems(&arguments.own, folder.path())?;
     let mut seen = Seen::default();

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Runs a contest, stores its results and publishes them.
-pub fn held(contest: Contest, out: &Path, common: &Common) -> Result<u8> {
+pub(crate) fn held(contest: Contest, out: &Path, common: &Common) -> Result<u8> {
     let start = Instant::now();
     ensure_writable(out)?;
     let mut all = Vec::new();
@@ -29,7 +29,7 @@ pub fn held(contest: Contest, out: &Path, common: &Common) -> Result<u8> {
 }
 
 /// Writes pages and tables of judged results and prints the latter.
-pub fn publish(
+pub(crate) fn publish(
     judged: &Judged,
     history: Option<&History>,
     out: &Path,

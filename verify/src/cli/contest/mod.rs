@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 #[derive(Debug, Subcommand)]
-pub enum ContestCommand {
+pub(crate) enum ContestCommand {
     /// List the problems of the benchmark with their versions and fingerprints.
     List,
     /// Run programs on problems at several resolutions, store their raw answers and judge them.
@@ -36,7 +36,7 @@ pub enum ContestCommand {
 
 #[derive(Debug, Args)]
 #[command(after_help = PROTOCOL)]
-pub struct RunArgs {
+pub(crate) struct RunArgs {
     /// Case files, or names of bundled cases [default: all bundled cases with a reference].
     cases: Vec<String>,
     /// A program that takes part: its name and its command, in which {job} and {answer} stand for
@@ -65,7 +65,7 @@ pub struct RunArgs {
 }
 
 #[derive(Debug, Args)]
-pub struct PagesArgs {
+pub(crate) struct PagesArgs {
     /// Files of results, or folders of them.
     #[arg(required = true)]
     results: Vec<PathBuf>,
@@ -98,7 +98,7 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-pub fn contest(command: &ContestCommand, common: &Common) -> Result<u8> {
+pub(crate) fn contest(command: &ContestCommand, common: &Common) -> Result<u8> {
     match command {
         ContestCommand::List => list(common),
         ContestCommand::Run(arguments) => run(arguments, common),

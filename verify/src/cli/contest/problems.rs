@@ -11,7 +11,7 @@ use mtled_lab::lab::store::Source;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-pub struct OwnProblems {
+pub(crate) struct OwnProblems {
     /// A case of your own that there are results of; may be repeated.
     #[arg(long = "case", value_name = "FILE")]
     pub cases: Vec<String>,
@@ -20,7 +20,7 @@ pub struct OwnProblems {
     pub references: Vec<PathBuf>,
 }
 
-pub fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
+pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut all = Vec::new();
     for path in paths {
         all.extend(result_files(path).with_context(|| format!("cannot read {}", path.display()))?);
@@ -31,16 +31,20 @@ pub fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-pub fn bundled() -> Vec<String> {
+pub(crate) fn bundled() -> Vec<String> {
     REFERENCES.iter().map(|(name, _)| name.to_string()).collect()
 }
 
 /// The benchmark and the problems of the user; bundled cases are unpacked into a folder.
-pub fn problems(own: &OwnProblems, folder: &Path) -> Result<Vec<ContestCase>> {
+pub(crate) fn problems(own: &OwnProblems, folder: &Path) -> Result<Vec<ContestCase>> {
     cases(&[own.cases.clone(), bundled()].concat(), &own.references, folder)
 }
 
-pub fn cases(names: &[String], references: &[PathBuf], folder: &Path) -> Result<Vec<ContestCase>> {
+pub(crate) fn cases(
+    names: &[String],
+    references: &[PathBuf],
+    folder: &Path,
+) -> Result<Vec<ContestCase>> {
     let read = |file: &PathBuf| {
         let name = file.display().to_string();
         let text = read_text(file);
@@ -58,7 +62,7 @@ pub fn cases(names: &[String], references: &[PathBuf], folder: &Path) -> Result<
 }
 
 /// Cases with their distances of nodes \[m\].
-pub fn laddered(
+pub(crate) fn laddered(
     cases: Vec<ContestCase>,
     spacings: &[Spacing],
 ) -> Result<Vec<(ContestCase, Vec<f64>)>> {
@@ -69,7 +73,7 @@ pub fn laddered(
     laddered.collect()
 }
 
-pub fn believed<'a>(
+pub(crate) fn believed<'a>(
     file: &Path,
     cases: &'a [ContestCase],
 ) -> Result<(Results, &'a ContestCase), ResultsFault> {

@@ -10,7 +10,7 @@ use mtled_lab::contests::{Contest, RaceList};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-pub struct RaceArgs {
+pub(crate) struct RaceArgs {
     /// Problems [default: all of the list].
     problems: Vec<String>,
     /// How often every run is made; that with the median time counts.
@@ -26,7 +26,7 @@ pub struct RaceArgs {
 }
 
 /// The contest of the list, with the finite-element codes that are installed.
-pub fn race(arguments: &RaceArgs, common: &Common) -> Result<u8> {
+pub(crate) fn race(arguments: &RaceArgs, common: &Common) -> Result<u8> {
     let folder = tempfile::tempdir().context("cannot make a folder for the bundled cases")?;
     let list = RaceList::bundled()?;
     let chosen = |name: &String| list.problems.contains(name);

@@ -23,7 +23,7 @@ const WORKFLOW_TEXT: &str = include_str!("accuracy.yml");
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct InitArgs {
+pub(crate) struct InitArgs {
     /// Folder of the case files, in which the suite is written.
     #[arg(default_value = ".")]
     folder: PathBuf,
@@ -60,7 +60,7 @@ fn refinement(text: &str) -> Result<f64, String> {
     factor.ok_or_else(|| format!("{text} is not a factor above 1 and at most 8, such as 2"))
 }
 
-pub fn init(arguments: &InitArgs, common: &Common) -> Result<u8> {
+pub(crate) fn init(arguments: &InitArgs, common: &Common) -> Result<u8> {
     let start = Instant::now();
     let folder = arguments.folder.strip_prefix(".").unwrap_or(&arguments.folder);
     let suite_file = folder.join(SUITE);

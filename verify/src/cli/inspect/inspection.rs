@@ -14,12 +14,12 @@ use mtled_run::machine::peak_memory;
 use rayon::prelude::*;
 
 /// Bodies with more nodes than this are searched for zero-energy modes only on request.
-pub const LARGEST_SEARCH: usize = 20_000;
+pub(crate) const LARGEST_SEARCH: usize = 20_000;
 /// Number of the worst supports that are listed.
 const WORST: usize = 5;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Search {
+pub(crate) enum Search {
     Auto,
     Always,
     Never,
@@ -27,7 +27,7 @@ pub enum Search {
 
 /// A number and its place.
 #[derive(Debug, Clone, Copy)]
-pub struct Place {
+pub(crate) struct Place {
     pub value: f64,
     /// Node or quadrature point.
     pub index: usize,
@@ -35,7 +35,7 @@ pub struct Place {
 }
 
 /// What is known about a case before it is run.
-pub struct Inspection<'a> {
+pub(crate) struct Inspection<'a> {
     pub case: &'a Case,
     pub simulation: &'a Simulation,
     /// Smallest and largest number of nodes per support.
@@ -60,7 +60,7 @@ pub struct Inspection<'a> {
 }
 
 /// Examines a case without running it.
-pub fn examine<'a>(
+pub(crate) fn examine<'a>(
     case: &'a Case,
     simulation: &'a Simulation,
     search: Search,

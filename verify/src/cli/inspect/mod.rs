@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use text::{advice, to_json, to_text};
 
 #[derive(Debug, Args)]
-pub struct InspectArgs {
+pub(crate) struct InspectArgs {
     /// Case file (TOML), or name of a bundled case.
     case: PathBuf,
     #[command(flatten)]
@@ -25,7 +25,7 @@ pub struct InspectArgs {
     modes: Search,
 }
 
-pub fn inspect(arguments: &InspectArgs, common: &Common) -> anyhow::Result<u8> {
+pub(crate) fn inspect(arguments: &InspectArgs, common: &Common) -> anyhow::Result<u8> {
     let case = load(&arguments.case, &arguments.set.overrides)?;
     let simulation =
         Simulation::with_any_recipe(&case.problem).map_err(|error| located(&case, &error))?;

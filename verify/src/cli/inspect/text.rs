@@ -23,7 +23,7 @@ const UNANSWERED: f64 = 1e-3;
 const STIFF: f64 = 0.1;
 
 /// The inspection on one screen.
-pub fn to_text(inspection: &Inspection) -> String {
+pub(crate) fn to_text(inspection: &Inspection) -> String {
     let mut lines = discretisation_text(inspection);
     lines.extend(step_text(inspection));
     lines.extend(memory_text(inspection));
@@ -162,7 +162,7 @@ fn modes_text(modes: Option<&ZeroEnergyModes>) -> Vec<String> {
 }
 
 /// What the user should change, in sentences.
-pub fn advice(inspection: &Inspection) -> Vec<String> {
+pub(crate) fn advice(inspection: &Inspection) -> Vec<String> {
     let problem = &inspection.case.problem;
     let mut advice: Vec<String> = Vec::new();
     if inspection.modes.as_ref().is_some_and(|modes| modes.at_least() > 0) {
@@ -211,7 +211,7 @@ pub fn advice(inspection: &Inspection) -> Vec<String> {
     advice
 }
 
-pub fn to_json(inspection: &Inspection) -> Value {
+pub(crate) fn to_json(inspection: &Inspection) -> Value {
     let Inspection { case, simulation, .. } = inspection;
     let (discretisation, model) = (&simulation.discretisation, &simulation.model);
     let (nodes, points) = (model.positions.len(), discretisation.supports.len());

@@ -10,7 +10,7 @@ use mtled_run::accuracy::Group;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-pub struct StoreArgs {
+pub(crate) struct StoreArgs {
     /// Folder of the records; stored runs are not repeated.
     #[arg(long, default_value = "reports/runs", value_name = "DIR", help_heading = "Files")]
     pub store: PathBuf,
@@ -19,7 +19,7 @@ pub struct StoreArgs {
 impl StoreArgs {
     /// The store, which can be made where it is missing. One that is there may be one that
     /// can only be read.
-    pub fn open(&self) -> Result<Store> {
+    pub(crate) fn open(&self) -> Result<Store> {
         if !self.store.is_dir() {
             let there = self.store.ancestors().find(|folder| folder.exists());
             ensure_writable(there.unwrap_or(Path::new(".")))
@@ -31,7 +31,7 @@ impl StoreArgs {
 
 /// Runs that other machines perform.
 #[derive(Debug, Args)]
-pub struct JobArgs {
+pub(crate) struct JobArgs {
     /// Write the runs that are not stored yet into this folder, in parts, with workflows for
     /// Snakemake and Slurm that perform them, and end; the same command goes on afterwards.
     #[arg(long, value_name = "DIR", help_heading = "Files")]
@@ -44,7 +44,7 @@ pub struct JobArgs {
 
 impl JobArgs {
     /// Where runs are planned, if they are.
-    pub fn plan(&self) -> Option<JobPlan> {
+    pub(crate) fn plan(&self) -> Option<JobPlan> {
         let folder = self.plan_jobs.clone()?;
         Some(JobPlan { folder, parts: self.parts.into() })
     }
@@ -52,7 +52,7 @@ impl JobArgs {
 
 /// How errors are measured and where files go.
 #[derive(Debug, Args)]
-pub struct ErrorArgs {
+pub(crate) struct ErrorArgs {
     /// Reference solution: "any" (the bundled reference of the problem, else finer runs of the
     /// solver), "own" (finer runs of the solver), or a reference file.
     #[arg(long, alias = "truth", default_value = "any", value_name = "any|own|FILE")]
@@ -72,7 +72,7 @@ pub struct ErrorArgs {
 
 impl ErrorArgs {
     /// Where the reference solution comes from.
-    pub fn reference(&self) -> ReferenceSource {
+    pub(crate) fn reference(&self) -> ReferenceSource {
         match self.reference.as_str() {
             "any" => ReferenceSource::Any,
             "own" => ReferenceSource::Own(REFINEMENT),
@@ -81,7 +81,7 @@ impl ErrorArgs {
     }
 
     /// Folder of the report, by default `path` below `reports`.
-    pub fn out(&self, path: &[&str]) -> PathBuf {
+    pub(crate) fn out(&self, path: &[&str]) -> PathBuf {
         let preset =
             || path.iter().fold(PathBuf::from("reports"), |to, part| to.join(file_name(part)));
         self.out.clone().unwrap_or_else(preset)
@@ -89,13 +89,13 @@ impl ErrorArgs {
 }
 
 /// `1%` or `0.01`.
-pub fn fraction(text: &str) -> Result<f64, String> {
+pub(crate) fn fraction(text: &str) -> Result<f64, String> {
     let fraction = with_unit(text, &[("%", 0.01)]).filter(|fraction| *fraction < 1.0);
     fraction.ok_or_else(|| format!("{text} is not a fraction such as 1% or 0.01"))
 }
 
 /// `2s`, `500ms`, `3min` or `2`.
-pub fn seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     let time = with_unit(text, &[("ms", 1e-3), ("min", 60.0), ("s", 1.0)]);
     time.ok_or_else(|| format!("{text} is not a time such as 2s, 500ms or 3min"))
 }

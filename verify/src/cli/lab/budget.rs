@@ -13,7 +13,7 @@ use mtled_lab::lab::store::{Source, TaskRunner};
 use std::time::Instant;
 
 #[derive(Debug, Args)]
-pub struct BudgetArgs {
+pub(crate) struct BudgetArgs {
     /// Case file, or name of a bundled case.
     case: String,
     /// Number of other clouds that show the scatter of the error.
@@ -25,7 +25,7 @@ pub struct BudgetArgs {
     error: ErrorArgs,
 }
 
-pub fn budget(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
+pub(crate) fn budget(arguments: &BudgetArgs, common: &Common) -> Result<u8> {
     let start = Instant::now();
     let store = arguments.error.store.open()?;
     let source = Source::find(&arguments.case, store.folder(), &arguments.set.overrides)?;

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 #[command(after_help = TABLE)]
-pub struct ExportArgs {
+pub(crate) struct ExportArgs {
     /// File of the table, in CSV [default: standard output].
     #[arg(short, long, value_name = "FILE", help_heading = "Table")]
     output: Option<PathBuf>,
@@ -31,7 +31,7 @@ Examples:
   mtled runs export --case my_case --where dilation=1.4..2.2:0.2 > runs.csv
   mtled runs export --since 2026-01-31 -o january.csv";
 
-pub fn export(arguments: &ExportArgs, common: &Common) -> Result<u8> {
+pub(crate) fn export(arguments: &ExportArgs, common: &Common) -> Result<u8> {
     if let Some(file) = &arguments.output {
         let ending = file.extension().unwrap_or_default().to_string_lossy();
         if ["parquet", "xlsx"].contains(&ending.to_lowercase().as_str()) {

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 /// A store and which of its records are meant.
 #[derive(Debug, Args)]
-pub struct FilterArgs {
+pub(crate) struct FilterArgs {
     /// Runs of this case only: its name or file. May be repeated.
     #[arg(long, value_name = "CASE", help_heading = "Filters")]
     case: Vec<String>,
@@ -35,14 +35,14 @@ fn setting(text: &str) -> Result<Wanted, FilterError> {
 }
 
 /// The records that are meant, and an exit code that says whether all could be read.
-pub struct Chosen {
+pub(crate) struct Chosen {
     pub records: Vec<RunRecord>,
     pub code: u8,
 }
 
 impl FilterArgs {
     /// Reads the records that are meant; files that are none are named.
-    pub fn read(&self, common: &Common) -> Result<Chosen> {
+    pub(crate) fn read(&self, common: &Common) -> Result<Chosen> {
         let filter = RunFilter {
             cases: self.case.iter().map(|case| RunFilter::case_name(case)).collect(),
             jobs: self.run.clone(),
@@ -75,7 +75,7 @@ fn nothing(store: impl std::fmt::Display, count: usize, cases: BTreeSet<String>)
 }
 
 /// Names the files that are no records; the exit code says whether there are any.
-pub fn name_corrupt(corrupt: &[Corrupt], common: &Common) -> u8 {
+pub(crate) fn name_corrupt(corrupt: &[Corrupt], common: &Common) -> u8 {
     corrupt.iter().for_each(|corrupt| common.complain(&corrupt.error));
     if corrupt.is_empty() { 0 } else { COULD_NOT_RUN }
 }

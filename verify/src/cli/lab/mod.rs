@@ -9,4 +9,4 @@ pub mod runs;
 pub mod sweep;
 pub mod tune;
 
-pub use args::{StoreArgs, seconds};
+pub(crate) use args::{StoreArgs, seconds};

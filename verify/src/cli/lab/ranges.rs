@@ -7,13 +7,13 @@ use mtled_lab::lab::sweep::Axis;
 
 /// Ranges of settings by option; written by hand, so that a new knob needs no option here.
 #[derive(Debug, Default)]
-pub struct Ranges {
+pub(crate) struct Ranges {
     given: Vec<(Knob, String)>,
 }
 
 impl Ranges {
     /// The axes that were given.
-    pub fn axes(&self) -> Result<Vec<Axis>> {
+    pub(crate) fn axes(&self) -> Result<Vec<Axis>> {
         let axes = self.given.iter().map(|(knob, text)| Axis::parse(*knob, text));
         Ok(axes.collect::<Result<_, _>>()?)
     }

@@ -19,7 +19,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Subcommand)]
-pub enum RunsCommand {
+pub(crate) enum RunsCommand {
     /// List the records of a store, one per line.
     List(FilterArgs),
     /// Write the results of the records of a store as a table in CSV.
@@ -54,7 +54,7 @@ pub enum RunsCommand {
 }
 
 #[derive(Debug, Args)]
-pub struct MergeArgs {
+pub(crate) struct MergeArgs {
     /// Folders of the stores that are read.
     #[arg(required = true)]
     from: Vec<PathBuf>,
@@ -63,7 +63,7 @@ pub struct MergeArgs {
     into: PathBuf,
 }
 
-pub fn runs(command: &RunsCommand, common: &Common) -> Result<u8> {
+pub(crate) fn runs(command: &RunsCommand, common: &Common) -> Result<u8> {
     match command {
         RunsCommand::List(filter) => list(filter, common),
         RunsCommand::Export(arguments) => export(arguments, common),
@@ -192,7 +192,7 @@ struct Merged {
     code: u8,
 }
 
-pub fn merge(arguments: &MergeArgs, common: &Common) -> Result<u8> {
+pub(crate) fn merge(arguments: &MergeArgs, common: &Common) -> Result<u8> {
     if let Some(folder) = arguments.from.iter().find(|folder| !folder.is_dir()) {
         bail!("there is no store {}", folder.display());
     }

@@ -17,7 +17,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 #[command(after_help = RANGES)]
-pub struct SweepArgs {
+pub(crate) struct SweepArgs {
     /// Case files, or names of bundled cases.
     cases: Vec<String>,
     /// A study defined in a TOML file: cases, clouds, [ranges]. Options on the command line
@@ -59,7 +59,7 @@ fn part(text: &str) -> Result<(usize, usize), String> {
     }
 }
 
-pub fn sweep(subject: Subject, arguments: &SweepArgs, common: &Common) -> Result<u8> {
+pub(crate) fn sweep(subject: Subject, arguments: &SweepArgs, common: &Common) -> Result<u8> {
     let start = Instant::now();
     let store = arguments.error.store.open()?;
     let sweep = definition(subject, arguments, &store)?;

@@ -21,7 +21,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct TuneArgs {
+pub(crate) struct TuneArgs {
     /// Case files, or names of bundled cases. For several cases one recipe for all of them is
     /// searched for, at equal error.
     #[arg(required_unless_present = "all_cases")]
@@ -65,7 +65,7 @@ const FRESH: usize = 3;
 /// The goal where the user gives none.
 const DEFAULT_GOAL: Goal = Goal::Error(0.02);
 
-pub fn tune_cases(arguments: &TuneArgs, common: &Common) -> Result<u8> {
+pub(crate) fn tune_cases(arguments: &TuneArgs, common: &Common) -> Result<u8> {
     let store = arguments.error.store.open()?;
     let names: Vec<String> = if arguments.all_cases {
         small_cases().map(String::from).collect()

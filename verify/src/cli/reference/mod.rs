@@ -12,7 +12,7 @@ use stored::{ReferenceArgs, StoredReference, read};
 use table::{check_table, show_text, to_json};
 
 #[derive(Debug, Subcommand)]
-pub enum ReferenceCommand {
+pub(crate) enum ReferenceCommand {
     /// Check that every case has a reference of both codes for its current problem, and that
     /// the codes agree within their error bars.
     Check(CheckArgs),
@@ -28,14 +28,14 @@ pub enum ReferenceCommand {
 }
 
 #[derive(Debug, Args)]
-pub struct CheckArgs {
+pub(crate) struct CheckArgs {
     /// Names of cases [default: all].
     cases: Vec<String>,
     #[command(flatten)]
     from: ReferenceArgs,
 }
 
-pub fn reference(command: &ReferenceCommand, common: &Common) -> Result<u8> {
+pub(crate) fn reference(command: &ReferenceCommand, common: &Common) -> Result<u8> {
     match command {
         ReferenceCommand::Check(arguments) => check(arguments, common),
         ReferenceCommand::Show { case, from } => show(case, from, common),

@@ -23,7 +23,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 #[derive(Debug, Args)]
-pub struct SolveReferenceArgs {
+pub(crate) struct SolveReferenceArgs {
     /// Names of cases [default: all].
     cases: Vec<String>,
     /// The code to solve with [default: both].
@@ -60,7 +60,7 @@ enum Ended {
     Stopped,
 }
 
-pub fn solve(arguments: &SolveReferenceArgs, common: &Common) -> Result<u8> {
+pub(crate) fn solve(arguments: &SolveReferenceArgs, common: &Common) -> Result<u8> {
     let reference = match &arguments.reference {
         Some(folder) => folder.clone(),
         None => checkout()?,

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Where cases and references are read from.
 #[derive(Debug, Args)]
-pub struct ReferenceArgs {
+pub(crate) struct ReferenceArgs {
     /// Folder with a JSON file per case [default: the bundled references].
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
@@ -19,21 +19,21 @@ pub struct ReferenceArgs {
 }
 
 /// A case with its reference.
-pub struct Referenced {
+pub(crate) struct Referenced {
     pub case: Case,
     pub file: ReferenceFile,
     pub agreements: Vec<Agreement>,
 }
 
 /// The reference of a case, or what is wrong with it.
-pub struct StoredReference {
+pub(crate) struct StoredReference {
     pub case: String,
     pub reference: Result<Referenced, String>,
 }
 
 impl StoredReference {
     /// What is wrong, with the name of the case.
-    pub fn mistake(&self) -> Option<String> {
+    pub(crate) fn mistake(&self) -> Option<String> {
         let reference = match &self.reference {
             Ok(reference) => reference,
             Err(reason) => return Some(reason.clone()),
@@ -47,7 +47,7 @@ impl StoredReference {
 }
 
 /// Reads cases, all if none is named, with their references.
-pub fn read(names: &[String], from: &ReferenceArgs) -> Result<Vec<StoredReference>> {
+pub(crate) fn read(names: &[String], from: &ReferenceArgs) -> Result<Vec<StoredReference>> {
     let unpacked = tempfile::tempdir().context("cannot create a folder for the bundled cases")?;
     let folder = match &from.cases_dir {
         Some(folder) => folder.clone(),
@@ -81,7 +81,7 @@ fn read_one(name: &str, cases: &Path, data: Option<&Path>) -> Result<Referenced,
 }
 
 /// Names of the case files in a folder, the bundled ones first.
-pub fn case_names(folder: &Path) -> Result<Vec<String>> {
+pub(crate) fn case_names(folder: &Path) -> Result<Vec<String>> {
     let entries = std::fs::read_dir(folder)
         .with_context(|| format!("cannot read the folder {}", folder.display()))?;
     let mut names = Vec::new();

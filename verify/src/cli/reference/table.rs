@@ -17,7 +17,7 @@ fn table(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
 }
 
 /// A row per case.
-pub fn check_table(stored: &[StoredReference]) -> Table {
+pub(crate) fn check_table(stored: &[StoredReference]) -> Table {
     let header = [
         "case",
         "quantities",
@@ -57,7 +57,7 @@ fn check_row(stored: &StoredReference) -> Vec<String> {
 }
 
 /// Everything about one case.
-pub fn show_text(reference: &Referenced) -> String {
+pub(crate) fn show_text(reference: &Referenced) -> String {
     let title = format!("{}: {}", reference.case.name, reference.case.title);
     let mut text = printable(&title) + "\n";
     for solution in &reference.file.solutions {
@@ -115,7 +115,7 @@ fn meshes_table(reference: &Referenced) -> Table {
 }
 
 /// All cases as JSON.
-pub fn to_json(stored: &[StoredReference]) -> Value {
+pub(crate) fn to_json(stored: &[StoredReference]) -> Value {
     let case = |stored: &StoredReference| {
         let quantities: Vec<Value> = stored.reference.iter().flat_map(quantities_json).collect();
         json!({

@@ -7,7 +7,7 @@ use clap::Subcommand;
 use mtled_lab::lab::sweep::Subject;
 
 #[derive(Debug, Subcommand)]
-pub enum StudyCommand {
+pub(crate) enum StudyCommand {
     /// Errors of the discrete divergence theorem and the quadrature, and the conditioning of
     /// the supports, over recipes.
     Consistency(SweepArgs),
@@ -23,7 +23,7 @@ pub enum StudyCommand {
     Stability(SweepArgs),
 }
 
-pub fn study(command: &StudyCommand, common: &Common) -> Result<u8> {
+pub(crate) fn study(command: &StudyCommand, common: &Common) -> Result<u8> {
     match command {
         StudyCommand::Consistency(arguments) => sweep(Subject::Consistency, arguments, common),
         StudyCommand::Patch(arguments) => sweep(Subject::Patch, arguments, common),

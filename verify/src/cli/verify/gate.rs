@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 const BASELINE: &str = "reports/baseline.json";
 
 #[derive(Debug, Args)]
-pub struct GateArgs {
+pub(crate) struct GateArgs {
     /// Compare every check with this file; exit code 1 if one got worse or is missing [default for a
     /// suite of your own: the baseline that it names].
     #[arg(long, value_name = "FILE")]
@@ -36,7 +36,7 @@ pub struct GateArgs {
 
 /// What to do with the baseline, which is read before a long run.
 #[derive(Debug)]
-pub enum Gate {
+pub(crate) enum Gate {
     None,
     Compare(Baseline),
     Update {
@@ -50,7 +50,7 @@ pub enum Gate {
 
 impl GateArgs {
     /// What is to be done with a run of a suite, which may name a baseline itself.
-    pub fn read(&self, suite: &str, named: Option<&Path>) -> anyhow::Result<Gate> {
+    pub(crate) fn read(&self, suite: &str, named: Option<&Path>) -> anyhow::Result<Gate> {
         let named = self.baseline.as_deref().or(named);
         if !self.update_baseline {
             let Some(path) = named else { return Ok(Gate::None) };
@@ -77,12 +77,12 @@ impl GateArgs {
 
 impl Gate {
     /// Whether a baseline is to be written whose bands need runs on other clouds.
-    pub fn needs_clouds(&self) -> bool {
+    pub(crate) fn needs_clouds(&self) -> bool {
         matches!(self, Gate::Update { clouds, .. } if clouds.is_empty())
     }
 
     /// Takes the scatter from these runs on other clouds.
-    pub fn with_clouds(self, runs: Vec<Report>) -> Gate {
+    pub(crate) fn with_clouds(self, runs: Vec<Report>) -> Gate {
         match self {
             Gate::Update { path, old, reason, .. } => {
                 let paths = (1..=runs.len()).map(|n| format!("cloud {n}").into()).collect();
@@ -93,7 +93,7 @@ impl Gate {
     }
 
     /// Adds the comparison to the report; `whole` means that all studies were run.
-    pub fn judge(&self, report: &mut Report, whole: bool) -> Result<(), GateError> {
+    pub(crate) fn judge(&self, report: &mut Report, whole: bool) -> Result<(), GateError> {
         match self {
             Gate::None => {}
             Gate::Compare(baseline) => {
@@ -112,7 +112,7 @@ impl Gate {
     }
 
     /// Updates the baseline on request; returns what changed in it.
-    pub fn write(&self, report: &Report, whole: bool) -> anyhow::Result<Vec<String>> {
+    pub(crate) fn write(&self, report: &Report, whole: bool) -> anyhow::Result<Vec<String>> {
         let Gate::Update { path, old, reason, clouds, paths } = self else { return Ok(Vec::new()) };
         let scatter = Clouds::new(clouds)?;
         let new = update(report, old.as_ref(), &scatter, reason, whole)?;
@@ -139,7 +139,7 @@ impl Gate {
 }
 
 /// Writes annotations to standard error and the summary to the file that the job shows.
-pub fn report_to_github(report: &Report, folder: &Path) -> anyhow::Result<()> {
+pub(crate) fn report_to_github(report: &Report, folder: &Path) -> anyhow::Result<()> {
     if std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true") {
         for line in github::annotations(report, folder) {
             command_to_standard_error(&printable(&line));

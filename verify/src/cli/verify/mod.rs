@@ -4,7 +4,7 @@ mod gate;
 mod own_suite;
 mod progress;
 
-pub use own_suite::{OTHER_CLOUDS, report};
+pub(crate) use own_suite::{OTHER_CLOUDS, report};
 use own_suite::{OwnRun, run_own};
 
 use super::common::{Common, STOPPED};
@@ -25,7 +25,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
-pub struct VerifyArgs {
+pub(crate) struct VerifyArgs {
     /// Which suite to run: quick takes about two minutes, full about a quarter of an hour, both
     /// with the studies of the solver; a file such as those that `mtled init` writes has cases of
     /// your own.
@@ -69,7 +69,7 @@ impl FromStr for SuiteChoice {
     }
 }
 
-pub fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
+pub(crate) fn verify(arguments: &VerifyArgs, common: &Common) -> anyhow::Result<u8> {
     match &arguments.suite {
         SuiteChoice::Solver(suite) => verify_solver(*suite, arguments, common),
         SuiteChoice::Own(file) => {

@@ -14,10 +14,10 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Clouds besides that of the case from whose scatter the bands of a baseline follow.
-pub const OTHER_CLOUDS: u64 = 4;
+pub(crate) const OTHER_CLOUDS: u64 = 4;
 
 /// A suite that was run.
-pub struct OwnRun {
+pub(crate) struct OwnRun {
     pub report: Report,
     pub gate: Gate,
     /// Whether all its cases were run.
@@ -25,7 +25,7 @@ pub struct OwnRun {
 }
 
 /// Runs the cases whose names contain `only` on a cloud; the exit code where the user stopped it.
-pub fn run_own(
+pub(crate) fn run_own(
     file: &Path,
     (only, cloud): (&str, u64),
     gate: &GateArgs,
@@ -61,7 +61,7 @@ fn ran(report: &Report) -> bool {
 }
 
 /// The report of a suite.
-pub fn report(suite: &Suite, studies: Vec<Study>, start: Instant) -> Report {
+pub(crate) fn report(suite: &Suite, studies: Vec<Study>, start: Instant) -> Report {
     Report {
         schema_version: json::SCHEMA_VERSION,
         suite: suite.name.clone(),

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Largest fraction of a study that counts as done while it runs \[–\].
 const LARGEST_FRACTION: f64 = 0.95;
 
-pub struct Progress {
+pub(crate) struct Progress {
     common: Common,
     bar: ProgressBar,
     lines: bool,
@@ -31,7 +31,7 @@ struct State {
 
 impl Progress {
     /// `earlier` is a report with the time that each study took.
-    pub fn new(studies: &[&str], earlier: Option<&Report>, common: &Common) -> Progress {
+    pub(crate) fn new(studies: &[&str], earlier: Option<&Report>, common: &Common) -> Progress {
         let of = |id: &str| {
             let study = earlier?.studies.iter().find(|study| study.id == id)?;
             Some(study.wall_seconds).filter(|seconds| *seconds > 0.0)
@@ -51,11 +51,11 @@ impl Progress {
         Progress { common: *common, bar, lines, count: studies.len(), state }
     }
 
-    pub fn begin(&self, id: &str) {
+    pub(crate) fn begin(&self, id: &str) {
         self.lock().running.insert(id.to_string(), Instant::now());
     }
 
-    pub fn end(&self, study: &Study) {
+    pub(crate) fn end(&self, study: &Study) {
         let mut state = self.lock();
         state.running.remove(&study.id);
         state.done += state.weights.get(&study.id).copied().unwrap_or(0.0);
@@ -71,7 +71,7 @@ impl Progress {
         }
     }
 
-    pub fn clear(&self) {
+    pub(crate) fn clear(&self) {
         self.bar.finish_and_clear();
     }
 

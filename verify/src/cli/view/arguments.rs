@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// Draws the frames of the body that `mtled solve` wrote (body_*.vtu).
 #[derive(Debug, Args)]
-pub struct ViewArgs {
+pub(crate) struct ViewArgs {
     /// Folder that `mtled solve --out` wrote.
     pub result: PathBuf,
     /// The picture, .svg [default: RESULT/picture.svg].
@@ -32,7 +32,7 @@ pub struct ViewArgs {
 
 /// A panel of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum PanelName {
+pub(crate) enum PanelName {
     /// The body before, its regions in their colours.
     Before,
     /// The body after, coloured by the field.

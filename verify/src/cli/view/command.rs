@@ -9,7 +9,7 @@ use mtled_run::display::Mesh;
 use mtled_run::picture::{Body, Choice, Field, Shown, panels, picture_svg};
 use mtled_run::run::last_body_frame;
 
-pub fn view(arguments: &ViewArgs, common: &Common) -> Result<u8> {
+pub(crate) fn view(arguments: &ViewArgs, common: &Common) -> Result<u8> {
     let folder = &arguments.result;
     let out = arguments.out.clone().unwrap_or_else(|| folder.join("picture.svg"));
     let is_svg = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));

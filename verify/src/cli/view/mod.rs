@@ -3,5 +3,5 @@
 mod arguments;
 mod command;
 
-pub use arguments::ViewArgs;
-pub use command::view;
+pub(crate) use arguments::ViewArgs;
+pub(crate) use command::view;

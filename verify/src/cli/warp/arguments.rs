@@ -17,7 +17,7 @@ use std::path::PathBuf;
 /// of the nearest point of the body and decays smoothly to zero over the distance of --decay; it
 /// may jump where two parts of the body are equally near.
 #[derive(Debug, Args)]
-pub struct WarpArgs {
+pub(crate) struct WarpArgs {
     /// Folder that `mtled solve --out` wrote.
     pub result: PathBuf,
     /// Image or label map of the space of the case.
@@ -62,7 +62,7 @@ pub struct WarpArgs {
 
 /// A unit of length.
 #[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Unit {
+pub(crate) enum Unit {
     M,
     Mm,
     Um,

@@ -19,7 +19,7 @@ use mtled_run::warp::{
 };
 use std::path::{Path, PathBuf};
 
-pub fn warp(arguments: &WarpArgs, common: &Common) -> Result<u8> {
+pub(crate) fn warp(arguments: &WarpArgs, common: &Common) -> Result<u8> {
     let outputs = Outputs::of(arguments)?;
     let stored = StoredField::read(&arguments.result)?;
     let case = solved_case(arguments, &stored)?;

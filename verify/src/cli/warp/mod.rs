@@ -5,5 +5,5 @@ mod command;
 mod outputs;
 mod summary;
 
-pub use arguments::WarpArgs;
-pub use command::warp;
+pub(crate) use arguments::WarpArgs;
+pub(crate) use command::warp;

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 type ImageFile = (PathBuf, ImageFormat);
 
 /// Where things are written, with formats that are known.
-pub struct Outputs {
+pub(crate) struct Outputs {
     pub image: Option<ImageFile>,
     pub field: Option<ImageFile>,
     pub inverse_field: Option<ImageFile>,
@@ -22,7 +22,7 @@ pub struct Outputs {
 
 impl Outputs {
     /// Refuses unknown endings and files that are named twice.
-    pub fn of(arguments: &WarpArgs) -> Result<Outputs> {
+    pub(crate) fn of(arguments: &WarpArgs) -> Result<Outputs> {
         let preset = |image: &Path| {
             let name = image.file_name().unwrap_or_default().to_string_lossy();
             let name = match name.strip_suffix(".nhdr") {
@@ -68,7 +68,7 @@ impl Outputs {
     }
 
     /// Tries all folders before the work begins.
-    pub fn ensure_writable(&self) -> Result<()> {
+    pub(crate) fn ensure_writable(&self) -> Result<()> {
         let folders = self.paths().into_iter().map(|path| folder(path));
         folders.chain(self.surfaces.as_deref()).try_for_each(ensure_writable)
     }
@@ -95,6 +95,6 @@ fn place(path: &Path) -> PathBuf {
 }
 
 /// Writes each file at once, when all are complete in memory.
-pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
+pub(crate) fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
     files.iter().try_for_each(|(path, bytes)| write_atomically(path, bytes))
 }

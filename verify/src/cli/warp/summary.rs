@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// Figures of a warp.
-pub struct Summary {
+pub(crate) struct Summary {
     largest_displacement: f64,
     decay: f64,
     pub deformed: Option<Counts>,
@@ -19,7 +19,7 @@ pub struct Summary {
 }
 
 /// Counts of a deformed image.
-pub struct Counts {
+pub(crate) struct Counts {
     voxels: usize,
     unconverged: usize,
     largest_residual: f64,
@@ -41,7 +41,7 @@ impl From<Deformed> for Counts {
 
 impl Summary {
     /// Of a field by which nothing is warped yet.
-    pub fn of(field: &DisplacementField) -> Summary {
+    pub(crate) fn of(field: &DisplacementField) -> Summary {
         Summary {
             largest_displacement: field.largest_displacement,
             decay: field.decay,
@@ -52,7 +52,7 @@ impl Summary {
     }
 
     /// Warns where the warp cannot be trusted.
-    pub fn warn(&self, common: &Common) {
+    pub(crate) fn warn(&self, common: &Common) {
         if let Some(counts) = self.deformed.as_ref().filter(|counts| counts.unconverged > 0) {
             common.warn(format!(
                 "for {} of {} voxels no place was found that moved there to within {} mm (up to {} mm remain): \
@@ -70,7 +70,7 @@ impl Summary {
         }
     }
 
-    pub fn json(&self) -> Result<String> {
+    pub(crate) fn json(&self) -> Result<String> {
         let image = self.deformed.as_ref().map(|counts| {
             json!({
                 "voxels": counts.voxels,
@@ -93,7 +93,7 @@ impl Summary {
         Ok(serde_json::to_string_pretty(&document)? + "\n")
     }
 
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut text = format!(
             "largest displacement of a node {} mm, zero from {} mm outside of the body\n",
             four_digits(1e3 * self.largest_displacement),

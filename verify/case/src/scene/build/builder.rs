@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What every part of the conversion needs.
-pub struct Builder<'a> {
+pub(crate) struct Builder<'a> {
     /// The text, for the place of mistakes.
     pub document: &'a Document,
     /// Where files named in the case are looked for.
@@ -45,52 +45,52 @@ pub struct Builder<'a> {
 
 impl Builder<'_> {
     /// Records a mistake at a key path.
-    pub fn mistake(&mut self, key: &str, message: impl Display) {
+    pub(crate) fn mistake(&mut self, key: &str, message: impl Display) {
         self.mistakes.push(self.document.diagnostic(key, message.to_string()));
     }
 
     /// Records a mistake at a key path if there is one.
-    pub fn refuse_if(&mut self, wrong: bool, key: &str, message: impl Display) {
+    pub(crate) fn refuse_if(&mut self, wrong: bool, key: &str, message: impl Display) {
         if wrong {
             self.mistake(key, message);
         }
     }
 
     /// Records what the solver refuses of a part of the problem, each at the key of its field.
-    pub fn refused(&mut self, mistakes: Vec<Mistake>, key: impl Fn(&str) -> String) {
+    pub(crate) fn refused(&mut self, mistakes: Vec<Mistake>, key: impl Fn(&str) -> String) {
         for Mistake { field, wrong } in mistakes {
             self.mistake(&key(&field), wrong);
         }
     }
 
     /// Number of mistakes so far.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.mistakes.len()
     }
 
     /// Requires a positive number.
-    pub fn positive(&mut self, key: &str, value: f64) {
+    pub(crate) fn positive(&mut self, key: &str, value: f64) {
         self.refuse_if(value <= 0.0, key, format!("is {value}; it must be positive"));
     }
 
     /// Requires a number that is not negative.
-    pub fn not_negative(&mut self, key: &str, value: f64) {
+    pub(crate) fn not_negative(&mut self, key: &str, value: f64) {
         self.refuse_if(value < 0.0, key, format!("is {value}; it must not be negative"));
     }
 
     /// Requires a count of at least one.
-    pub fn at_least_one(&mut self, key: &str, value: usize) {
+    pub(crate) fn at_least_one(&mut self, key: &str, value: usize) {
         self.refuse_if(value == 0, key, "is 0; it must be at least 1");
     }
 
     /// Requires no more than `most` of something.
-    pub fn at_most(&mut self, key: &str, what: &str, count: f64, most: f64) {
+    pub(crate) fn at_most(&mut self, key: &str, what: &str, count: f64, most: f64) {
         let message = format!("asks for {count} {what}; at most {most} are allowed");
         self.refuse_if(count > most, key, message);
     }
 
     /// A direction of length one.
-    pub fn direction(&mut self, key: &str, value: &[f64; 3]) -> Vector3 {
+    pub(crate) fn direction(&mut self, key: &str, value: &[f64; 3]) -> Vector3 {
         let vector = Vector3::from(*value);
         vector.try_normalize(0.0).unwrap_or_else(|| {
             self.mistake(key, "is zero; it must be a direction");
@@ -99,19 +99,19 @@ impl Builder<'_> {
     }
 
     /// Whether the problem is one of plane strain.
-    pub fn is_plane(&self) -> bool {
+    pub(crate) fn is_plane(&self) -> bool {
         self.dimension != Dimension::Three
     }
 
     /// In plane strain, refuses a z component other than zero.
-    pub fn no_z(&mut self, key: &str, value: &[f64; 3]) {
+    pub(crate) fn no_z(&mut self, key: &str, value: &[f64; 3]) {
         if self.is_plane() && value[2] != 0.0 {
             self.mistake(key, format!("has z = {}; it must be 0 in plane strain", value[2]));
         }
     }
 
     /// Reports a name that is none of `known`.
-    pub fn unknown_name(&mut self, key: &str, what: &str, name: &str, known: &[&str]) {
+    pub(crate) fn unknown_name(&mut self, key: &str, what: &str, name: &str, known: &[&str]) {
         let hint = match nearest(name, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
             None if known.is_empty() => format!("there is no {what}"),
@@ -121,7 +121,7 @@ impl Builder<'_> {
     }
 
     /// Refuses names that occur twice or are empty; each comes with its key.
-    pub fn unique_names<'n>(&mut self, names: impl Iterator<Item = (String, &'n str)>) {
+    pub(crate) fn unique_names<'n>(&mut self, names: impl Iterator<Item = (String, &'n str)>) {
         let mut seen = HashMap::new();
         for (key, name) in names {
             if name.is_empty() {
@@ -135,20 +135,20 @@ impl Builder<'_> {
     }
 
     /// Path of a file named in the case file.
-    pub fn resolve(&self, file: &Path) -> PathBuf {
+    pub(crate) fn resolve(&self, file: &Path) -> PathBuf {
         self.base_dir.join(file)
     }
 
     /// Takes down what was read of a file that the case names: all `files` that belong to it, and
     /// what should be known about them.
-    pub fn has_read(&mut self, key: &str, file: &Path, files: &[PathBuf], notes: &[String]) {
+    pub(crate) fn has_read(&mut self, key: &str, file: &Path, files: &[PathBuf], notes: &[String]) {
         files.iter().for_each(|path| self.hash_file(key, path));
         let named = |note: &String| format!("{}: {note}", file.display());
         self.notes.extend(notes.iter().map(named));
     }
 
     /// Adds a file that the case refers to, to the hash of the case.
-    pub fn hash_file(&mut self, key: &str, path: &Path) {
+    pub(crate) fn hash_file(&mut self, key: &str, path: &Path) {
         if let Err(error) = visit_bytes(path, |bytes| self.hash.update(bytes)) {
             self.mistake(key, error);
         }

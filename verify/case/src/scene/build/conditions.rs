@@ -14,7 +14,7 @@ use mtled::problem::{
 };
 
 impl Builder<'_> {
-    pub fn conditions(&mut self, rows: &[PrescribeFormat]) -> Vec<EssentialCondition> {
+    pub(crate) fn conditions(&mut self, rows: &[PrescribeFormat]) -> Vec<EssentialCondition> {
         let rows = rows.iter().enumerate();
         rows.filter_map(|(n, row)| self.condition(&format!("prescribe[{n}]"), row)).collect()
     }
@@ -101,7 +101,7 @@ impl Builder<'_> {
         amplitude
     }
 
-    pub fn loads(&mut self, format: &CaseFormat) -> Loads {
+    pub(crate) fn loads(&mut self, format: &CaseFormat) -> Loads {
         let mut loads = Loads::default();
         for (n, row) in format.body_force.iter().enumerate() {
             let key = format!("body_force[{n}]");
@@ -228,7 +228,7 @@ impl Builder<'_> {
         Some(RigidMotion { way, amplitude })
     }
 
-    pub fn obstacles(&mut self, rows: &[ObstacleFormat]) -> Vec<Obstacle> {
+    pub(crate) fn obstacles(&mut self, rows: &[ObstacleFormat]) -> Vec<Obstacle> {
         let obstacle = |(n, row): (usize, &ObstacleFormat)| {
             let key = format!("obstacle[{n}]");
             let friction = Friction::from(row.friction);

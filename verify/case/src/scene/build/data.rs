@@ -14,14 +14,18 @@ use std::sync::Arc;
 
 impl Builder<'_> {
     /// A field of displacements \[m\] through data, or `None` and a mistake.
-    pub fn displacements(&mut self, key: &str, format: &DataFormat) -> Option<Arc<Scattered>> {
+    pub(crate) fn displacements(
+        &mut self,
+        key: &str,
+        format: &DataFormat,
+    ) -> Option<Arc<Scattered>> {
         let data = self.vectors(key, format)?;
         self.scattered(key, format, data)
     }
 
     /// A field of directions through data, or `None` and a mistake. Where a vector is 0, as outside
     /// of what a scanner saw, there is none.
-    pub fn axes(&mut self, key: &str, format: &DataFormat) -> Option<Arc<Scattered>> {
+    pub(crate) fn axes(&mut self, key: &str, format: &DataFormat) -> Option<Arc<Scattered>> {
         let mut data = self.vectors(key, format)?;
         data.retain(|(_, direction)| direction.norm() > 0.0);
         self.scattered(key, format, data)
@@ -86,7 +90,7 @@ fn from_table(path: &Path, format: &DataFormat) -> Result<VectorFile, FileError>
 }
 
 /// The positions within reach of the data.
-pub fn near(data: &Arc<Scattered>) -> Selector {
+pub(crate) fn near(data: &Arc<Scattered>) -> Selector {
     let (lower, upper) = data.bounds();
     let data = data.clone();
     let distance = move |X: &Vector3| data.distance(X) - data.reach();

@@ -9,7 +9,7 @@ use mtled::problem::{ActiveStress, Fibres};
 
 impl Builder<'_> {
     /// A law of named constants, or `None` and a mistake.
-    pub fn isochoric(
+    pub(crate) fn isochoric(
         &mut self,
         key: &str,
         format: &MaterialFormat,
@@ -50,7 +50,12 @@ impl Builder<'_> {
     }
 
     /// The fibres of a law or an active stress that has some.
-    pub fn fibres(&mut self, key: &str, format: &MaterialFormat, law: &Law) -> Option<Fibres> {
+    pub(crate) fn fibres(
+        &mut self,
+        key: &str,
+        format: &MaterialFormat,
+        law: &Law,
+    ) -> Option<Fibres> {
         let pulls = format.active_stress.is_some();
         let of = if pulls && !law.has_fibres() { "active_stress" } else { "the law" };
         let any = law.has_fibres() || pulls;
@@ -83,7 +88,7 @@ impl Builder<'_> {
     }
 
     /// The viscosity of a material that has some.
-    pub fn viscosity(
+    pub(crate) fn viscosity(
         &mut self,
         key: &str,
         format: &MaterialFormat,
@@ -110,7 +115,11 @@ impl Builder<'_> {
     }
 
     /// What a material pulls with along its fibres.
-    pub fn active_stress(&mut self, key: &str, format: &MaterialFormat) -> Option<ActiveStress> {
+    pub(crate) fn active_stress(
+        &mut self,
+        key: &str,
+        format: &MaterialFormat,
+    ) -> Option<ActiveStress> {
         let given = format.active_stress.as_ref()?;
         let key = format!("{key}.active_stress");
         let amplitude = self.amplitude(&format!("{key}.amplitude"), &given.amplitude);

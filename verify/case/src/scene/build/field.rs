@@ -107,7 +107,7 @@ fn with_signs(text: &str) -> Result<String, String> {
 
 impl Builder<'_> {
     /// A field by formulas, or `None` and a mistake.
-    pub fn formula(&mut self, key: &str, format: &FormulaFormat) -> Option<Field> {
+    pub(crate) fn formula(&mut self, key: &str, format: &FormulaFormat) -> Option<Field> {
         if self.is_plane() && format.z.is_some() {
             let message = "there is no motion along z in plane strain; remove it";
             self.mistake(&format!("{key}.z"), message);

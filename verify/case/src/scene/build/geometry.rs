@@ -15,7 +15,7 @@ type MapOf<'a> = (&'a Path, Option<UnitFormat>, Option<usize>);
 
 impl Builder<'_> {
     /// The solid that deforms; its label map becomes that of label selectors.
-    pub fn read_body(&mut self, format: &ShapeFormat) {
+    pub(crate) fn read_body(&mut self, format: &ShapeFormat) {
         let key = "geometry.shape";
         let Some(body) = self.sound_shape(key, format) else { return };
         let section = body.validate_body().and_then(|()| body.section(&self.dimension));
@@ -25,7 +25,7 @@ impl Builder<'_> {
     }
 
     /// A sound shape, in plane strain its cross-section.
-    pub fn solid(&mut self, key: &str, format: &ShapeFormat) -> Option<Shape> {
+    pub(crate) fn solid(&mut self, key: &str, format: &ShapeFormat) -> Option<Shape> {
         let shape = self.sound_shape(key, format)?;
         shape.section(&self.dimension).map_err(|error| self.mistake(key, error)).ok()
     }
@@ -204,7 +204,7 @@ impl Builder<'_> {
     }
 
     /// A part of the body, or `None` and a mistake.
-    pub fn selector(&mut self, key: &str, format: &SelectorFormat) -> Option<Selector> {
+    pub(crate) fn selector(&mut self, key: &str, format: &SelectorFormat) -> Option<Selector> {
         match format {
             SelectorFormat::All => Some(Selector::All),
             SelectorFormat::Plane { point, normal, tolerance } => {
@@ -351,7 +351,7 @@ fn lies_in_labels(shape: &Shape) -> bool {
 }
 
 /// Whether the lengths of a shape were read from a file.
-pub fn comes_from_a_file(shape: &Shape) -> bool {
+pub(crate) fn comes_from_a_file(shape: &Shape) -> bool {
     match shape {
         Shape::Labels(_) | Shape::Surface(_) => true,
         Shape::Union(parts) | Shape::Intersection(parts) => parts.iter().any(comes_from_a_file),

@@ -15,7 +15,7 @@ const PAIRS: &str = "young_modulus and poisson_ratio, lame_modulus and shear_mod
 
 impl Builder<'_> {
     /// Regions with their materials; one region for a body of one material.
-    pub fn regions(&mut self, format: &CaseFormat) -> Vec<Region> {
+    pub(crate) fn regions(&mut self, format: &CaseFormat) -> Vec<Region> {
         let materials: BTreeMap<&str, Option<Region>> = (format.material.iter())
             .map(|(name, material)| (name.as_str(), self.material(name, material)))
             .collect();

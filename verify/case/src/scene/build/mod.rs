@@ -23,7 +23,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 /// Converts the whole case, or returns every mistake found.
-pub fn build(
+pub(crate) fn build(
     format: &CaseFormat,
     document: Document,
     file_name: &str,

@@ -21,7 +21,7 @@ const TOLERANCE_OF_GIVEN_NODES: f64 = 1e-6;
 const FLAT: f64 = 1e-6;
 
 /// Tolerance \[m\] of selectors that state none.
-pub fn tolerance(format: &DiscretisationFormat) -> f64 {
+pub(crate) fn tolerance(format: &DiscretisationFormat) -> f64 {
     match format.spacing {
         Some(spacing) if spacing > 0.0 => defaults::SELECTION_TOLERANCE * spacing,
         _ => TOLERANCE_OF_GIVEN_NODES,
@@ -30,7 +30,7 @@ pub fn tolerance(format: &DiscretisationFormat) -> f64 {
 
 impl Builder<'_> {
     /// The recipe, or `None` and a mistake.
-    pub fn recipe(&mut self, format: &DiscretisationFormat) -> Option<Recipe> {
+    pub(crate) fn recipe(&mut self, format: &DiscretisationFormat) -> Option<Recipe> {
         let basis = self.basis(format);
         let dilation = format.dilation.unwrap_or(defaults::dilation(basis));
         self.keys_of_cloud(format);

@@ -23,7 +23,7 @@ const ROUND_OFF: f64 = 1e-9;
 const EXTRAPOLATED: f64 = 0.05;
 
 impl Builder<'_> {
-    pub fn motion(&mut self, format: &TimeFormat) -> Motion {
+    pub(crate) fn motion(&mut self, format: &TimeFormat) -> Motion {
         self.keys_of_method(format);
         let motion = match format.method {
             MethodFormat::Dynamic => {
@@ -88,7 +88,7 @@ impl Builder<'_> {
         }
     }
 
-    pub fn probes(&mut self, format: &CaseFormat) -> Vec<Probe> {
+    pub(crate) fn probes(&mut self, format: &CaseFormat) -> Vec<Probe> {
         let regions: Vec<&str> = if format.region.is_empty() {
             vec!["body"]
         } else {
@@ -257,7 +257,7 @@ impl Builder<'_> {
         }
     }
 
-    pub fn outputs(&mut self, format: &OutputFormat, time: &TimeFormat) -> Outputs {
+    pub(crate) fn outputs(&mut self, format: &OutputFormat, time: &TimeFormat) -> Outputs {
         let times = format.times.clone().unwrap_or_default();
         let states = format.states.clone().unwrap_or_default();
         let both = format.times.is_some() && format.frames.is_some();

@@ -5,7 +5,7 @@ use toml_edit::{DocumentMut, Item, Value};
 
 /// Multiplies prescribed displacements and angles, tractions, pressures, inflows, body forces
 /// and initial velocities.
-pub fn scale_loads(document: &mut DocumentMut, factor: f64) {
+pub(crate) fn scale_loads(document: &mut DocumentMut, factor: f64) {
     let numbers = [
         ("prescribe", "displacement", &["x", "y", "z"][..]),
         ("prescribe", "rotation", &["angle"][..]),

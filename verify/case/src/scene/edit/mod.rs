@@ -7,7 +7,8 @@ mod paths;
 mod settings;
 mod values;
 
-pub use overrides::{NotAnOverride, Overridden, Override};
+pub(crate) use overrides::Overridden;
+pub use overrides::{NotAnOverride, Override};
 pub use paths::{with_absolute_paths, with_paths_from};
 pub use settings::edited;
 pub use values::EditError;

@@ -84,7 +84,7 @@ struct Place {
 
 /// The text of a case with overrides, and where each of them stands.
 #[derive(Debug, Clone)]
-pub struct Overridden {
+pub(crate) struct Overridden {
     /// The text with them.
     pub text: String,
     /// What they were.
@@ -95,7 +95,7 @@ pub struct Overridden {
 
 impl Overridden {
     /// Writes overrides into the text of a case, one after the other.
-    pub fn new(text: &str, overrides: &[Override]) -> Result<Overridden, Diagnostic> {
+    pub(crate) fn new(text: &str, overrides: &[Override]) -> Result<Overridden, Diagnostic> {
         let syntax = |error: toml_edit::TomlError| {
             Diagnostic::of_file(COMMAND_LINE, error.message().to_string())
         };
@@ -124,7 +124,7 @@ impl Overridden {
 
     /// A mistake under a key at a path that an override has set; none where none has. Where
     /// `created`, the path is one that the file does not have.
-    pub fn mistake(
+    pub(crate) fn mistake(
         &self,
         path: &str,
         created: bool,

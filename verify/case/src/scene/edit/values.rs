@@ -34,7 +34,10 @@ impl From<toml_edit::TomlError> for EditError {
 }
 
 /// The table at a path; a missing inner one is created.
-pub fn table<'a>(item: &'a mut Item, path: &[&str]) -> Result<&'a mut dyn TableLike, EditError> {
+pub(crate) fn table<'a>(
+    item: &'a mut Item,
+    path: &[&str],
+) -> Result<&'a mut dyn TableLike, EditError> {
     let absent = || EditError::Absent(path.join("."));
     let mut item = item;
     for (depth, key) in path.iter().enumerate() {
@@ -51,13 +54,13 @@ pub fn table<'a>(item: &'a mut Item, path: &[&str]) -> Result<&'a mut dyn TableL
 }
 
 /// Replaces a value and keeps the text around it, such as a comment.
-pub fn replace(old: &mut Value, mut new: Value) {
+pub(crate) fn replace(old: &mut Value, mut new: Value) {
     *new.decor_mut() = old.decor().clone();
     *old = new;
 }
 
 /// Sets a key to a value.
-pub fn set(table: &mut dyn TableLike, key: &str, new: Value) {
+pub(crate) fn set(table: &mut dyn TableLike, key: &str, new: Value) {
     match table.get_mut(key).and_then(Item::as_value_mut) {
         Some(old) => replace(old, new),
         None => drop(table.insert(key, Item::Value(new))),
@@ -65,20 +68,20 @@ pub fn set(table: &mut dyn TableLike, key: &str, new: Value) {
 }
 
 /// The number under a key, whole or not.
-pub fn float(table: &dyn TableLike, key: &str) -> Option<f64> {
+pub(crate) fn float(table: &dyn TableLike, key: &str) -> Option<f64> {
     let item = table.get(key)?;
     item.as_float().or_else(|| item.as_integer().map(|number| number as f64))
 }
 
 /// Multiplies the number under a key, if it is there.
-pub fn scale(table: &mut dyn TableLike, key: &str, factor: f64) {
+pub(crate) fn scale(table: &mut dyn TableLike, key: &str, factor: f64) {
     if let Some(old) = float(table, key) {
         set(table, key, Value::from(rounded(old * factor)));
     }
 }
 
 /// Multiplies a number in every row of a list of tables, if it is there.
-pub fn scale_rows(table: &mut dyn TableLike, list: &str, key: &str, factor: f64) {
+pub(crate) fn scale_rows(table: &mut dyn TableLike, list: &str, key: &str, factor: f64) {
     let Some(item) = table.get_mut(list) else { return };
     for index in 0.. {
         let Some(row) = item.get_mut(index).and_then(Item::as_table_like_mut) else { break };
@@ -87,6 +90,6 @@ pub fn scale_rows(table: &mut dyn TableLike, list: &str, key: &str, factor: f64)
 }
 
 /// Nine digits are enough for a length, and read better than seventeen.
-pub fn rounded(number: f64) -> f64 {
+pub(crate) fn rounded(number: f64) -> f64 {
     format!("{number:.8e}").parse().unwrap_or(number)
 }

@@ -29,7 +29,7 @@ macro_rules! choice {
 
         impl $name {
             /// Every word that can be written.
-            pub const WORDS: &[&str] = &[$($word),+];
+            pub(crate) const WORDS: &[&str] = &[$($word),+];
         }
 
         impl<'de> serde::Deserialize<'de> for $name {

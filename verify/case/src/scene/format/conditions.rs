@@ -86,14 +86,6 @@ pub struct FormulaFormat {
     pub factor: f64,
 }
 
-impl FormulaFormat {
-    /// The formulas of all three components.
-    pub fn components(&self) -> [String; 3] {
-        let z = self.z.clone().unwrap_or_else(|| "0".into());
-        [self.x.clone(), self.y.clone(), z]
-    }
-}
-
 /// Displacements at amplitude 1 at scattered points, such as measured ones, or directions. Between
 /// them the linear function counts that fits the nearest 16 best.
 #[derive(Debug, Deserialize, Serialize, JsonSchema)]
@@ -126,7 +118,7 @@ fn one() -> f64 {
 
 impl DataFormat {
     /// Name of the point data of a VTU file.
-    pub fn field_name(&self) -> &str {
+    pub(crate) fn field_name(&self) -> &str {
         self.field.as_deref().unwrap_or("displacement")
     }
 }

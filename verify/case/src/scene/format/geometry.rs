@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A vector in space: three numbers.
-pub type Triple = [f64; 3];
+pub(crate) type Triple = [f64; 3];
 
 /// A solid.
 #[derive(Debug, Deserialize, Serialize, JsonSchema)]

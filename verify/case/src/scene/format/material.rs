@@ -93,7 +93,7 @@ pub struct LawFormat(pub &'static NamedLaw);
 
 impl LawFormat {
     /// As case files write it.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         self.0.name
     }
 }

@@ -10,18 +10,18 @@ mod material;
 mod recipe;
 mod time;
 
-pub use case::{CaseFormat, DimensionFormat, RegionFormat};
-pub use conditions::{
+pub(crate) use case::{CaseFormat, DimensionFormat, RegionFormat};
+pub(crate) use conditions::{
     AmplitudeFormat, BeyondFormat, DataFormat, DisplacementFormat, FluidFormat, FormulaFormat,
     ObstacleFormat, PrescribeFormat, RigidMotionFormat, RotationFormat,
 };
-pub use fibres::DirectionFormat;
-pub use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
-pub use material::{MaterialFormat, PronyTermFormat, VolumetricFormat};
-pub use recipe::{
+pub(crate) use fibres::DirectionFormat;
+pub(crate) use geometry::{SelectorFormat, ShapeFormat, Triple, UnitFormat};
+pub(crate) use material::{MaterialFormat, PronyTermFormat, VolumetricFormat};
+pub(crate) use recipe::{
     BasisFormat, CloudFormat, DiscretisationFormat, EnforcementFormat, GradientsFormat, GridFormat,
     MassFormat, MaterialBordersFormat, VolumetricProjectionFormat, WeightFunctionFormat,
 };
-pub use time::{
+pub(crate) use time::{
     LatticeFormat, MethodFormat, OutputFormat, PointsFormat, ProbeFormat, SolverFormat, TimeFormat,
 };

@@ -64,7 +64,7 @@ pub struct DiscretisationFormat {
 
 impl DiscretisationFormat {
     /// Replaces what this table chooses by a word; the rest of the recipe stays.
-    pub fn choose(&self, recipe: &mut Recipe) {
+    pub(crate) fn choose(&self, recipe: &mut Recipe) {
         choose(&mut recipe.weight_function, self.weight_function);
         choose(&mut recipe.mass, self.mass);
         choose(&mut recipe.enforcement, self.enforcement);

@@ -21,7 +21,7 @@ use minijinja::{Value, context};
 use template::table_value;
 
 /// The page as one file without links to other files.
-pub fn to_html(report: &Report) -> anyhow::Result<String> {
+pub(crate) fn to_html(report: &Report) -> anyhow::Result<String> {
     let studies: Vec<Value> = report.studies.iter().map(study_value).collect();
     let failures: Vec<Value> =
         report.checks().filter(|check| !check.pass).map(check_value).collect();

@@ -10,10 +10,10 @@ const LONG: usize = 24;
 /// Style of every page; that of figures is [`super::super::svg::STYLE`].
 pub const STYLE: &str = include_str!("page/page.css");
 /// Script of every page.
-pub const SCRIPT: &str = include_str!("page/page.js");
+pub(crate) const SCRIPT: &str = include_str!("page/page.js");
 
 /// The templates of all pages.
-pub fn pages() -> anyhow::Result<Environment<'static>> {
+pub(crate) fn pages() -> anyhow::Result<Environment<'static>> {
     let mut pages = Environment::new();
     pages.add_template("shared.html", include_str!("page/shared.html"))?;
     pages.add_template("index.html", include_str!("page/index.html"))?;
@@ -23,7 +23,7 @@ pub fn pages() -> anyhow::Result<Environment<'static>> {
 }
 
 /// A table as a value of a template.
-pub fn table_value(table: &Table) -> Value {
+pub(crate) fn table_value(table: &Table) -> Value {
     let is_number =
         |index: usize| table.rows.iter().any(|row| matches!(row.get(index), Some(Cell::Number(_))));
     let columns: Vec<Value> = table

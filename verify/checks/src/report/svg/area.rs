@@ -15,7 +15,7 @@ pub(super) struct Area {
 
 impl Area {
     /// Pixels of a point, None where it cannot be drawn.
-    pub fn place(&self, (x, y): (f64, f64)) -> Option<[f64; 2]> {
+    pub(crate) fn place(&self, (x, y): (f64, f64)) -> Option<[f64; 2]> {
         Some([self.x.position(x)?, self.y.position(y)?])
     }
 }

@@ -33,7 +33,12 @@ pub(super) struct Ticks {
 
 impl Scale {
     /// Covers all usable values with some air, drawn from pixel `from` to `to`.
-    pub fn covering(values: impl Iterator<Item = f64>, log: bool, from: f64, to: f64) -> Scale {
+    pub(crate) fn covering(
+        values: impl Iterator<Item = f64>,
+        log: bool,
+        from: f64,
+        to: f64,
+    ) -> Scale {
         let usable = |v: &f64| v.is_finite() && (!log || *v > 0.0);
         let mapped = values.filter(usable).map(|v| if log { v.log10() } else { v });
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -57,12 +62,12 @@ impl Scale {
     }
 
     /// Rows of the numbers 0, 1, 2 … from pixel `from` down to `to`.
-    pub fn of_rows(count: usize, from: f64, to: f64) -> Scale {
+    pub(crate) fn of_rows(count: usize, from: f64, to: f64) -> Scale {
         Scale { log: false, low: -0.5, high: count as f64 - 0.5, from, to }
     }
 
     /// Pixel of a value, None where it has none.
-    pub fn position(&self, value: f64) -> Option<f64> {
+    pub(crate) fn position(&self, value: f64) -> Option<f64> {
         if !value.is_finite() || (self.log && value <= 0.0) {
             return None;
         }
@@ -72,13 +77,13 @@ impl Scale {
     }
 
     /// Value at a pixel.
-    pub fn value(&self, pixel: f64) -> f64 {
+    pub(crate) fn value(&self, pixel: f64) -> f64 {
         let part = (pixel - self.from) / (self.to - self.from);
         let mapped = self.low + part * (self.high - self.low);
         if self.log { 10_f64.powf(mapped) } else { mapped }
     }
 
-    pub fn ticks(&self) -> Ticks {
+    pub(crate) fn ticks(&self) -> Ticks {
         if self.log { self.log_ticks() } else { self.linear_ticks(self.low, self.high) }
     }
 
@@ -139,7 +144,7 @@ impl Scale {
 
 impl Ticks {
     /// A tick at each of 0, 1, 2 …
-    pub fn named(names: &[String]) -> Ticks {
+    pub(crate) fn named(names: &[String]) -> Ticks {
         let tick = |(row, name): (usize, &String)| Tick {
             value: row as f64,
             label: name.clone(),
@@ -151,7 +156,10 @@ impl Ticks {
     /// Ticks whose labels do not overlap one of lower rank or further left, with the
     /// middles of their labels; `extent` is the middle of a label and half of its size in
     /// pixels.
-    pub fn labelled(&self, extent: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Tick, f64)> {
+    pub(crate) fn labelled(
+        &self,
+        extent: impl Fn(&Tick) -> Option<(f64, f64)>,
+    ) -> Vec<(&Tick, f64)> {
         let mut order: Vec<&Tick> = self.major.iter().collect();
         order.sort_by_key(|tick| tick.rank);
         let mut occupied: Vec<(f64, f64)> = Vec::new();

@@ -31,7 +31,7 @@ impl Anchor {
 
 impl Canvas {
     /// A path with the commands of [`polyline`] or [`marker`].
-    pub fn path(&mut self, class: &str, commands: &str, dash: &str) {
+    pub(crate) fn path(&mut self, class: &str, commands: &str, dash: &str) {
         if commands.is_empty() {
             return;
         }
@@ -55,7 +55,7 @@ impl Canvas {
     }
 
     /// A text that reads upwards, centred at `at`.
-    pub fn upright_text(&mut self, at: [f64; 2], text: &str) {
+    pub(crate) fn upright_text(&mut self, at: [f64; 2], text: &str) {
         let (x, y, text) = (pixels(at[0]), pixels(at[1]), escape(text));
         let _ = writeln!(
             self.body,
@@ -64,14 +64,14 @@ impl Canvas {
     }
 
     /// Another picture of this size, as it is.
-    pub fn picture(&mut self, at: [f64; 2], size: [f64; 2], svg: &str) {
+    pub(crate) fn picture(&mut self, at: [f64; 2], size: [f64; 2], svg: &str) {
         let [x, y, width, height] = [at[0], at[1], size[0], size[1]].map(pixels);
         let place = format!("<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"");
         let _ = writeln!(self.body, "{place}{}", svg.trim_start_matches("<svg").trim_end());
     }
 
     /// Closes the picture; `label` is what a screen reader says.
-    pub fn finish(self, width: f64, height: f64, label: &str) -> String {
+    pub(crate) fn finish(self, width: f64, height: f64, label: &str) -> String {
         format!(
             "<svg class=\"figure\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" \
              role=\"img\" aria-label=\"{}\">\n{}</svg>\n",

@@ -16,7 +16,7 @@ pub(super) struct Legend {
 impl Legend {
     /// Flows `names` into rows of `width`; a name that is too long has a row
     /// of its own and is cut.
-    pub fn new(names: &[&str], width: f64) -> Legend {
+    pub(crate) fn new(names: &[&str], width: f64) -> Legend {
         let (mut x, mut row) = (0.0, 0);
         let mut places = Vec::new();
         for name in names {
@@ -31,13 +31,13 @@ impl Legend {
         Legend { places, rows }
     }
 
-    pub fn height(&self) -> f64 {
+    pub(crate) fn height(&self) -> f64 {
         self.rows as f64 * ROW
     }
 
     /// Draws all entries; `swatch` draws the sample of one entry, by its index,
     /// between two points.
-    pub fn draw(
+    pub(crate) fn draw(
         &self,
         canvas: &mut Canvas,
         names: &[&str],

@@ -11,7 +11,7 @@ mod scale;
 mod slope;
 
 pub use canvas::escape;
-pub use panels::{PanelParts, parts};
+pub(crate) use panels::parts;
 
 use crate::study::Figure;
 

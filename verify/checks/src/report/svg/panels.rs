@@ -10,7 +10,7 @@ const GAP: f64 = 14.0;
 const TITLE: f64 = 20.0;
 
 /// The pictures that panels consist of.
-pub struct PanelParts {
+pub(crate) struct PanelParts {
     /// Whether they are plots, which are smaller than drawings.
     pub plots: bool,
     /// Of all panels, where they share one.
@@ -20,7 +20,7 @@ pub struct PanelParts {
 }
 
 /// The pictures of panels, to be arranged by a page.
-pub fn parts(panels: &Panels) -> PanelParts {
+pub(crate) fn parts(panels: &Panels) -> PanelParts {
     let plots: Vec<&Plot> = panels.panels.iter().filter_map(plot_of).collect();
     let picture = |figure: &Figure| match figure {
         Figure::Plot(plot) => plot::sized(plot, &plots, &plot::SMALL),

@@ -8,7 +8,7 @@ use mtled::material::Law;
 
 /// A homogeneous sheet under biaxial stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BiaxialState {
+pub(crate) struct BiaxialState {
     /// Stretch of the thickness \[–\].
     pub lateral_stretch: f64,
     /// Forces per reference area P₁₁ and P₂₂ \[Pa\].
@@ -17,7 +17,7 @@ pub struct BiaxialState {
 
 /// Solves P₃₃(diag(λ₁, λ₂, λ₃)) = 0 for λ₃. None where no stretch within a
 /// factor of four frees the face.
-pub fn biaxial_stress(law: &Law, stretches: [f64; 2]) -> Option<BiaxialState> {
+pub(crate) fn biaxial_stress(law: &Law, stretches: [f64; 2]) -> Option<BiaxialState> {
     let P = |lateral: f64| {
         let F = Matrix3::from_diagonal(&Vector3::new(stretches[0], stretches[1], lateral));
         law.first_piola_kirchhoff(&F)

@@ -1,7 +1,7 @@
 //! Roots of functions of one variable.
 
 /// Root of an increasing function between `low` and `high`, to the last bit.
-pub fn bisect(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn bisect(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
     loop {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
@@ -13,7 +13,7 @@ pub fn bisect(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64
 
 /// The lateral stretch at which the lateral stress `free` vanishes: searched for from 1
 /// in the direction of decreasing |stress|, within a factor of four.
-pub fn free_stretch(free: impl Fn(f64) -> f64) -> Option<f64> {
+pub(crate) fn free_stretch(free: impl Fn(f64) -> f64) -> Option<f64> {
     if free(1.0) == 0.0 {
         return Some(1.0);
     }

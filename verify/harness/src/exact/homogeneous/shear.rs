@@ -5,14 +5,14 @@ use mtled::algebra::tensor::Matrix3;
 use mtled::material::Law;
 
 /// F = I + γ e₁⊗e₂ \[–\].
-pub fn deformation_gradient(shear: f64) -> Matrix3 {
+pub(crate) fn deformation_gradient(shear: f64) -> Matrix3 {
     let mut F = Matrix3::identity();
     F[(0, 1)] = shear;
     F
 }
 
 /// First Piola–Kirchhoff stress P(I + γ e₁⊗e₂) of a law \[Pa\].
-pub fn nominal_stress(law: &Law, shear: f64) -> Matrix3 {
+pub(crate) fn nominal_stress(law: &Law, shear: f64) -> Matrix3 {
     law.first_piola_kirchhoff(&deformation_gradient(shear))
 }
 

@@ -53,7 +53,7 @@ struct Errors {
 }
 
 /// Measures the errors of every basis and weight function on every cloud.
-pub fn consistency(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+pub(crate) fn consistency(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let mut rows = Vec::new();
     for (dimension, space) in [(PLANE, "2d"), (Dimension::Three, "3d")] {
         for (basis, order) in

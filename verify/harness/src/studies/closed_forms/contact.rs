@@ -47,7 +47,7 @@ fn solvers() -> [(&'static str, Motion); 2] {
 }
 
 /// Checks of all three.
-pub fn contact(bench: &Workbench, results: &mut Results) -> Result<()> {
+pub(crate) fn contact(bench: &Workbench, results: &mut Results) -> Result<()> {
     for (solver, motion) in solvers() {
         let relaxes = matches!(motion, Motion::Relaxed(_));
         let with = |problem: Problem| Problem { motion: motion.clone(), ..problem };

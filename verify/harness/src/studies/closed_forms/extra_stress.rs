@@ -28,7 +28,7 @@ const BRAIN: (OgdenTerm, [PronyTerm; 2]) = (
 const TENSION: f64 = 900.0;
 
 /// Relaxation, creep and contraction.
-pub fn extra_stress(results: &mut Results) -> Result<()> {
+pub(crate) fn extra_stress(results: &mut Results) -> Result<()> {
     let source =
         "Simo 1987; Miller, Chinzei 2002: what is left of a sudden stress, 1 − Σ g (1 − e^(−t/τ))";
     for (dimension, name) in [(Dimension::Three, "cube"), (PLANE, "square")] {

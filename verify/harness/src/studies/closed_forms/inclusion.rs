@@ -33,7 +33,7 @@ const JITTER: f64 = 0.3;
 const PLACES: usize = 24;
 
 /// Errors of the displacement at two spacings, and a check of each on the coarser cloud.
-pub fn inclusions(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn inclusions(bench: &Workbench, study: &mut Study) -> Result<()> {
     let (coarse, fine) = (8, bench.pick(12, 16));
     let mut rows = Vec::new();
     for (name, stiffness_ratio) in BALLS {

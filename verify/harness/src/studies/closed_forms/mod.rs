@@ -31,7 +31,7 @@ use mtled_run::run::{integrate, solve_case};
 use mtled_run::specimens::simple::relaxation;
 use mtled_run::specimens::spacing::spacing_of;
 
-pub fn closed_forms(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn closed_forms(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut results = Results::default();
     let bar = with_dense_grid(bench.case("uniaxial_bar")?)?;
     stretch(&bar, study, &mut results)?;

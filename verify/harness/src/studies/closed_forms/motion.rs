@@ -38,7 +38,7 @@ impl Observer for History {
 }
 
 /// Gravity acts suddenly on a column at rest: its top over one period.
-pub fn wave(
+pub(crate) fn wave(
     mut problem: Problem,
     exact: &ConfinedColumn,
     top: Vector3,
@@ -84,7 +84,7 @@ impl Observer for Mode {
 
 /// Small vibration of a cantilever in plane strain after gravity acts suddenly: the velocity of
 /// the first mode first vanishes after half a period.
-pub fn swing(results: &mut Results) -> Result<()> {
+pub(crate) fn swing(results: &mut Results) -> Result<()> {
     let (length, height) = (0.2, 0.01);
     let constants = ElasticConstants::from_young_poisson(1e6, 0.3)?;
     let beam = Beam {

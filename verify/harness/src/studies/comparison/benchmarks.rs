@@ -16,7 +16,7 @@ const BOUND: f64 = 0.02;
 /// The same of an undamped oscillation on a coarse cloud.
 const BOUND_DYNAMIC: f64 = 0.04;
 
-pub fn benchmarks(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn benchmarks(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut rows = Vec::new();
     let finer = bench.pick(vec![0.004, 0.002], vec![0.004, 0.002, 0.001]);
     tip(bench, study, &mut rows, "cook_membrane", &finer, cook::TIP)?;

@@ -14,7 +14,7 @@ use mtled_run::run::{Solved, solve_case};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// One case, its solution and its reference.
-pub struct Compared {
+pub(crate) struct Compared {
     pub case: Case,
     pub file: ReferenceFile,
     pub solved: Solved,
@@ -29,7 +29,7 @@ pub struct Compared {
 
 /// Solves all cases, each on one thread so that its CPU time can be measured, and as many at a
 /// time as there are threads.
-pub fn compare_all(bench: &Workbench) -> Vec<Result<Compared>> {
+pub(crate) fn compare_all(bench: &Workbench) -> Vec<Result<Compared>> {
     let next = AtomicUsize::new(0);
     let work = || {
         let mut done = Vec::new();
@@ -70,12 +70,12 @@ fn compare_here(bench: &Workbench, name: &str) -> Result<Compared> {
 
 impl Compared {
     /// Difference of all quantities of a group from the reference.
-    pub fn of(&self, group: Group) -> Option<Difference> {
+    pub(crate) fn of(&self, group: Group) -> Option<Difference> {
         difference(&self.case, group, &self.references, &self.computed)
     }
 
     /// The same of a finite-element mesh.
-    pub fn of_mesh(&self, group: Group, mesh: &Mesh) -> Option<Difference> {
+    pub(crate) fn of_mesh(&self, group: Group, mesh: &Mesh) -> Option<Difference> {
         let values = |reference: &ReferenceValues| {
             mesh.values.get(&reference.quantity.name).map(|values| values.flat())
         };

@@ -30,7 +30,7 @@ struct Level {
     neighbour_visits: f64,
 }
 
-pub fn convergence(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn convergence(bench: &Workbench, study: &mut Study) -> Result<()> {
     let all = all_series(bench)?;
     let spacing =
         all.iter().map(|l| in_spacing(l).map(|levels| (l, levels))).collect::<Result<Vec<_>>>()?;

@@ -36,7 +36,7 @@ fn provenance(costs: &[Costs]) -> String {
 }
 
 /// CPU time of each code over that of this solver at equal error, a row per case.
-pub fn times_at_equal_error(costs: &[Costs]) -> Plot {
+pub(crate) fn times_at_equal_error(costs: &[Costs]) -> Plot {
     let smallest = |costs: &Costs| {
         let ratios = costs.codes.iter().filter_map(|code| costs.ratio(code));
         ratios.map(Ratio::value).fold(f64::INFINITY, f64::min)
@@ -94,7 +94,7 @@ fn style_of(ratio: Ratio) -> SeriesStyle {
 }
 
 /// Error over CPU time, a panel per case.
-pub fn error_over_cost(costs: &[Costs]) -> Panels {
+pub(crate) fn error_over_cost(costs: &[Costs]) -> Panels {
     Panels {
         title: "Error over processor time".into(),
         caption: format!(
@@ -131,7 +131,7 @@ fn panel(costs: &Costs) -> Plot {
 }
 
 /// The same in numbers, a row per case.
-pub fn costs_table(costs: &[Costs]) -> Table {
+pub(crate) fn costs_table(costs: &[Costs]) -> Table {
     let ratio = |ratio: Option<Ratio>| match ratio {
         None => Cell::Text("–".into()),
         Some(Ratio::Equal(value)) => Cell::Number(value),

@@ -5,14 +5,14 @@ use mtled_run::accuracy::{Cost, Group, cost_at};
 
 /// Error \[–\] and CPU time \[s\] of one run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CostPoint {
+pub(crate) struct CostPoint {
     pub error: f64,
     pub cpu: f64,
 }
 
 /// The meshes of one finite-element code, from coarse to fine.
 #[derive(Debug)]
-pub struct CodeCosts {
+pub(crate) struct CodeCosts {
     pub code: String,
     /// When they ran, YYYY-MM-DD.
     pub date: String,
@@ -21,7 +21,7 @@ pub struct CodeCosts {
 
 /// All runs of a case.
 #[derive(Debug)]
-pub struct Costs {
+pub(crate) struct Costs {
     pub case: String,
     pub own: CostPoint,
     /// Error bar of the reference \[–\]; which of two errors below it is the smaller one is not
@@ -32,7 +32,7 @@ pub struct Costs {
 
 /// CPU time of a code over that of this solver at equal error \[–\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Ratio {
+pub(crate) enum Ratio {
     /// Between two meshes.
     Equal(f64),
     /// The coarsest mesh is as accurate.
@@ -42,7 +42,7 @@ pub enum Ratio {
 }
 
 impl Ratio {
-    pub fn value(self) -> f64 {
+    pub(crate) fn value(self) -> f64 {
         match self {
             Ratio::Equal(value) | Ratio::AtMost(value) | Ratio::AtLeast(value) => value,
         }
@@ -51,7 +51,7 @@ impl Ratio {
 
 impl Costs {
     /// The costs of a case whose displacements are compared.
-    pub fn of(compared: &Compared) -> Option<Costs> {
+    pub(crate) fn of(compared: &Compared) -> Option<Costs> {
         let groups = [Group::Displacement, Group::CentreOfMass];
         let (group, own) =
             groups.into_iter().find_map(|group| Some((group, compared.of(group)?)))?;
@@ -76,13 +76,13 @@ impl Costs {
 
     /// The error at which times are compared: that of this solver, or the reference's error bar
     /// where it is larger \[–\].
-    pub fn level(&self) -> f64 {
+    pub(crate) fn level(&self) -> f64 {
         self.own.error.max(self.floor)
     }
 
     /// CPU time of a code over that of this solver at [`Self::level`]; None for a code without
     /// meshes.
-    pub fn ratio(&self, code: &CodeCosts) -> Option<Ratio> {
+    pub(crate) fn ratio(&self, code: &CodeCosts) -> Option<Ratio> {
         let finest = code.meshes.last()?;
         let runs: Vec<(f64, f64)> = code.meshes.iter().map(|mesh| (mesh.error, mesh.cpu)).collect();
         Some(match cost_at(&runs, self.level()) {

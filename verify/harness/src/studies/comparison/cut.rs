@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// A vertical plane; a point of it is (across, up) \[m\].
 #[derive(Debug, Clone, Copy)]
-pub struct Plane {
+pub(crate) struct Plane {
     /// The point (0, 0) \[m\].
     origin: Vector3,
     across: Vector3,
@@ -17,7 +17,7 @@ pub struct Plane {
 
 /// What a plane is laid through.
 #[derive(Debug, Clone)]
-pub enum Through {
+pub(crate) enum Through {
     /// A part of the surface whose displacement is prescribed.
     Patch(Selector),
     /// The level of a body force.
@@ -27,7 +27,7 @@ pub enum Through {
 impl Plane {
     /// The vertical plane through the first spherical patch whose displacement is prescribed, or
     /// else through the first half-space that has a body force, along their normal.
-    pub fn of(problem: &Problem) -> Option<(Plane, Through)> {
+    pub(crate) fn of(problem: &Problem) -> Option<(Plane, Through)> {
         let patch = problem.conditions.iter().find_map(|condition| match &condition.part {
             Selector::Inside { shape: Shape::Sphere { centre, .. }, .. } => {
                 let through = Through::Patch(condition.part.clone());
@@ -54,7 +54,7 @@ impl Plane {
     }
 
     /// A point of the plane in space \[m\].
-    pub fn point(&self, across: f64, up: f64) -> Vector3 {
+    pub(crate) fn point(&self, across: f64, up: f64) -> Vector3 {
         self.origin + self.across * across + Vector3::z() * up
     }
 
@@ -88,7 +88,7 @@ impl Plane {
 
 /// Where the points of a grid on a plane were before the deformation.
 #[derive(Debug, Clone)]
-pub struct Cut {
+pub(crate) struct Cut {
     plane: Plane,
     bounds: ([f64; 2], [f64; 2]),
     /// Edge of a pixel \[m\].
@@ -100,7 +100,7 @@ pub struct Cut {
 
 impl Cut {
     /// The cut of a body that stays within `reach` \[m\] of its reference shape.
-    pub fn new(
+    pub(crate) fn new(
         field: &DisplacementField,
         body: &Shape,
         plane: Plane,
@@ -131,12 +131,12 @@ impl Cut {
     }
 
     /// A point of the plane in space \[m\].
-    pub fn point(&self, across: f64, up: f64) -> Vector3 {
+    pub(crate) fn point(&self, across: f64, up: f64) -> Vector3 {
         self.plane.point(across, up)
     }
 
     /// Outlines of a shape before the deformation, grown by `offset` \[m\].
-    pub fn before(&self, shape: &Shape, offset: f64) -> Vec<Vec<[f64; 2]>> {
+    pub(crate) fn before(&self, shape: &Shape, offset: f64) -> Vec<Vec<[f64; 2]>> {
         let (shape, plane) = (shape.clone(), self.plane);
         Plane::outlines(&self.bounds, self.step, move |a, b| {
             shape.signed_distance(&plane.point(a, b)) - offset
@@ -144,13 +144,13 @@ impl Cut {
     }
 
     /// Outlines of a shape after the deformation.
-    pub fn after(&self, shape: &Shape) -> Vec<Vec<[f64; 2]>> {
+    pub(crate) fn after(&self, shape: &Shape) -> Vec<Vec<[f64; 2]>> {
         self.level(self.distances(shape))
     }
 
     /// Outlines of where, after the deformation, a shape has moved by more than each of several
     /// distances \[m\].
-    pub fn moved(&self, shape: &Shape, distances: &[f64]) -> Vec<Vec<Vec<[f64; 2]>>> {
+    pub(crate) fn moved(&self, shape: &Shape, distances: &[f64]) -> Vec<Vec<Vec<[f64; 2]>>> {
         let inside = self.distances(shape);
         let further = |&distance: &f64| {
             let values = inside.iter().zip(&self.sources);
@@ -160,7 +160,7 @@ impl Cut {
     }
 
     /// The largest displacement in a shape \[m\].
-    pub fn largest_displacement(&self, shape: &Shape) -> f64 {
+    pub(crate) fn largest_displacement(&self, shape: &Shape) -> f64 {
         let inside = self.distances(shape);
         let moved = inside.iter().zip(&self.sources).filter(|(d, _)| **d < 0.0);
         moved.map(|(_, source)| source.norm()).fold(0.0, f64::max)

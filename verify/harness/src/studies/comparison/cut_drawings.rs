@@ -34,7 +34,7 @@ struct Shown<'a> {
 
 /// The cut of a case in space whose body is a label map: labels before and after, and the
 /// displacement; None for other cases.
-pub fn cut_panels(case: &Case, solved: &Solved) -> Result<Option<Panels>> {
+pub(crate) fn cut_panels(case: &Case, solved: &Solved) -> Result<Option<Panels>> {
     let (Shape::Labels(labels), Dimension::Three) = (&case.problem.body, &case.problem.dimension)
     else {
         return Ok(None);

@@ -40,7 +40,7 @@ struct Compared {
 }
 
 /// Compares every body at the spacing of its case, and in the full suite at two thirds of it.
-pub fn fibres(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn fibres(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut rows = Vec::new();
     for body in FIBRES {
         let reference: Reference = serde_json::from_str(body.reference)?;

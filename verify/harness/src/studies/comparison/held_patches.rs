@@ -102,7 +102,7 @@ fn energy(patch: &Patch, spacing: f64, poisson_ratio: f64, seed: u64) -> Result<
 }
 
 /// Energies of several clouds against one another and against that of a finer cloud.
-pub fn held_patches(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn held_patches(bench: &Workbench, study: &mut Study) -> Result<()> {
     let clouds: u64 = bench.pick(3, 10);
     let ratios = bench.pick(vec![0.45], vec![0.3, 0.45, 0.49]);
     let (spacing, finer) = (0.008, bench.pick(0.0055, 0.004));

@@ -3,7 +3,7 @@
 use mtled_run::accuracy::Group;
 
 /// Largest difference over the largest value of its group, without the reference's error bar \[–\].
-pub const TARGET: f64 = 0.02;
+pub(crate) const TARGET: f64 = 0.02;
 
 /// Cases whose load bends or twists them: only there are reaction moments compared.
 const MOMENTS: [&str; 5] =
@@ -57,7 +57,7 @@ const EXCEPTIONS: &[(&str, Groups, &str)] = &[
 
 /// The limit of a group of a case \[–\] and the reason where it is not [`TARGET`]; None where the
 /// group is not compared.
-pub fn limit(case: &str, group: Group) -> Option<(f64, &'static str)> {
+pub(crate) fn limit(case: &str, group: Group) -> Option<(f64, &'static str)> {
     let of_case = EXCEPTIONS.iter().find(|(name, ..)| *name == case);
     let exception = of_case.and_then(|(_, groups, reason)| {
         let (_, limit) = groups.iter().find(|(other, _)| *other == group)?;

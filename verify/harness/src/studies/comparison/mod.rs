@@ -26,7 +26,7 @@ use mtled_checks::study::{Bound, Check, Figure, Kind, Study};
 use mtled_run::accuracy::Group;
 
 /// Compares all bundled cases with their references.
-pub fn comparison(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn comparison(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut compared = Vec::new();
     let mut failures = Vec::new();
     for result in compare_all(bench) {

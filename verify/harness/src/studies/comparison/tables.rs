@@ -5,7 +5,7 @@ use mtled_checks::study::{Cell, Table, number, text};
 use mtled_run::accuracy::{Difference, Group};
 
 /// A row per case and kind of quantity.
-pub fn differences_table(compared: &[Compared]) -> Table {
+pub(crate) fn differences_table(compared: &[Compared]) -> Table {
     let mut rows = Vec::new();
     for case in compared {
         for group in Group::ALL {
@@ -36,7 +36,7 @@ pub fn differences_table(compared: &[Compared]) -> Table {
 }
 
 /// Table 1 of Horton 2007: centres of mass of the brain slice at the release and at the end.
-pub fn brain_table(brain: &Compared) -> Table {
+pub(crate) fn brain_table(brain: &Compared) -> Table {
     let last = brain.file.times_s.len() - 1;
     let nearest = |time: f64| {
         let distance = |index: &usize| (brain.file.times_s[*index] - time).abs();

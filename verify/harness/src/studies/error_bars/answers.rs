@@ -15,11 +15,11 @@ const KNOWN_WELL_ENOUGH: f64 = 0.5;
 /// concern, such as those of forces that vanish by symmetry \[–\].
 const NEGLIGIBLE: f64 = 1e-4;
 /// A bar of use is within this factor of the error \[–\].
-pub const USEFUL: f64 = 3.0;
+pub(crate) const USEFUL: f64 = 3.0;
 
 /// What is to be said of an error bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub(crate) enum Verdict {
     /// The error is known.
     Judged {
         /// It is not larger than the bar.
@@ -36,7 +36,7 @@ pub enum Verdict {
 }
 
 /// One answer.
-pub struct Answer {
+pub(crate) struct Answer {
     pub quantity: String,
     pub family: Family,
     /// \[unit of the family\]
@@ -49,7 +49,7 @@ pub struct Answer {
 }
 
 /// The answers of a subject and what their bars cost.
-pub struct Answered {
+pub(crate) struct Answered {
     pub set: Set,
     pub name: String,
     pub answers: Vec<Answer>,
@@ -62,7 +62,7 @@ pub struct Answered {
 }
 
 impl Answer {
-    pub fn verdict(&self) -> Verdict {
+    pub(crate) fn verdict(&self) -> Verdict {
         let Ok(bar) = self.bar else { return Verdict::InWords };
         let largest = self.error.max(bar);
         if largest < NEGLIGIBLE * self.largest {
@@ -79,7 +79,7 @@ impl Answer {
 }
 
 /// Solves a subject and estimates its errors on one thread, whose time is measured.
-pub fn answered(subject: &Subject) -> Result<Answered> {
+pub(crate) fn answered(subject: &Subject) -> Result<Answered> {
     on_threads(1, || {
         let start = ThreadTime::now();
         let (solved, record) = solve_case(&subject.case)?;

@@ -23,7 +23,7 @@ const WANTED: [f64; 2] = [0.9, 0.7];
 const COST: [f64; 2] = [0.4, 0.5];
 
 /// Solves every subject with its error bars and counts how often they hold.
-pub fn error_bars(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn error_bars(bench: &Workbench, study: &mut Study) -> Result<()> {
     let solve = |plan: &subjects::Plan| -> Result<Option<Answered>> {
         let Some(subject) = plan.subject(bench)? else { return Ok(None) };
         answered(&subject).map(Some).with_context(|| subject.name.clone())

@@ -19,7 +19,7 @@ use std::path::Path;
 
 /// Where a subject is from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Set {
+pub(crate) enum Set {
     /// Bundled cases with finite-element references, on which the factors were set.
     Bundled,
     /// Made-up bodies, known from finer clouds, on which the factors were set too.
@@ -31,17 +31,17 @@ pub enum Set {
 }
 
 /// A known value at the end of a run.
-pub struct Known {
+pub(crate) struct Known {
     pub values: Vec<f64>,
     /// Its own error, root mean square over positions.
     pub error: f64,
 }
 
 /// Known values by the names of their quantities.
-pub type KnownValues = BTreeMap<String, Known>;
+pub(crate) type KnownValues = BTreeMap<String, Known>;
 
 /// A case and what is known of it.
-pub struct Subject {
+pub(crate) struct Subject {
     pub set: Set,
     pub name: String,
     pub case: Case,
@@ -49,7 +49,7 @@ pub struct Subject {
 }
 
 /// A subject before its known values are computed.
-pub enum Plan {
+pub(crate) enum Plan {
     /// A bundled case on a cloud of its own, all lengths of its recipe multiplied.
     Bundled { name: &'static str, cloud: u64, factor: f64 },
     /// A field in a body on nodes this far apart \[m\].
@@ -127,7 +127,7 @@ const PROBES: [[f64; 3]; 5] =
 const JITTER: f64 = 0.1;
 
 /// What is solved in either suite, the most expensive first.
-pub fn plans(bench: &Workbench) -> Vec<Plan> {
+pub(crate) fn plans(bench: &Workbench) -> Vec<Plan> {
     let mut plans = Vec::new();
     let clouds = bench.pick(1, 3);
     for cloud in 0..clouds {
@@ -152,7 +152,7 @@ pub fn plans(bench: &Workbench) -> Vec<Plan> {
 
 impl Plan {
     /// The case with its known values; None where a bundled case has no reference.
-    pub fn subject(&self, bench: &Workbench) -> Result<Option<Subject>> {
+    pub(crate) fn subject(&self, bench: &Workbench) -> Result<Option<Subject>> {
         match *self {
             Plan::Bundled { name, cloud, factor } => bundled(bench, name, cloud, factor),
             Plan::Manufactured { body, field, cloud, spacing } => {

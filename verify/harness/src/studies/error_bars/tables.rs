@@ -9,7 +9,7 @@ use mtled_checks::study::{
 
 /// How many answers of a kind have which verdict.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Counts {
+pub(crate) struct Counts {
     pub judged: usize,
     pub within: usize,
     pub useful: usize,
@@ -20,7 +20,7 @@ pub struct Counts {
 
 impl Counts {
     /// Of the answers that `chosen` accepts by set and family.
-    pub fn of(all: &[Answered], chosen: &dyn Fn(Set, Family) -> bool) -> Counts {
+    pub(crate) fn of(all: &[Answered], chosen: &dyn Fn(Set, Family) -> bool) -> Counts {
         let mut counts = Counts::default();
         for subject in all {
             for answer in subject.answers.iter().filter(|a| chosen(subject.set, a.family)) {
@@ -40,19 +40,19 @@ impl Counts {
     }
 
     /// Fraction of the judged answers with an error within the bar \[–\].
-    pub fn within(&self) -> f64 {
+    pub(crate) fn within(&self) -> f64 {
         self.within as f64 / self.judged as f64
     }
 
     /// Fraction of the judged answers with a bar within a factor of 3 of the error \[–\].
-    pub fn useful(&self) -> f64 {
+    pub(crate) fn useful(&self) -> f64 {
         self.useful as f64 / self.judged as f64
     }
 }
 
 /// A set in reports and checks.
 #[derive(Debug, Clone, Copy)]
-pub struct Row {
+pub(crate) struct Row {
     pub set: Set,
     /// In ids of checks.
     pub id: &'static str,
@@ -65,7 +65,7 @@ pub struct Row {
 }
 
 /// The sets and what they must reach.
-pub const SETS: [Row; 4] = [
+pub(crate) const SETS: [Row; 4] = [
     Row {
         set: Set::Bundled,
         id: "bundled",
@@ -97,7 +97,7 @@ pub const SETS: [Row; 4] = [
 ];
 
 /// Those that no factor was set on.
-pub const CHECKED_ON: [Set; 1] = [Set::NewBodies];
+pub(crate) const CHECKED_ON: [Set; 1] = [Set::NewBodies];
 
 /// Families that share a row.
 const FAMILIES: [(&str, &[Family]); 4] = [
@@ -108,7 +108,7 @@ const FAMILIES: [(&str, &[Family]); 4] = [
 ];
 
 /// Counts by set and family.
-pub fn counts_table(all: &[Answered]) -> Table {
+pub(crate) fn counts_table(all: &[Answered]) -> Table {
     let mut rows = Vec::new();
     let mut row = |set: &str, family: &str, counts: Counts| {
         let mut cells = vec![Cell::Text(set.into()), Cell::Text(family.into())];
@@ -148,7 +148,7 @@ pub fn counts_table(all: &[Answered]) -> Table {
 }
 
 /// What the bars of every subject cost.
-pub fn cost_table(all: &[Answered]) -> Table {
+pub(crate) fn cost_table(all: &[Answered]) -> Table {
     let row = |subject: &Answered| {
         vec![
             Cell::Text(subject.name.clone()),
@@ -170,7 +170,7 @@ pub fn cost_table(all: &[Answered]) -> Table {
 }
 
 /// Every answer.
-pub fn answers_table(all: &[Answered]) -> Table {
+pub(crate) fn answers_table(all: &[Answered]) -> Table {
     let rows = all.iter().flat_map(|subject| {
         subject.answers.iter().map(|answer| {
             let (bar, verdict) = match (&answer.bar, answer.verdict()) {
@@ -214,7 +214,7 @@ fn columns() -> Vec<Column> {
 }
 
 /// Bar over error, over the error, where the factors were not set.
-pub fn figure(all: &[Answered]) -> Plot {
+pub(crate) fn figure(all: &[Answered]) -> Plot {
     let points = |set: Set, families: &[Family]| -> Vec<(f64, f64)> {
         let subjects = all.iter().filter(|subject| subject.set == set);
         let answers = subjects.flat_map(|subject| &subject.answers);

@@ -10,7 +10,7 @@ use mtled_checks::study::Kind;
 
 /// What the result of a run is compared with.
 #[derive(Debug, Clone)]
-pub enum Expected {
+pub(crate) enum Expected {
     /// The same right Cauchy–Green tensor C = FᵀF everywhere.
     Homogeneous(Matrix3),
     /// Vertical force \[N\] of the last condition.
@@ -29,7 +29,7 @@ pub enum Expected {
 
 impl Expected {
     /// What the error of a case is measured against.
-    pub fn label(&self) -> &'static str {
+    pub(crate) fn label(&self) -> &'static str {
         match self {
             Expected::Homogeneous(_) => "uniaxial closed form, largest error of C",
             Expected::Force(_) => "reaction of three-field finite elements",
@@ -44,7 +44,7 @@ impl Expected {
 
 /// The bound on the error of a case.
 #[derive(Debug, Clone, Copy)]
-pub enum Limit {
+pub(crate) enum Limit {
     /// From theory or a reference.
     Stated { kind: Kind, bound: f64, source: &'static str },
     /// Our own figure, with a remark.
@@ -53,7 +53,7 @@ pub enum Limit {
 
 /// A hard problem, and what its solution is compared with.
 #[derive(Debug, Clone)]
-pub struct HardCase {
+pub(crate) struct HardCase {
     pub id: &'static str,
     pub label: &'static str,
     pub problem: Problem,
@@ -77,7 +77,7 @@ const UNIFORM: Limit = Limit::Stated {
 };
 
 /// A case that is known to converge.
-pub fn case(
+pub(crate) fn case(
     id: &'static str,
     label: &'static str,
     problem: Problem,
@@ -102,7 +102,11 @@ pub fn case(
 
 /// A body of `height` \[m\] between rollers, elongated by a fraction of its height, and the expected
 /// uniform C.
-pub fn rolled(mut problem: Problem, height: f64, fraction: f64) -> Result<(Problem, Expected)> {
+pub(crate) fn rolled(
+    mut problem: Problem,
+    height: f64,
+    fraction: f64,
+) -> Result<(Problem, Expected)> {
     let law = problem.regions[0].material.law;
     let state = uniaxial::uniaxial_stress(&law, 1.0 + fraction)
         .context("the lateral stretch has not converged")?;

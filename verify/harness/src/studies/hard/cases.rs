@@ -24,7 +24,7 @@ use mtled_run::specimens::simple::{SIZE, free_body, tissue};
 const BONDED_REACTION: f64 = -18.76;
 
 /// All cases, the most expensive first.
-pub fn cases(bench: &Workbench) -> Result<Vec<HardCase>> {
+pub(crate) fn cases(bench: &Workbench) -> Result<Vec<HardCase>> {
     let spacing = SIZE / bench.pick(6.0, 10.0);
     let mut list = Vec::new();
     moving(bench, spacing, &mut list)?;

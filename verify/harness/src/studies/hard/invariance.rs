@@ -30,7 +30,7 @@ struct Frame {
 const ROUND_OFF: f64 = 1e-8;
 
 /// Solves the block in every frame and compares the displacements.
-pub fn invariance(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn invariance(bench: &Workbench, study: &mut Study) -> Result<()> {
     let home = Frame { scale: 1.0, offset: Vector3::zeros() };
     let problem_in = |frame| problem_in(frame, bench.seed(7));
     let base = problem_in(home)?;

@@ -18,7 +18,7 @@ use mtled_checks::study::{Bound, Cell, Check, Study, Table, number, text};
 use rayon::prelude::*;
 
 /// Runs every hard case, and one case in other units and orientations.
-pub fn hard(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+pub(crate) fn hard(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let cases = cases(bench)?;
     let outcomes: Vec<CaseOutcome> = cases.par_iter().map(run).collect();
     let pairs: Vec<(&HardCase, &CaseOutcome)> = cases.iter().zip(&outcomes).collect();

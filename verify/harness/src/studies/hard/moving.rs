@@ -10,7 +10,7 @@ use mtled::problem::{Amplitude, BodyForce, Motion, Obstacle, Problem, StepContro
 use mtled_run::specimens::simple::SIZE;
 
 /// Adds the cases to the list.
-pub fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
+pub(crate) fn moving(bench: &Workbench, spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     let resonates: &[&str] = &["finite", "Diverged", "Inverted"];
     for (id, label, safety_factor, ends, remark) in [
         (

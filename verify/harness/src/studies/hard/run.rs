@@ -19,7 +19,7 @@ use mtled_run::run::{Solved, integrate};
 
 /// Outcome of a case.
 #[derive(Debug)]
-pub enum CaseOutcome {
+pub(crate) enum CaseOutcome {
     /// It ended without an error.
     Finished(Box<CaseResult>),
     /// It ended with an error, in the set-up or the run.
@@ -28,7 +28,7 @@ pub enum CaseOutcome {
 
 /// What is measured of a finished run.
 #[derive(Debug, Clone)]
-pub struct CaseResult {
+pub(crate) struct CaseResult {
     pub nodes: usize,
     pub steps: usize,
     /// Smallest J of the run and of its last state \[–\]; NaN if any J is.
@@ -49,17 +49,17 @@ pub struct CaseResult {
 
 impl CaseResult {
     /// Whether the solution is finite and no point is inverted.
-    pub fn is_valid(&self) -> bool {
+    pub(crate) fn is_valid(&self) -> bool {
         self.finite && self.smallest_jacobian > 0.0
     }
 
     /// Whether the solution is wrong: an error of more than 10 %.
-    pub fn is_wrong(&self) -> bool {
+    pub(crate) fn is_wrong(&self) -> bool {
         self.error.is_some_and(|error| error.is_nan() || error > 0.1)
     }
 
     /// Label of the table.
-    pub fn verdict(&self) -> &'static str {
+    pub(crate) fn verdict(&self) -> &'static str {
         match (self.is_valid(), self.is_wrong(), self.crushed.is_some()) {
             (false, ..) => "not valid",
             (true, true, true) => "finite, wrong, with a warning",
@@ -71,7 +71,7 @@ impl CaseResult {
 }
 
 /// The variant of an error without its numbers.
-pub fn name_of(error: &Error) -> String {
+pub(crate) fn name_of(error: &Error) -> String {
     let text = match error {
         Error::Geometry(error) => format!("{error:?}"),
         error => format!("{error:?}"),
@@ -80,7 +80,7 @@ pub fn name_of(error: &Error) -> String {
 }
 
 /// Runs a case until it finishes or is refused.
-pub fn run(case: &HardCase) -> CaseOutcome {
+pub(crate) fn run(case: &HardCase) -> CaseOutcome {
     let simulation = match Simulation::new(&case.problem) {
         Ok(simulation) => simulation,
         Err(error) => return CaseOutcome::Refused { during: "set-up", error },

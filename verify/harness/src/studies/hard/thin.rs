@@ -9,7 +9,7 @@ use mtled::problem::{BackgroundGrid, Dimension, Problem};
 use mtled_run::specimens::simple::{PLANE, SIZE, free_body};
 
 /// Adds the cases to the list.
-pub fn thin(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
+pub(crate) fn thin(spacing: f64, list: &mut Vec<HardCase>) -> Result<()> {
     let (problem, expected) = slice(1.0, spacing)?;
     let label = "slice one spacing thick, rollers, compressed by 20 %";
     list.push(case("slice_1", label, problem, expected));

@@ -51,7 +51,7 @@ const NOTES: [&str; 4] = [
 ];
 
 /// Solves every scenario on clouds of several sizes and checks errors and orders.
-pub fn manufactured(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn manufactured(bench: &Workbench, study: &mut Study) -> Result<()> {
     let sizes = bench.pick(vec![5, 7, 9], vec![5, 7, 9, 13]);
     let both = [SCENARIOS.as_slice(), &[CONSISTENT, MIXED[0], MIXED[6]]].concat();
     let scenarios = bench.pick(both.clone(), [&both[..], &FINER, &MIXED[1..6]].concat());

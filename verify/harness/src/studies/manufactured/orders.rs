@@ -84,7 +84,7 @@ fn at_size(level: &Level, of: fn(&Errors) -> f64) -> (f64, f64) {
 }
 
 /// Compares orders and errors of the default recipe with the stored ones.
-pub fn check_levels(
+pub(crate) fn check_levels(
     bench: &Workbench,
     study: &mut Study,
     scenario: &Scenario,
@@ -113,7 +113,7 @@ pub fn check_levels(
 
 /// Compares the default gradients with those of constant stresses where quadrature is what the
 /// latter lack.
-pub fn check_second_order(
+pub(crate) fn check_second_order(
     bench: &Workbench,
     study: &mut Study,
     all: &[(Scenario, Vec<Level>)],
@@ -142,7 +142,7 @@ pub fn check_second_order(
 }
 
 /// Compares orders and the errors on the finest clouds with the targets.
-pub fn check_targets(
+pub(crate) fn check_targets(
     bench: &Workbench,
     study: &mut Study,
     all: &[(Scenario, Vec<Level>)],
@@ -229,7 +229,7 @@ fn check_pressure(bench: &Workbench, study: &mut Study, scenario: &Scenario, fin
 }
 
 /// Errors and orders of all scenarios, mean and standard deviation over clouds.
-pub fn table(all: &[(Scenario, Vec<Level>)]) -> Table {
+pub(crate) fn table(all: &[(Scenario, Vec<Level>)]) -> Table {
     let mut rows = Vec::new();
     for (scenario, levels) in all {
         let row = |size: String,
@@ -298,7 +298,7 @@ fn columns() -> Vec<Column> {
 }
 
 /// Errors against the spacing for one Poisson's ratio.
-pub fn figure(poisson_ratio: f64, all: &[(Scenario, Vec<Level>)]) -> Figure {
+pub(crate) fn figure(poisson_ratio: f64, all: &[(Scenario, Vec<Level>)]) -> Figure {
     let mut series = Vec::new();
     for (scenario, levels) in all.iter().filter(|(s, _)| s.poisson_ratio == poisson_ratio) {
         for quantity in &QUANTITIES {

@@ -8,7 +8,7 @@ use mtled_checks::study::{Bound, Cell, Study, Table, number, text};
 use rayon::prelude::*;
 
 /// One problem with both recipes, on all clouds of one size.
-pub struct Pair {
+pub(crate) struct Pair {
     scenario: Scenario,
     nodes_per_edge: usize,
     default: Vec<Errors>,
@@ -42,7 +42,7 @@ const RATIOS: [Ratio; 3] = [
 
 /// Solves with the plain scheme on the finer clouds of both scenarios, and with both recipes on clouds
 /// of the turned cube.
-pub fn pairs(bench: &Workbench, all: &[(Scenario, Vec<Level>)]) -> Result<Vec<Pair>> {
+pub(crate) fn pairs(bench: &Workbench, all: &[(Scenario, Vec<Level>)]) -> Result<Vec<Pair>> {
     let mut pairs = Vec::new();
     for scenario in COMPARED.map(|index| SCENARIOS[index]) {
         let series = all.iter().find(|(other, _)| other.name == scenario.name);
@@ -117,7 +117,7 @@ impl Pair {
 }
 
 /// Checks how many times smaller the errors of the default recipe are on the finest clouds.
-pub fn check_pairs(bench: &Workbench, study: &mut Study, pairs: &[Pair]) -> Result<()> {
+pub(crate) fn check_pairs(bench: &Workbench, study: &mut Study, pairs: &[Pair]) -> Result<()> {
     let finest = pairs.iter().map(|pair| pair.nodes_per_edge).max().context("no pairs")?;
     let finest = pairs.iter().filter(|pair| pair.nodes_per_edge == finest);
     finest.for_each(|pair| pair.add_checks(bench, study));
@@ -125,7 +125,7 @@ pub fn check_pairs(bench: &Workbench, study: &mut Study, pairs: &[Pair]) -> Resu
 }
 
 /// Mean errors over the clouds.
-pub fn plain_table(pairs: &[Pair]) -> Table {
+pub(crate) fn plain_table(pairs: &[Pair]) -> Table {
     let mut rows = Vec::new();
     for pair in pairs {
         let [plain_points, points] = pair.means(|e| e.points as f64);

@@ -19,13 +19,13 @@ use mtled::problem::Problem;
 use mtled_run::run::{Solved, integrate};
 
 /// Clouds per size, which differ in the random seed of their jitter.
-pub const CLOUDS: u64 = 5;
+pub(crate) const CLOUDS: u64 = 5;
 /// Displacements are compared at the centres of this many cells per edge, the same for every cloud.
 const PROBES: usize = 12;
 
 /// One solution in one material.
 #[derive(Debug, Clone, Copy)]
-pub struct Scenario {
+pub(crate) struct Scenario {
     /// Part of the ids of its checks.
     pub name: &'static str,
     pub label: &'static str,
@@ -39,7 +39,7 @@ pub struct Scenario {
 
 /// What is known on the boundary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Boundary {
+pub(crate) enum Boundary {
     /// Displacements.
     Prescribed,
     /// Displacements on three faces that meet, tractions on the others.
@@ -48,7 +48,7 @@ pub enum Boundary {
 
 /// Errors of one cloud, each in L2 over that of the solution \[–\].
 #[derive(Debug, Clone, Copy)]
-pub struct Errors {
+pub(crate) struct Errors {
     pub displacement: f64,
     /// The same of the field through the solution at the nodes; NaN on the turned cube, where sweeps
     /// do not find it.
@@ -68,7 +68,7 @@ pub struct Errors {
 
 /// All clouds of one size.
 #[derive(Debug, Clone)]
-pub struct Level {
+pub(crate) struct Level {
     pub nodes_per_edge: usize,
     /// \[m\]
     pub spacing: f64,
@@ -105,7 +105,7 @@ const fn finer(name: &'static str, label: &'static str, scenario: Scenario) -> S
 
 /// The general field where the material is compressible, the one of bounded pressure where it is
 /// nearly incompressible; the Mooney–Rivlin law of Horton 2007 is unstable at ν = 0.3.
-pub const SCENARIOS: [Scenario; 8] = {
+pub(crate) const SCENARIOS: [Scenario; 8] = {
     use Family::{Isochoric, LogJ, MooneyRivlin};
     use FieldKind::{General, NearlyIsochoric};
     [
@@ -121,7 +121,7 @@ pub const SCENARIOS: [Scenario; 8] = {
 };
 
 /// Only in the full suite.
-pub const FINER: [Scenario; 4] = [
+pub(crate) const FINER: [Scenario; 4] = [
     finer("log_j-nu300-finer", "log-J, 2 cells", SCENARIOS[0]),
     finer("isochoric-nu300-finer", "isochoric, 2 cells", SCENARIOS[1]),
     finer("log_j-nu490-finer", "log-J, 2 cells", SCENARIOS[2]),
@@ -130,7 +130,7 @@ pub const FINER: [Scenario; 4] = [
 
 /// With tractions; the quick suite has the first and the last. With the isochoric law at ν = 0.3 free
 /// faces are unstable: see the notes of the study.
-pub const MIXED: [Scenario; 7] = [
+pub(crate) const MIXED: [Scenario; 7] = [
     mixed("log_j-nu300-mixed", "log-J, tractions", SCENARIOS[0]),
     mixed("log_j-nu490-mixed", "log-J, tractions", SCENARIOS[2]),
     mixed("mooney_rivlin-nu490-mixed", "Mooney–Rivlin, tractions", SCENARIOS[4]),
@@ -141,7 +141,7 @@ pub const MIXED: [Scenario; 7] = [
 ];
 
 /// In both suites: what second order is compared with.
-pub const CONSISTENT: Scenario = Scenario {
+pub(crate) const CONSISTENT: Scenario = Scenario {
     name: "log_j-nu300-consistent",
     label: "log-J, constant stresses",
     recipe: RecipeKind::Consistent,
@@ -149,7 +149,7 @@ pub const CONSISTENT: Scenario = Scenario {
 };
 
 /// Errors of the cloud with this number.
-pub fn errors(
+pub(crate) fn errors(
     bench: &Workbench,
     scenario: &Scenario,
     nodes_per_edge: usize,

@@ -12,7 +12,7 @@ macro_rules! bundled {
 }
 
 /// (name, text) of every file in `verify/harness/faults`.
-pub const FAULTS: &[(&str, &str)] = bundled![
+pub(crate) const FAULTS: &[(&str, &str)] = bundled![
     "01_sign_of_stress",
     "02_last_point_dropped",
     "03_constant_of_rubber",
@@ -75,7 +75,7 @@ struct TestedFault {
     seconds: f64,
 }
 
-pub fn faults(_: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn faults(_: &Workbench, study: &mut Study) -> Result<()> {
     let record: FaultRecord =
         serde_json::from_str(mtled_reports::FAULTS).context("reports/faults.json")?;
     let stated: Vec<(&str, Fault)> = FAULTS

@@ -8,7 +8,7 @@ use mtled_case::reference::{Agreement, ReferenceFile, agreements};
 use mtled_checks::measure::grid_convergence_index;
 use mtled_checks::study::{Bound, Cell, Check, Kind, Study, Table, number, text};
 
-pub fn references(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn references(bench: &Workbench, study: &mut Study) -> Result<()> {
     self_test(study);
     let (mut values, mut meshes, mut unusable) = (Vec::new(), Vec::new(), Vec::new());
     for (name, _) in CASES {

@@ -37,7 +37,7 @@ impl Costs {
 }
 
 /// Measures the set-up of cubes of several sizes and of bundled cases.
-pub fn set_up(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+pub(crate) fn set_up(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let sizes: &[f64] = bench.pick(&[8.0, 16.0], &[8.0, 16.0, 30.0, 45.0]);
     let mut rows = Vec::new();
     for &cells in sizes {

@@ -24,7 +24,7 @@ const REACTION: f64 = 1e-4;
 
 /// Attaches to each failing check of a study a case that reproduces the failure: the smallest cube
 /// that also fails, else the bundled case that the check is about.
-pub fn attach(study: &mut Study) {
+pub(crate) fn attach(study: &mut Study) {
     if study.checks.iter().all(|check| check.pass || check.reproduce.is_some()) {
         return;
     }
@@ -39,7 +39,7 @@ pub fn attach(study: &mut Study) {
 /// The case at the coarsest of ever coarser `spacings` \[m\] at which it still fails;
 /// None if it passes at the first. The finest costs most, so the work is at most about twice
 /// that of the first.
-pub fn smallest_failing(
+pub(crate) fn smallest_failing(
     text: &str,
     spacings: &[f64],
     fails: impl Fn(&Case) -> bool,

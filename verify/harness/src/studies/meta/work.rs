@@ -18,7 +18,7 @@ struct Counters {
 }
 
 /// Compares the counters of the cases with the stored ones.
-pub fn work(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+pub(crate) fn work(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let count = |case: &&'static str| -> anyhow::Result<Counters> {
         let (solved, _) = solve_case(&bench.unvaried_case(case)?)?;
         let supports = &solved.simulation.discretisation.supports;

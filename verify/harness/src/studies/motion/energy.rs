@@ -24,7 +24,7 @@ const THREADS: [usize; 5] = [1, 2, 3, 4, 8];
 const STEPS: usize = 20_000;
 
 /// Conservation, resonance, balance and repeatability.
-pub fn energy(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+pub(crate) fn energy(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     conservation(bench, study)?;
     resonance(bench, study)?;
     balance(bench, study)?;

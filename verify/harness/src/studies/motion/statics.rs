@@ -74,7 +74,7 @@ struct Relaxed {
 }
 
 /// Solves every case by Newton's method and by relaxation with both kinds of masses.
-pub fn statics(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn statics(bench: &Workbench, study: &mut Study) -> Result<()> {
     let run = |&(name, label): &(&'static str, &'static str)| {
         let case = bench.case(name)?;
         // As stated in the full suite, coarser in the quick one.

@@ -16,7 +16,7 @@ use mtled_run::specimens::simple::{SIZE, block_shape, free_body, recipe, tissue}
 
 /// Records the energies every few steps.
 #[derive(Debug, Default)]
-pub struct Log {
+pub(crate) struct Log {
     every: usize,
     /// Time \[s\] and energies.
     pub rows: Vec<(f64, Energies)>,
@@ -46,12 +46,12 @@ impl Observer for Log {
 
 impl Log {
     /// Records every so many steps.
-    pub fn new(every: usize) -> Log {
+    pub(crate) fn new(every: usize) -> Log {
         Log { every, ..Log::default() }
     }
 
     /// The same, whose imbalance is that of the energy which central differences keep.
-    pub fn of_what_is_kept(every: usize) -> Log {
+    pub(crate) fn of_what_is_kept(every: usize) -> Log {
         Log { excess: Some(Vec::new()), ..Log::new(every) }
     }
 
@@ -64,7 +64,7 @@ impl Log {
     }
 
     /// (balance − first balance)/largest energy over time.
-    pub fn imbalance(&self) -> Vec<(f64, f64)> {
+    pub(crate) fn imbalance(&self) -> Vec<(f64, f64)> {
         let excess = |row: usize| self.excess.as_ref().map_or(0.0, |excess| excess[row]);
         let balance = |row: usize| self.rows[row].1.balance() - excess(row);
         let largest = self.largest();
@@ -75,7 +75,7 @@ impl Log {
 
 /// Result of a run.
 #[derive(Debug)]
-pub struct Vibration {
+pub(crate) struct Vibration {
     /// (time \[s\], change of the energy balance over the largest energy \[–\]).
     pub imbalance: Vec<(f64, f64)>,
     /// Steps until it ended or failed.
@@ -84,14 +84,14 @@ pub struct Vibration {
 
 impl Vibration {
     /// Standard deviation of the energy \[–\].
-    pub fn fluctuation(&self) -> f64 {
+    pub(crate) fn fluctuation(&self) -> f64 {
         let mean = average(&self.imbalance);
         let squares = self.imbalance.iter().map(|(_, e)| (e - mean) * (e - mean));
         (squares.sum::<f64>() / self.imbalance.len() as f64).sqrt()
     }
 
     /// Change of the mean energy from the first to the last quarter \[–\].
-    pub fn drift(&self) -> f64 {
+    pub(crate) fn drift(&self) -> f64 {
         let quarter = self.imbalance.len() / 4;
         let last = &self.imbalance[self.imbalance.len() - quarter..];
         (average(last) - average(&self.imbalance[..quarter])).abs()
@@ -104,7 +104,7 @@ fn average(samples: &[(f64, f64)]) -> f64 {
 
 /// A free block released from a stretched state, over `steps` steps of a fraction of the critical
 /// step at rest.
-pub fn vibrate(steps: usize, fraction: f64, seed: u64) -> anyhow::Result<Vibration> {
+pub(crate) fn vibrate(steps: usize, fraction: f64, seed: u64) -> anyhow::Result<Vibration> {
     let recipe = recipe(SIZE / 4.0, 0.3, seed);
     let mut problem = free_body(Dimension::Three, block_shape(), tissue(0.49)?, recipe);
     problem.motion = Motion::Dynamic { end: 1.0, step: StepControl::default(), damping: 0.0 };

@@ -11,7 +11,7 @@ use mtled_checks::measure::larger;
 use mtled_checks::study::Study;
 
 /// Checks of the identities on one jittered body.
-pub fn identities(
+pub(crate) fn identities(
     bench: &Workbench,
     study: &mut Study,
     body: &Body,

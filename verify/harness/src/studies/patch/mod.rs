@@ -22,7 +22,7 @@ use mtled_run::specimens::simple::{SIZE, relaxation};
 const BOUND: f64 = 1e-10;
 const BOUND_FREE: f64 = 1e-9;
 
-pub fn patch(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+pub(crate) fn patch(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     for body in &bodies(bench)? {
         for poisson_ratio in [0.3, 0.49] {
             let case = format!("{}-nu{:.0}", body.name, 100.0 * poisson_ratio);

@@ -12,7 +12,7 @@ use mtled_run::specimens::simple::{
 
 /// A body, its node spacing and its affine field.
 #[derive(Debug, Clone)]
-pub struct Body {
+pub(crate) struct Body {
     pub name: &'static str,
     pub dimension: Dimension,
     pub shape: Shape,
@@ -23,7 +23,7 @@ pub struct Body {
 
 /// How the patch is discretised.
 #[derive(Debug, Clone, Copy)]
-pub struct PatchRecipe {
+pub(crate) struct PatchRecipe {
     pub enforcement: Enforcement,
     pub gradients: Gradients,
     pub cells_per_spacing: f64,
@@ -31,7 +31,7 @@ pub struct PatchRecipe {
 }
 
 /// The defaults, with gradients consistent to round-off.
-pub const EXACT: PatchRecipe = PatchRecipe {
+pub(crate) const EXACT: PatchRecipe = PatchRecipe {
     enforcement: Enforcement::Collocation,
     gradients: Gradients::Consistent { tolerance: 1e-13 },
     cells_per_spacing: 1.26,
@@ -39,10 +39,10 @@ pub const EXACT: PatchRecipe = PatchRecipe {
 };
 
 /// Jitter of all clouds \[spacing\].
-pub const JITTER: f64 = 0.3;
+pub(crate) const JITTER: f64 = 0.3;
 
 /// Simple bodies in space and in a plane, and two of the bundled cases.
-pub fn bodies(bench: &Workbench) -> anyhow::Result<Vec<Body>> {
+pub(crate) fn bodies(bench: &Workbench) -> anyhow::Result<Vec<Body>> {
     let centre = Vector3::repeat(0.5 * SIZE);
     let body = |name, dimension: Dimension, shape, spacing| {
         let field = AffineField { H: affine_gradient(dimension.components()), centre };
@@ -76,7 +76,7 @@ pub fn bodies(bench: &Workbench) -> anyhow::Result<Vec<Body>> {
 }
 
 /// The free body, without loads.
-pub fn problem(
+pub(crate) fn problem(
     bench: &Workbench,
     body: &Body,
     poisson_ratio: f64,

@@ -2,9 +2,9 @@
 
 mod missed_targets;
 
-pub use missed_targets::is_missed;
+pub(crate) use missed_targets::is_missed;
 #[cfg(test)]
-pub use missed_targets::{MISSED, MISSED_IN_FULL};
+pub(crate) use missed_targets::{MISSED, MISSED_IN_FULL};
 
 use anyhow::{Context, Result};
 use mtled_checks::gate::Baseline;
@@ -36,14 +36,14 @@ struct FullBound {
 /// within [`FACTOR`], which is to be narrowed in the file. A check that is not stored is new:
 /// nothing judges it, it does not pass, and `--update-baseline` takes it up.
 #[derive(Debug)]
-pub struct StoredBounds {
+pub(crate) struct StoredBounds {
     /// Bounds and where they come from.
     bounds: BTreeMap<String, (Bound, String)>,
 }
 
 impl StoredBounds {
     /// Those of the quick suite, or of the full one.
-    pub fn read(full_suite: bool) -> Result<StoredBounds> {
+    pub(crate) fn read(full_suite: bool) -> Result<StoredBounds> {
         let baseline: Baseline =
             serde_json::from_str(mtled_reports::BASELINE).context("reports/baseline.json")?;
         let full: Vec<FullBound> =
@@ -62,7 +62,7 @@ impl StoredBounds {
     }
 
     /// The bound of a check and where it comes from.
-    pub fn bound(&self, id: &str) -> (Bound, String) {
+    pub(crate) fn bound(&self, id: &str) -> (Bound, String) {
         self.bounds
             .get(id)
             .cloned()

@@ -77,7 +77,7 @@ struct Errors {
 }
 
 /// Checks every law.
-pub fn laws(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn laws(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut rows = Vec::new();
     for (name, law) in all_laws()? {
         let mut random = Random(bench.seed(17));

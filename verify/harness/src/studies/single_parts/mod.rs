@@ -10,7 +10,7 @@ use anyhow::Result;
 use mtled_checks::study::Study;
 
 /// Checks of every part.
-pub fn parts(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn parts(bench: &Workbench, study: &mut Study) -> Result<()> {
     laws::laws(bench, study)?;
     model::masses(bench, study)?;
     model::amplitude(study);

@@ -20,13 +20,13 @@ use mtled_run::specimens::simple::{
 };
 
 /// A free jittered cube.
-pub fn cube(bench: &Workbench) -> Result<Problem> {
+pub(crate) fn cube(bench: &Workbench) -> Result<Problem> {
     let recipe = recipe(SIZE / 5.0, 0.3, bench.seed(3));
     Ok(free_body(Dimension::Three, block_shape(), tissue(0.49)?, recipe))
 }
 
 /// Lumped masses add up to the body's; those of the row sum also have its centre.
-pub fn masses(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn masses(bench: &Workbench, study: &mut Study) -> Result<()> {
     for (rule, name) in [(MassRule::EvenSplit, "even_split"), (MassRule::RowSum, "row_sum")] {
         let mut problem = cube(bench)?;
         problem.recipe.mass = rule;
@@ -65,7 +65,7 @@ fn centre_error(simulation: &Simulation) -> f64 {
 }
 
 /// The smooth amplitude starts and ends without velocity and acceleration.
-pub fn amplitude(study: &mut Study) {
+pub(crate) fn amplitude(study: &mut Study) {
     const S: f64 = 1e-3;
     let amplitude = Amplitude::Smooth { duration: 2.0 };
     let (start, end) = (amplitude.at(2.0 * S), 1.0 - amplitude.at(2.0 * (1.0 - S)));
@@ -88,7 +88,7 @@ pub fn amplitude(study: &mut Study) {
 }
 
 /// The reaction of a slab a fifth of a metre thick balances its load.
-pub fn thickness(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn thickness(bench: &Workbench, study: &mut Study) -> Result<()> {
     const THICKNESS: f64 = 0.2;
     let (traction, acceleration) = (Vector3::new(20.0, -30.0, 0.0), Vector3::new(0.0, -0.5, 0.0));
     let recipe = recipe(SIZE / 8.0, 0.3, bench.seed(3));
@@ -134,7 +134,7 @@ pub fn thickness(bench: &Workbench, study: &mut Study) -> Result<()> {
 }
 
 /// NaN in the initial displacement or velocity ends a run with an error.
-pub fn not_a_number(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn not_a_number(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut problem = cube(bench)?;
     problem.conditions = vec![bonded_face(2, 0.0, 0.0, Amplitude::Constant)];
     let moving = |step| Motion::Dynamic { end: 0.01, step, damping: 0.0 };

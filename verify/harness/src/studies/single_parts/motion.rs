@@ -29,7 +29,7 @@ use mtled_run::specimens::simple::{SIZE, bonded_face, recipe};
 const STEP: f64 = 1e-6;
 
 /// Forces do not depend on the threads, to the last bit.
-pub fn threads(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn threads(bench: &Workbench, study: &mut Study) -> Result<()> {
     let mut problem = cube(bench)?;
     problem.recipe = recipe(SIZE / 10.0, 0.3, bench.seed(3));
     problem.recipe.grid = BackgroundGrid::with_cell(SIZE / 20.0);
@@ -59,7 +59,7 @@ fn force_on(threads: usize, model: &Model, u: &[f64]) -> Result<Vec<f64>> {
 }
 
 /// A component that is prescribed alone has its value after one step.
-pub fn components(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn components(bench: &Workbench, study: &mut Study) -> Result<()> {
     const MOVED: f64 = 1e-3 * SIZE;
     for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
         let mut problem = cube(bench)?;
@@ -91,7 +91,7 @@ pub fn components(bench: &Workbench, study: &mut Study) -> Result<()> {
 }
 
 /// Contact moves nodes that have entered an obstacle to its surface.
-pub fn contact(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn contact(bench: &Workbench, study: &mut Study) -> Result<()> {
     const DEPTH: f64 = 0.02 * SIZE;
     let mut problem = cube(bench)?;
     let centre = Vector3::new(0.5 * SIZE, 0.5 * SIZE, -SIZE + DEPTH);
@@ -123,7 +123,7 @@ pub fn contact(bench: &Workbench, study: &mut Study) -> Result<()> {
 }
 
 /// A falling free body reaches the speed at which damping balances its weight.
-pub fn damping(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn damping(bench: &Workbench, study: &mut Study) -> Result<()> {
     const STEPS: usize = 60;
     let mut problem = cube(bench)?;
     let (acceleration, amplitude) = (Vector3::new(0.0, 0.0, -9.81), Amplitude::Constant);

@@ -23,7 +23,7 @@ impl ImageFormat {
     }
 
     /// The format of a file that is to be read.
-    pub fn of_input(path: &Path) -> Result<ImageFormat, FileError> {
+    pub(crate) fn of_input(path: &Path) -> Result<ImageFormat, FileError> {
         let name = path.to_string_lossy().to_lowercase();
         let is = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
         let known = ".nrrd, .nhdr, .nii, .nii.gz, .hdr, .img, .hdr.gz, .img.gz";
@@ -48,7 +48,7 @@ fn of(path: &Path) -> Option<ImageFormat> {
 }
 
 /// Bytes compressed by gzip, the same for the same bytes.
-pub fn gzip(bytes: &[u8]) -> Result<Vec<u8>, Mistake> {
+pub(crate) fn gzip(bytes: &[u8]) -> Result<Vec<u8>, Mistake> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
     encoder.write_all(bytes).and_then(|()| encoder.finish()).map_err(Mistake::Unreadable)
 }

@@ -19,7 +19,11 @@ pub struct Grid {
 
 impl Grid {
     /// From its parts; the directions must span a volume.
-    pub fn new(size: [usize; 3], origin: Vector3, directions: Matrix3) -> Result<Grid, Mistake> {
+    pub(crate) fn new(
+        size: [usize; 3],
+        origin: Vector3,
+        directions: Matrix3,
+    ) -> Result<Grid, Mistake> {
         voxel_count(&size)?;
         let singular = || {
             let determinant = directions.determinant();

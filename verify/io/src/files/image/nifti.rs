@@ -11,7 +11,7 @@ use crate::files::unit::LengthUnit;
 use std::path::Path;
 
 /// Reads an image; NIfTI is RAS already.
-pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<Image, FileError> {
+pub(crate) fn read(path: &Path, unit: Option<LengthUnit>) -> Result<Image, FileError> {
     let voxels = read_voxels(path, Content::Numbers)?;
     let grid = voxels
         .frame(unit)
@@ -28,7 +28,7 @@ pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<Image, FileError> {
 
 /// The header of a NIfTI-1 image in one piece is kept, without extensions; another gets one of
 /// its grid.
-pub fn image(image: &Image, voxels: &[u8], format: ImageFormat) -> Result<Vec<u8>, Mistake> {
+pub(crate) fn image(image: &Image, voxels: &[u8], format: ImageFormat) -> Result<Vec<u8>, Mistake> {
     let (mut bytes, order) = match &image.header {
         Header::Nifti { bytes: Some(bytes), .. } => {
             let mut bytes = bytes.clone();
@@ -58,7 +58,11 @@ pub fn image(image: &Image, voxels: &[u8], format: ImageFormat) -> Result<Vec<u8
 }
 
 /// Five axes, the fourth of one entry, the fifth of the components along L, P and S \[mm\].
-pub fn field(grid: &Grid, vectors: &[[f32; 3]], format: ImageFormat) -> Result<Vec<u8>, Mistake> {
+pub(crate) fn field(
+    grid: &Grid,
+    vectors: &[[f32; 3]],
+    format: ImageFormat,
+) -> Result<Vec<u8>, Mistake> {
     let mut bytes = header(grid, Scalar::F32, true)?;
     bytes.reserve(12 * vectors.len());
     for (component, factor) in [-1e3, -1e3, 1e3].into_iter().enumerate() {

@@ -6,7 +6,7 @@ use crate::files::error::Mistake;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 
 /// Where the voxels start: behind the header and four bytes that say that it has no extension.
-pub const VOXELS_AT: usize = 352;
+pub(crate) const VOXELS_AT: usize = 352;
 
 /// Code of `intent_code` for a vector at each voxel.
 const INTENT_VECTOR: i16 = 1007;
@@ -15,7 +15,7 @@ const MILLIMETRE: u8 = 2;
 const SCANNER: i16 = 1;
 
 /// The header of one number per voxel, or of `vectors` of three. Lengths are in mm.
-pub fn header(grid: &Grid, scalar: Scalar, vectors: bool) -> Result<Vec<u8>, Mistake> {
+pub(crate) fn header(grid: &Grid, scalar: Scalar, vectors: bool) -> Result<Vec<u8>, Mistake> {
     let mut bytes = vec![0; VOXELS_AT];
     let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(value);
     put(0, &348i32.to_le_bytes());

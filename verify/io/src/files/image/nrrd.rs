@@ -15,7 +15,7 @@ use std::path::Path;
 const OF_THE_DATA: [&str; 5] = ["encoding", "endian", "datafile", "byteskip", "lineskip"];
 
 /// Reads an image into RAS.
-pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<Image, FileError> {
+pub(crate) fn read(path: &Path, unit: Option<LengthUnit>) -> Result<Image, FileError> {
     open_image(path).and_then(|opened| parse(opened, unit).map_err(|mistake| mistake.of(path)))
 }
 
@@ -31,7 +31,7 @@ fn parse(opened: Opened, unit: Option<LengthUnit>) -> Result<Image, Mistake> {
 }
 
 /// The header of an NRRD image is kept; a NIfTI image gets one of its grid.
-pub fn image(image: &Image, voxels: &[u8]) -> Result<Vec<u8>, Mistake> {
+pub(crate) fn image(image: &Image, voxels: &[u8]) -> Result<Vec<u8>, Mistake> {
     let mut text = match &image.header {
         Header::Nrrd { text } => kept_lines(text),
         Header::Nifti { scaling, .. } if *scaling != (1.0, 0.0) => {
@@ -69,7 +69,7 @@ fn kept_lines(text: &[u8]) -> Vec<u8> {
 }
 
 /// Components along L, P and S \[mm\] first, as ITK stores vectors.
-pub fn field(grid: &Grid, vectors: &[[f32; 3]]) -> Result<Vec<u8>, Mistake> {
+pub(crate) fn field(grid: &Grid, vectors: &[[f32; 3]]) -> Result<Vec<u8>, Mistake> {
     let [nx, ny, nz] = grid.size;
     let frame = frame(grid, "none ");
     let mut bytes = format!(

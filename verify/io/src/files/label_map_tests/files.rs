@@ -6,7 +6,7 @@ use mtled::geometry::LabelMap;
 use std::io::Write;
 
 /// Reads bytes as a file of this name in a folder of its own.
-pub fn read_as(name: &str, bytes: &[u8]) -> Result<LabelMap, Mistake> {
+pub(crate) fn read_as(name: &str, bytes: &[u8]) -> Result<LabelMap, Mistake> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
@@ -14,23 +14,23 @@ pub fn read_as(name: &str, bytes: &[u8]) -> Result<LabelMap, Mistake> {
 }
 
 /// As [`read_as`], with what is said about the labels.
-pub fn read_noted(name: &str, bytes: &[u8]) -> LabelMapFile {
+pub(crate) fn read_noted(name: &str, bytes: &[u8]) -> LabelMapFile {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
     read_label_map(&path, None, None).unwrap()
 }
 
-pub fn nrrd_text(header: &str, data: &[u8]) -> Vec<u8> {
+pub(crate) fn nrrd_text(header: &str, data: &[u8]) -> Vec<u8> {
     [b"NRRD0004\n", header.as_bytes(), b"\n", data].concat()
 }
 
-pub fn gzip(data: &[u8]) -> Vec<u8> {
+pub(crate) fn gzip(data: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
     encoder.write_all(data).unwrap();
     encoder.finish().unwrap()
 }
 
 /// Eight voxels with labels 0 to 7.
-pub const SMALL: &str = "type: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 2 3\n";
-pub const LABELS: [u8; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+pub(crate) const SMALL: &str = "type: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 2 3\n";
+pub(crate) const LABELS: [u8; 8] = [0, 1, 2, 3, 4, 5, 6, 7];

@@ -9,7 +9,7 @@ use nifti::NiftiHeader;
 const AGREE: f64 = 0.1;
 
 /// Reasons to doubt where an image lies.
-pub fn doubts(header: &NiftiHeader, size: [usize; 3]) -> Result<Vec<String>, Mistake> {
+pub(crate) fn doubts(header: &NiftiHeader, size: [usize; 3]) -> Result<Vec<String>, Mistake> {
     if header.sform_code <= 0 && header.qform_code <= 0 {
         return Ok(vec![
             "neither `sform_code` nor `qform_code` is set, so that the file does not say where its \
@@ -44,7 +44,7 @@ pub fn doubts(header: &NiftiHeader, size: [usize; 3]) -> Result<Vec<String>, Mis
 }
 
 /// Refuses a field with a number that is not finite.
-pub fn finite(field: &'static str, values: &[f32]) -> Result<(), Mistake> {
+pub(crate) fn finite(field: &'static str, values: &[f32]) -> Result<(), Mistake> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())
     } else {
@@ -54,7 +54,7 @@ pub fn finite(field: &'static str, values: &[f32]) -> Result<(), Mistake> {
 
 /// Centre of the first voxel and steps along the indices: sform, else qform,
 /// else pixdim alone.
-pub fn frame(header: &NiftiHeader) -> Result<(Vector3, Matrix3), Mistake> {
+pub(crate) fn frame(header: &NiftiHeader) -> Result<(Vector3, Matrix3), Mistake> {
     let wide = |row: &[f32; 4]| row.map(f64::from);
     if header.sform_code > 0 {
         finite("srow_x", &header.srow_x)?;

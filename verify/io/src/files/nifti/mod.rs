@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 const HEADER: usize = 348;
 
 /// Reads a label map; NIfTI is RAS already. `unit` overrides the file's.
-pub fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileError> {
+pub(crate) fn read(path: &Path, unit: Option<LengthUnit>) -> Result<LabelMapFile, FileError> {
     let voxels = read_voxels(path, Content::Numbers)?;
     let files = voxels.files.clone();
     let (map, notes) = voxels.labels(unit).map_err(|mistake| mistake.of(path))?;
@@ -152,14 +152,14 @@ impl Content {
 
 impl Voxels {
     /// Centre of the first voxel and steps along the indices \[m\]; `unit` overrides the file's.
-    pub fn frame(&self, unit: Option<LengthUnit>) -> Result<(Vector3, Matrix3), Mistake> {
+    pub(crate) fn frame(&self, unit: Option<LengthUnit>) -> Result<(Vector3, Matrix3), Mistake> {
         let (origin, directions) = frame(&self.header)?;
         let metres = self.metres(unit)?;
         Ok((origin * metres, directions * metres))
     }
 
     /// The unit of length \[m\]; `unit` overrides the file's.
-    pub fn metres(&self, unit: Option<LengthUnit>) -> Result<f64, Mistake> {
+    pub(crate) fn metres(&self, unit: Option<LengthUnit>) -> Result<f64, Mistake> {
         Ok(unit.map_or_else(|| stated_unit(&self.header), Ok)?.in_metres())
     }
 

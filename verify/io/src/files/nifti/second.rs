@@ -5,16 +5,16 @@ use crate::files::error::Mistake;
 use nifti::{Endianness, NiftiHeader};
 
 /// Length of a header \[byte\].
-pub const HEADER: usize = 540;
+pub(crate) const HEADER: usize = 540;
 
 /// Whether a file starts as one of NIfTI-2.
-pub fn is_start(bytes: &[u8]) -> bool {
+pub(crate) fn is_start(bytes: &[u8]) -> bool {
     let length = HEADER as i32;
     bytes.starts_with(&length.to_le_bytes()) || bytes.starts_with(&length.to_be_bytes())
 }
 
 /// The fields that images need, and whether the voxels are in a file of their own.
-pub fn header(bytes: &[u8]) -> Result<(NiftiHeader, bool), Mistake> {
+pub(crate) fn header(bytes: &[u8]) -> Result<(NiftiHeader, bool), Mistake> {
     if bytes.len() < HEADER {
         return Err(Mistake::TruncatedHeader { found: bytes.len() });
     }

@@ -5,7 +5,7 @@ use mtled::algebra::tensor::Vector3;
 
 const EXPECTED: &str = "two or three finite numbers x, y, z, as many in every line";
 
-pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
+pub(crate) fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     let mut reader = reader(bytes, false);
     let mut columns = None;
     let mut width = None;
@@ -39,7 +39,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
 }
 
 /// Rows of cells, with comments after # and blanks around cells left out.
-pub fn reader(bytes: &[u8], has_headers: bool) -> csv::Reader<&[u8]> {
+pub(crate) fn reader(bytes: &[u8], has_headers: bool) -> csv::Reader<&[u8]> {
     csv::ReaderBuilder::new()
         .has_headers(has_headers)
         .flexible(true)
@@ -49,12 +49,12 @@ pub fn reader(bytes: &[u8], has_headers: bool) -> csv::Reader<&[u8]> {
 }
 
 /// A file that is no text.
-pub fn undecodable(error: csv::Error) -> Mistake {
+pub(crate) fn undecodable(error: csv::Error) -> Mistake {
     Mistake::Undecodable { encoding: "CSV", reason: error.to_string() }
 }
 
 /// A row that is not what was expected.
-pub fn bad_line(row: &csv::StringRecord, expected: &'static str) -> Mistake {
+pub(crate) fn bad_line(row: &csv::StringRecord, expected: &'static str) -> Mistake {
     let line = row.position().map_or(1, |position| position.line() as usize);
     let text = row.iter().collect::<Vec<_>>().join(",");
     Mistake::bad_line(line, &text, expected)

@@ -5,7 +5,7 @@ use crate::files::bytes::{ByteOrder, Scalar, start_of, take_line, take_numbers};
 use crate::files::error::Mistake;
 use mtled::algebra::tensor::Vector3;
 
-pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
+pub(crate) fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     if !bytes.starts_with(b"# vtk DataFile") {
         let format = "a legacy VTK file (# vtk DataFile Version)";
         return Err(Mistake::WrongFormat { format, start: start_of(bytes) });

@@ -14,7 +14,7 @@ struct Header {
     shape: Vec<u64>,
 }
 
-pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
+pub(crate) fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     let (values, columns) = numbers(bytes, &[2, 3], "(n, 2) or (n, 3)")?;
     Ok(from_rows(&values, columns))
 }

@@ -11,12 +11,12 @@ use quick_xml::events::{BytesStart, Event};
 /// No cloud has more nodes.
 const MOST_POINTS: usize = 20_000_000;
 
-pub fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
+pub(crate) fn parse(bytes: &[u8]) -> Result<Vec<Vector3>, Mistake> {
     vectors(bytes, None)
 }
 
 /// The vectors of an array of the point data, as many as points.
-pub fn point_data(bytes: &[u8], name: &str) -> Result<Vec<Vector3>, Mistake> {
+pub(crate) fn point_data(bytes: &[u8], name: &str) -> Result<Vec<Vector3>, Mistake> {
     vectors(bytes, Some(name))
 }
 

@@ -41,7 +41,7 @@ pub fn read_mesh(path: &Path) -> Result<MeshFile, FileError> {
     parse(&bytes).map_err(|mistake| mistake.of(path))
 }
 
-pub fn parse(bytes: &[u8]) -> Result<MeshFile, Mistake> {
+pub(crate) fn parse(bytes: &[u8]) -> Result<MeshFile, Mistake> {
     let file = XmlFile::parse(bytes, &SECTIONS, "a VTU file (XML with <VTKFile>)")?;
     let section = |name: &str| -> Result<Vec<NamedArray>, Mistake> {
         let own = file.arrays.iter().filter(|array| array.section == name && !array.is_text());

@@ -5,7 +5,7 @@ use mtled::algebra::tensor::Vector3;
 
 /// Why a polygon cannot be cut.
 #[derive(Debug, PartialEq)]
-pub enum CutError {
+pub(crate) enum CutError {
     /// Its edges cross, near this place \[m\].
     Crossed { at: Vector3 },
     /// It has more corners than the search for ears, whose time grows with their square, takes.
@@ -22,7 +22,7 @@ const FLAT: f64 = 1e-14;
 /// in a plane. Of the ears that can be cut off, that of the shortest diagonal is: a rule that
 /// does not depend on the corner with which the polygon starts. What has no area, as a polygon
 /// of two different corners, has no triangles.
-pub fn cut(
+pub(crate) fn cut(
     vertices: &[Vector3],
     corners: &[u32],
     triangles: &mut Vec<[u32; 3]>,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 /// A format that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     Stl,
     Obj,
     Ply,
@@ -28,7 +28,7 @@ impl Kind {
     ];
 
     /// The format that the extension of a name stands for.
-    pub fn of_name(path: &Path) -> Result<Kind, Mistake> {
+    pub(crate) fn of_name(path: &Path) -> Result<Kind, Mistake> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let known = Kind::ALL.iter().find(|(name, _)| *name == ending);
         known.map(|(_, kind)| *kind).ok_or(Mistake::UnknownSurface)
@@ -39,7 +39,7 @@ impl Kind {
     }
 
     /// Refuses a file of which the first bytes belong to another format.
-    pub fn check_content(self, bytes: &[u8]) -> Result<(), Mistake> {
+    pub(crate) fn check_content(self, bytes: &[u8]) -> Result<(), Mistake> {
         match content(bytes) {
             Some(Content::Surface(found)) if found != self => {
                 let (named, extension) = (self.extension(), found.extension());

@@ -5,7 +5,7 @@ use crate::files::bytes::{ByteOrder, Scalar, take_line, take_numbers};
 use crate::files::error::Mistake;
 
 /// The faces of a file; what is attached to points and cells behind them is not read.
-pub fn polygons(bytes: &[u8]) -> Result<Polygons, Mistake> {
+pub(crate) fn polygons(bytes: &[u8]) -> Result<Polygons, Mistake> {
     let mut file = File { rest: bytes, line: 0, binary: false };
     let mut found = Polygons::default();
     file.next_line();

@@ -32,7 +32,7 @@ const CURVED: [&str; 11] =
     ["cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "con"];
 
 /// The faces of a text.
-pub fn polygons(bytes: &[u8]) -> Result<Polygons, Mistake> {
+pub(crate) fn polygons(bytes: &[u8]) -> Result<Polygons, Mistake> {
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
     let mut reader = Reader::default();

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::io::ErrorKind;
 
 /// The faces of a file.
-pub fn polygons(bytes: &[u8]) -> Result<Polygons, Mistake> {
+pub(crate) fn polygons(bytes: &[u8]) -> Result<Polygons, Mistake> {
     let parser = Parser::<Item>::new();
     let bytes = with_line_ends(bytes);
     let mut reader = Reader::new(&bytes[..]);

@@ -9,7 +9,7 @@ use mtled::algebra::tensor::Vector3;
 
 /// Faces that share points.
 #[derive(Debug, Default)]
-pub struct Polygons {
+pub(crate) struct Polygons {
     /// As they stand in the file.
     pub points: Vec<[f64; 3]>,
     /// Numbers of the points of all faces, one face after the other.
@@ -24,13 +24,13 @@ pub struct Polygons {
 
 impl Polygons {
     /// Takes the axes that a header or a comment states, if it states any.
-    pub fn state_space(&mut self, text: &str) -> Result<(), Mistake> {
+    pub(crate) fn state_space(&mut self, text: &str) -> Result<(), Mistake> {
         self.space = Space::stated(text.as_bytes())?.unwrap_or(self.space);
         Ok(())
     }
 
     /// Adds a face; one of two corners is a line.
-    pub fn push(&mut self, corners: impl IntoIterator<Item = u32>) {
+    pub(crate) fn push(&mut self, corners: impl IntoIterator<Item = u32>) {
         let first = self.corners.len();
         self.corners.extend(corners);
         if self.corners.len() < first + 3 {
@@ -42,7 +42,7 @@ impl Polygons {
     }
 
     /// Adds the triangles of a strip, of which every second one runs the other way round.
-    pub fn push_strip(&mut self, points: &[u32]) {
+    pub(crate) fn push_strip(&mut self, points: &[u32]) {
         if points.len() < 3 {
             self.lines += 1;
         }
@@ -53,7 +53,7 @@ impl Polygons {
     }
 
     /// Triangles along R, A and S \[m\].
-    pub fn triangles(self, unit: LengthUnit) -> Result<SurfaceFile, Mistake> {
+    pub(crate) fn triangles(self, unit: LengthUnit) -> Result<SurfaceFile, Mistake> {
         if self.points.is_empty() {
             return Err(Mistake::NoPoints);
         }

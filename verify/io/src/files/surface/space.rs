@@ -15,7 +15,7 @@ pub(super) enum Space {
 
 impl Space {
     /// The space that a header, a comment or a name states, if it states one.
-    pub fn stated(header: &[u8]) -> Result<Option<Space>, Mistake> {
+    pub(crate) fn stated(header: &[u8]) -> Result<Option<Space>, Mistake> {
         let header = String::from_utf8_lossy(header);
         let words = header.split(|c: char| !c.is_alphanumeric() && c != '=');
         let found = words.into_iter().find_map(|word| word.strip_prefix("SPACE="));
@@ -23,7 +23,7 @@ impl Space {
     }
 
     /// The space of a name.
-    pub fn named(name: &str) -> Result<Space, Mistake> {
+    pub(crate) fn named(name: &str) -> Result<Space, Mistake> {
         match name {
             "RAS" => Ok(Space::Ras),
             "LPS" => Ok(Space::Lps),
@@ -32,7 +32,7 @@ impl Space {
     }
 
     /// A point of this space along R, A and S.
-    pub fn to_ras<T: Neg<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+    pub(crate) fn to_ras<T: Neg<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
             Space::Ras => [x, y, z],
             Space::Lps => [-x, -y, z],

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use std::io::Cursor;
 
 /// Reads a surface; STL states no unit.
-pub fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
+pub(crate) fn parse(bytes: &[u8], unit: LengthUnit) -> Result<Triangles, Mistake> {
     let surface = if is_text(bytes) {
         shared(&stl_text::corners(bytes)?, unit)
     } else {

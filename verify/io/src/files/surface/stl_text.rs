@@ -10,7 +10,7 @@ pub(super) type Corner = [f64; 3];
 
 /// Corners of the triangles of all blocks, three to a triangle, in RAS. A block may lack its
 /// `endsolid`, as files do that were put together; a facet may lack nothing.
-pub fn corners(bytes: &[u8]) -> Result<Vec<Corner>, Mistake> {
+pub(crate) fn corners(bytes: &[u8]) -> Result<Vec<Corner>, Mistake> {
     let text = String::from_utf8_lossy(bytes).replace("\r\n", "\n");
     let mut words = Words::of(&text);
     let (mut corners, mut space, mut open) = (Vec::new(), Space::default(), false);

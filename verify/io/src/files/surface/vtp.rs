@@ -10,7 +10,7 @@ use crate::files::vtk_xml::{Array, XmlFile};
 const SECTIONS: [&str; 6] = ["FieldData", "Points", "Verts", "Lines", "Strips", "Polys"];
 
 /// The faces of all pieces of a file.
-pub fn polygons(bytes: &[u8]) -> Result<Polygons, Mistake> {
+pub(crate) fn polygons(bytes: &[u8]) -> Result<Polygons, Mistake> {
     let file = XmlFile::parse(bytes, &SECTIONS, "a VTP file (XML with <VTKFile>)")?;
     let mut found = Polygons::default();
     found.space = space(&file)?.unwrap_or_default();

@@ -59,7 +59,7 @@ impl History {
     }
 
     /// The page.
-    pub fn page(&self, back: Option<Link>) -> Page {
+    pub(crate) fn page(&self, back: Option<Link>) -> Page {
         let (work, errors): (Vec<_>, Vec<_>) =
             self.figures.iter().partition(|(name, _)| name.starts_with(WORK));
         let part = |title: &str, quantity: &str, figures: &[Named]| Part {

@@ -1,9 +1,9 @@
 //! The processes that a child leaves behind, whatever group or session they have gone into.
 
 #[cfg(target_os = "linux")]
-pub use linux::Family;
+pub(crate) use linux::Family;
 #[cfg(not(target_os = "linux"))]
-pub use other::Family;
+pub(crate) use other::Family;
 
 #[cfg(target_os = "linux")]
 mod linux {
@@ -23,7 +23,7 @@ mod linux {
     /// The processes that a child starts and those that these start. Orphans among them become
     /// children of this program, so that none is lost from sight.
     #[derive(Debug)]
-    pub struct Family {
+    pub(crate) struct Family {
         /// Processes of this program that were there before.
         others: BTreeSet<i32>,
         _one: MutexGuard<'static, ()>,
@@ -31,7 +31,7 @@ mod linux {
 
     impl Family {
         /// To be called before the child is started.
-        pub fn new() -> Family {
+        pub(crate) fn new() -> Family {
             let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
             // An old kernel without it leaves orphans to the first process.
             let _ = set_child_subreaper(Some(getpid()));
@@ -39,7 +39,7 @@ mod linux {
         }
 
         /// Kills all that is left besides the child itself, and waits until it is gone.
-        pub fn end(self, child: Pid) {
+        pub(crate) fn end(self, child: Pid) {
             let start = Instant::now();
             let child = child.as_raw_pid();
             loop {
@@ -93,16 +93,16 @@ mod linux {
 mod other {
     /// Elsewhere only the group of a child is known.
     #[derive(Debug)]
-    pub struct Family;
+    pub(crate) struct Family;
 
     impl Family {
         /// Nothing is looked at.
-        pub fn new() -> Family {
+        pub(crate) fn new() -> Family {
             Family
         }
 
         /// Nothing is known besides the group.
         #[cfg(unix)]
-        pub fn end(self, _: rustix::process::Pid) {}
+        pub(crate) fn end(self, _: rustix::process::Pid) {}
     }
 }

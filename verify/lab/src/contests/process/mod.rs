@@ -47,7 +47,7 @@ pub struct Usage {
 
 /// How a process ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ended {
+pub(crate) enum Ended {
     /// By itself.
     Exited(ExitStatus),
     /// Killed at its time limit.
@@ -58,7 +58,7 @@ pub enum Ended {
 
 /// A process that has ended.
 #[derive(Debug)]
-pub struct ChildRun {
+pub(crate) struct ChildRun {
     /// How.
     pub ended: Ended,
     /// What it has taken.
@@ -69,7 +69,7 @@ pub struct ChildRun {
 
 /// Runs a command with its children in a group of their own. Nothing is left of the group, nor on
 /// Linux of what has left it, when this returns. The error is that of a program that cannot be started.
-pub fn run_child(words: &[String], limit: Duration) -> io::Result<ChildRun> {
+pub(crate) fn run_child(words: &[String], limit: Duration) -> io::Result<ChildRun> {
     let (program, arguments) = words.split_first().ok_or(io::ErrorKind::InvalidInput)?;
     let mut command = Command::new(program);
     command.args(arguments);

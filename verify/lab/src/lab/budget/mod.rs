@@ -5,6 +5,5 @@ mod measure;
 mod parts;
 mod report;
 
-pub use measure::{BudgetRequest, ErrorBudget, MeasuredPart, measure_budget};
-pub use parts::{Part, parts};
+pub use measure::{BudgetRequest, measure_budget};
 pub use report::{budget_study, budget_text};

@@ -23,7 +23,7 @@ const DENSER: f64 = 2.0;
 const FINER: f64 = 1.5;
 
 /// The parts that a case has.
-pub fn parts(case: &Case) -> Vec<Part> {
+pub(crate) fn parts(case: &Case) -> Vec<Part> {
     let mut all = vec![consistency(case)];
     all.extend(space(case));
     all.push(time(case));

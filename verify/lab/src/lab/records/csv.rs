@@ -5,7 +5,7 @@ use anyhow::Result;
 use mtled_checks::escape::csv_text;
 
 /// A column of a table of such rows.
-pub struct Column<R> {
+pub(crate) struct Column<R> {
     /// Its name, which ends with the unit where there is one.
     name: &'static str,
     cell: Box<dyn Fn(&R) -> String>,
@@ -13,19 +13,28 @@ pub struct Column<R> {
 
 impl<R> Column<R> {
     /// A column of texts; a cell may be empty, here and below.
-    pub fn text(name: &'static str, cell: impl Fn(&R) -> Option<String> + 'static) -> Column<R> {
+    pub(crate) fn text(
+        name: &'static str,
+        cell: impl Fn(&R) -> Option<String> + 'static,
+    ) -> Column<R> {
         Column::new(name, move |row| cell(row).map(|text| csv_text(&text)))
     }
 
     /// A column of whole numbers.
-    pub fn count(name: &'static str, cell: impl Fn(&R) -> Option<i64> + 'static) -> Column<R> {
+    pub(crate) fn count(
+        name: &'static str,
+        cell: impl Fn(&R) -> Option<i64> + 'static,
+    ) -> Column<R> {
         Column::new(name, move |row| cell(row).map(|count| count.to_string()))
     }
 
     /// A column of numbers with as many digits as tell them from every other. One that need not
     /// be whole has a point or an exponent, so that a reader that guesses the kind of a column
     /// from its first rows is right about the others.
-    pub fn number(name: &'static str, cell: impl Fn(&R) -> Option<f64> + 'static) -> Column<R> {
+    pub(crate) fn number(
+        name: &'static str,
+        cell: impl Fn(&R) -> Option<f64> + 'static,
+    ) -> Column<R> {
         Column::new(name, move |row| cell(row).map(|number| format!("{number:?}")))
     }
 
@@ -37,7 +46,7 @@ impl<R> Column<R> {
 /// A header and a line for each row (RFC 4180); an empty cell is nothing between commas.
 /// The header is in quotation marks: DuckDB guesses from the first 20 480 rows whether there are
 /// any, and where the first came later it took the comma in it for the end of a cell.
-pub fn to_csv<R>(columns: &[Column<R>], rows: &[R]) -> Result<Vec<u8>> {
+pub(crate) fn to_csv<R>(columns: &[Column<R>], rows: &[R]) -> Result<Vec<u8>> {
     let mut header = WriterBuilder::new().quote_style(QuoteStyle::Always).from_writer(Vec::new());
     header.write_record(columns.iter().map(|column| column.name))?;
     let mut writer = ::csv::Writer::from_writer(header.into_inner()?);

@@ -136,7 +136,8 @@ fn has_level(record: &RunRecord, axis: &Axis) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::store::{RunOutcome, Stage, Timings};
+    use crate::lab::store::record::Timings;
+    use crate::lab::store::{RunOutcome, Stage};
 
     fn record(case: &str, settings: Vec<Setting>, date: &str) -> RunRecord {
         let (processor, date) = (String::new(), date.to_string());

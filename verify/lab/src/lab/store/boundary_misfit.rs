@@ -15,7 +15,7 @@ const PANEL: f64 = 0.4;
 /// constrained surfaces, over the largest displacement of a node \[–\]. None where no
 /// surface is constrained at the end. Where a constrained part ends between two nodes,
 /// its rim counts as constrained but is not.
-pub fn boundary_misfit(problem: &Problem, solved: &Solved) -> Result<Option<f64>, Error> {
+pub(crate) fn boundary_misfit(problem: &Problem, solved: &Solved) -> Result<Option<f64>, Error> {
     let (discretisation, state) = (&solved.simulation.discretisation, &solved.simulation.state);
     let components = solved.simulation.model.components;
     let t = state.time;

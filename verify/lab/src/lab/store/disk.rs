@@ -218,7 +218,8 @@ fn read(file: &Path) -> Result<RunRecord, StoreError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::store::{Job, RunOutcome, Stage, Timings};
+    use crate::lab::store::record::Timings;
+    use crate::lab::store::{Job, RunOutcome, Stage};
 
     const KEY: &str = "0123456789abcdef0123456789abcdef";
 

@@ -12,7 +12,7 @@ use mtled_run::run::integrate;
 
 /// The body and recipe of a case, all of its first material, whose whole boundary
 /// follows u = H X, reached at t = 1 s.
-pub fn with_affine_boundary(problem: &Problem, H: Matrix3) -> Problem {
+pub(crate) fn with_affine_boundary(problem: &Problem, H: Matrix3) -> Problem {
     let mut problem = problem.clone();
     let Region { material, fibres, .. } = problem.regions[0].clone();
     for region in &mut problem.regions {
@@ -33,7 +33,7 @@ pub fn with_affine_boundary(problem: &Problem, H: Matrix3) -> Problem {
 /// Largest errors of the displacement and its gradient at the quadrature points, over the
 /// largest displacement and over |H| \[–\]: as small as the tolerance of consistent
 /// gradients, some per cent with plain ones.
-pub fn patch_errors(problem: &Problem) -> Result<Figures, Error> {
+pub(crate) fn patch_errors(problem: &Problem) -> Result<Figures, Error> {
     let H = affine_gradient(problem.dimension.components());
     let problem = with_affine_boundary(problem, H);
     let simulation = Simulation::new(&problem)?;

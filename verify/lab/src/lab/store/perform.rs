@@ -22,14 +22,14 @@ use mtled_run::run::{
 use mtled_run::specimens::stable_step::{largest_stable_step, trial_velocity};
 
 /// A run that came to an end.
-pub struct Performed {
+pub(crate) struct Performed {
     pub record: RunRecord,
     /// Whether it would end like this elsewhere too: where there was too little memory it would not.
     pub lasts: bool,
 }
 
 /// Runs a task on this thread alone. None where the user has stopped it.
-pub fn perform(task: &Task) -> Result<Option<Performed>> {
+pub(crate) fn perform(task: &Task) -> Result<Option<Performed>> {
     let mut case = task.source.with(&task.settings)?;
     if is_dynamic(&case) {
         case.outputs.history = case.outputs.history.max(SAMPLES);
@@ -167,7 +167,7 @@ fn simulation_figures(solved: &Solved) -> Figures {
 }
 
 /// Fractions of the height by which a body is compressed for its critical step \[–\].
-pub const COMPRESSIONS: [f64; 3] = [0.0, 0.25, 0.5];
+pub(crate) const COMPRESSIONS: [f64; 3] = [0.0, 0.25, 0.5];
 
 /// Per-point bound, Lanczos estimate and largest stable step \[s\] of the case at rest;
 /// then of its body with the whole boundary prescribed, compressed along its last axis at

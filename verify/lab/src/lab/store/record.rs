@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Version of the layout of a record.
-pub const SCHEMA_VERSION: u32 = 1;
+pub(crate) const SCHEMA_VERSION: u32 = 1;
 
 /// Numbers by name, in SI units; the unit ends the name.
-pub type Figures = BTreeMap<String, f64>;
+pub(crate) type Figures = BTreeMap<String, f64>;
 
 /// One run. Only `timings` may differ from one time to the next.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -95,7 +95,7 @@ pub struct Timings {
 
 impl RunRecord {
     /// A figure by its name.
-    pub fn figure(&self, name: &str) -> Option<f64> {
+    pub(crate) fn figure(&self, name: &str) -> Option<f64> {
         match &self.outcome {
             RunOutcome::Done { figures, .. } => figures.get(name).copied(),
             RunOutcome::Failed { .. } => None,
@@ -111,7 +111,7 @@ impl RunRecord {
     }
 
     /// Operation counts of a simulation that reached its end.
-    pub fn work(&self) -> Option<&Work> {
+    pub(crate) fn work(&self) -> Option<&Work> {
         match &self.outcome {
             RunOutcome::Done { work, .. } => work.as_ref(),
             RunOutcome::Failed { .. } => None,
@@ -119,7 +119,7 @@ impl RunRecord {
     }
 
     /// The error message of a run that failed.
-    pub fn failure(&self) -> Option<&str> {
+    pub(crate) fn failure(&self) -> Option<&str> {
         match &self.outcome {
             RunOutcome::Done { .. } => None,
             RunOutcome::Failed { reason, .. } => Some(reason),
@@ -132,12 +132,12 @@ impl RunRecord {
     }
 
     /// CPU time of the simulation per quadrature point and neighbour \[ns\].
-    pub fn nanoseconds_per_visit(&self) -> Option<f64> {
+    pub(crate) fn nanoseconds_per_visit(&self) -> Option<f64> {
         Some(1e9 * self.timings.solve_cpu_s / self.work()?.neighbour_visits as f64)
     }
 
     /// The change of a knob; the last one counts.
-    pub fn setting(&self, knob: Knob) -> Option<&Setting> {
+    pub(crate) fn setting(&self, knob: Knob) -> Option<&Setting> {
         self.settings.iter().rev().find(|setting| setting.knob == knob)
     }
 }

@@ -10,7 +10,7 @@ const DIGITS: usize = 32;
 
 /// What the checksum of a file says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Seal {
+pub(crate) enum Seal {
     /// The content is as it was written.
     Whole,
     /// The content is another.
@@ -26,7 +26,7 @@ pub fn sealed(object: &str) -> String {
 }
 
 /// What the checksum of such an object says.
-pub fn seal_of(text: &str) -> Seal {
+pub(crate) fn seal_of(text: &str) -> Seal {
     let Some(rest) = text.strip_prefix(BEFORE) else { return Seal::Missing };
     let content = rest.get(DIGITS..).and_then(|rest| rest.strip_prefix(AFTER));
     match content {

@@ -76,7 +76,7 @@ impl Source {
     }
 
     /// The case with other settings.
-    pub fn with(&self, settings: &[Setting]) -> Result<Case> {
+    pub(crate) fn with(&self, settings: &[Setting]) -> Result<Case> {
         parse(&self.text_with(settings)?, &self.file)
     }
 
@@ -106,7 +106,7 @@ pub struct Task {
 
 impl Task {
     /// Hash of everything that decides the result, in hexadecimal.
-    pub fn key(&self) -> Result<String> {
+    pub(crate) fn key(&self) -> Result<String> {
         let mut hash = Sha256::new();
         // The hash of the case covers the files that it refers to.
         for part in
@@ -121,7 +121,7 @@ impl Task {
     }
 
     /// Case and settings.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         let settings: Vec<String> = self.settings.iter().map(Setting::to_string).collect();
         format!("{} ({})", self.source.name, settings.join(", "))
     }

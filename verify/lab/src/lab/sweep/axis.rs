@@ -59,7 +59,7 @@ pub enum AxisError {
 }
 
 /// Refuses ranges whose combinations, on so many clouds each, are no runs or too many.
-pub fn refuse_too_many_runs(axes: &[Axis], clouds: usize) -> Result<(), AxisError> {
+pub(crate) fn refuse_too_many_runs(axes: &[Axis], clouds: usize) -> Result<(), AxisError> {
     let combinations: f64 = axes.iter().map(|axis| axis.levels.len() as f64).product();
     let clouds = clouds as f64;
     if (1.0..=MOST_RUNS).contains(&(combinations * clouds)) {
@@ -80,7 +80,7 @@ fn meant(name: &str) -> String {
 
 impl Axis {
     /// The axis of a knob by its name.
-    pub fn named(name: &str, text: &str) -> Result<Axis, AxisError> {
+    pub(crate) fn named(name: &str, text: &str) -> Result<Axis, AxisError> {
         let knob = Knob::named(&name.replace('-', "_"))
             .ok_or_else(|| AxisError::Unknown { name: name.into() })?;
         Axis::parse(knob, text)
@@ -124,7 +124,7 @@ impl Axis {
 }
 
 /// Whether two levels are the same, however their numbers are written.
-pub fn equal(a: &Level, b: &Level) -> bool {
+pub(crate) fn equal(a: &Level, b: &Level) -> bool {
     let words = |level: &Level| matches!(level, Level::Word(_));
     a == b || words(a) && words(b) && number_of(a).is_some() && number_of(a) == number_of(b)
 }
@@ -150,7 +150,7 @@ fn range(
 }
 
 /// The number of a level, where it is one or a factor such as `x0.8`.
-pub fn number_of(level: &Level) -> Option<f64> {
+pub(crate) fn number_of(level: &Level) -> Option<f64> {
     match level {
         Level::Number(number) => Some(*number),
         Level::Word(word) => word.strip_prefix('x')?.parse().ok(),
@@ -159,7 +159,7 @@ pub fn number_of(level: &Level) -> Option<f64> {
 
 /// Every combination of levels, the last axis fastest; the settings of each are in the
 /// order in which they must be applied.
-pub fn combinations(axes: &[Axis]) -> Vec<Vec<Setting>> {
+pub(crate) fn combinations(axes: &[Axis]) -> Vec<Vec<Setting>> {
     let mut all = vec![Vec::new()];
     for axis in axes {
         all = all

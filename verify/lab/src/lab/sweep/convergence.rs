@@ -17,7 +17,7 @@ const SIGNIFICANT: f64 = 2.0;
 type Family = (String, Vec<(f64, f64)>);
 
 /// Adds the table of errors, the table of orders and the figure of a case.
-pub fn add_convergence(study: &mut Study, sweep: &Sweep, case: &MeasuredCase) {
+pub(crate) fn add_convergence(study: &mut Study, sweep: &Sweep, case: &MeasuredCase) {
     let Some((reference, group)) = &case.reference else { return };
     let error =
         |record: &RunRecord| reference.difference(&case.source.case, *group, record.values()?);

@@ -4,14 +4,14 @@ use mtled_checks::study::{Series, curve};
 
 /// A curve; at each abscissa the values of all clouds.
 #[derive(Debug)]
-pub struct Curve {
+pub(crate) struct Curve {
     pub name: String,
     pub points: Vec<(f64, Vec<f64>)>,
 }
 
 /// Sorts samples (curve, x, y) into curves in the order of their first samples. The x of
 /// several clouds may differ in the last digits.
-pub fn curves(samples: impl Iterator<Item = (String, f64, f64)>) -> Vec<Curve> {
+pub(crate) fn curves(samples: impl Iterator<Item = (String, f64, f64)>) -> Vec<Curve> {
     let mut curves: Vec<Curve> = Vec::new();
     for (name, x, y) in samples {
         let index = curves.iter().position(|curve| curve.name == name).unwrap_or_else(|| {
@@ -29,7 +29,7 @@ pub fn curves(samples: impl Iterator<Item = (String, f64, f64)>) -> Vec<Curve> {
 
 impl Curve {
     /// The middles of the ranges over the clouds; error bars reach to their ends.
-    pub fn series(&self) -> Series {
+    pub(crate) fn series(&self) -> Series {
         let middles = self.points.iter().map(|(x, values)| (*x, range(values).0)).collect();
         let error_bars = self.points.iter().map(|(_, values)| range(values).1).collect();
         Series { error_bars, ..curve(&self.name, middles) }

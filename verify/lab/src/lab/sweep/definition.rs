@@ -31,7 +31,7 @@ pub struct Sweep {
 
 /// A case with its records and what they are compared with.
 #[derive(Debug)]
-pub struct MeasuredCase {
+pub(crate) struct MeasuredCase {
     pub source: Arc<Source>,
     pub records: Vec<RunRecord>,
     pub reference: Option<(ReferenceSolution, Group)>,
@@ -39,7 +39,7 @@ pub struct MeasuredCase {
 
 impl Sweep {
     /// Every run of a case with values at `times` \[s\]; cloud 0 is the case's own.
-    pub fn tasks(&self, source: &Arc<Source>, times: &[f64]) -> Vec<Task> {
+    pub(crate) fn tasks(&self, source: &Arc<Source>, times: &[f64]) -> Vec<Task> {
         let mut tasks = Vec::new();
         for settings in combinations(&self.axes) {
             for cloud in 0..self.clouds {
@@ -62,12 +62,12 @@ impl Sweep {
     }
 
     /// A column for every knob that differs between its runs.
-    pub fn setting_columns(&self) -> Vec<Column> {
+    pub(crate) fn setting_columns(&self) -> Vec<Column> {
         self.knobs().map(|knob| text(&knob_label(knob))).collect()
     }
 
     /// The cells of a record in these columns.
-    pub fn setting_cells(&self, record: &RunRecord) -> Vec<Cell> {
+    pub(crate) fn setting_cells(&self, record: &RunRecord) -> Vec<Cell> {
         let cell = |knob: Knob| match record.setting(knob).map(|setting| &setting.level) {
             Some(Level::Number(number)) => Cell::Number(*number),
             Some(Level::Word(word)) => Cell::Text(word.clone()),
@@ -79,7 +79,12 @@ impl Sweep {
 
     /// What distinguishes the runs of a curve over the knob `along`: the levels of all other
     /// knobs, or the name of the case where there are none.
-    pub fn curve_name(&self, case: &MeasuredCase, record: &RunRecord, along: Knob) -> String {
+    pub(crate) fn curve_name(
+        &self,
+        case: &MeasuredCase,
+        record: &RunRecord,
+        along: Knob,
+    ) -> String {
         let level = |knob: Knob| {
             record.setting(knob).map_or(AS_IN_CASE.into(), |setting| setting.level.to_string())
         };

@@ -11,8 +11,10 @@ mod study;
 mod subject;
 mod tables;
 
-pub use axis::{Axis, AxisError, combinations, equal, refuse_too_many_runs};
+pub use axis::Axis;
+pub(crate) use axis::{AxisError, combinations, equal, refuse_too_many_runs};
 pub use definition::Sweep;
-pub use plan::{Plan, PlanError};
-pub use reference::{REFINEMENT, ReferenceSource, find_reference};
+pub use plan::Plan;
+pub(crate) use reference::find_reference;
+pub use reference::{REFINEMENT, ReferenceSource};
 pub use subject::Subject;

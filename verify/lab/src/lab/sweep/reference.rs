@@ -29,7 +29,7 @@ pub enum ReferenceSource {
 
 impl ReferenceSource {
     /// The stored reference of a case, if there is one and it may be used.
-    pub fn stored(&self, source: &Source) -> Result<Option<ReferenceSolution>> {
+    pub(crate) fn stored(&self, source: &Source) -> Result<Option<ReferenceSolution>> {
         match self {
             ReferenceSource::Any => Ok(ReferenceSolution::bundled(&source.case)),
             ReferenceSource::Own(_) => Ok(None),
@@ -43,12 +43,12 @@ impl ReferenceSource {
     }
 
     /// Instants of the values \[s\].
-    pub fn times(&self, source: &Source) -> Result<Vec<f64>> {
+    pub(crate) fn times(&self, source: &Source) -> Result<Vec<f64>> {
         Ok(self.stored(source)?.map_or_else(|| instants(source), |known| known.times))
     }
 
     /// The finer runs of the solver; none where the reference is stored.
-    pub fn tasks(&self, source: &Arc<Source>, axes: &[Axis]) -> Vec<Task> {
+    pub(crate) fn tasks(&self, source: &Arc<Source>, axes: &[Axis]) -> Vec<Task> {
         if matches!(self.stored(source), Ok(Some(_)) | Err(_)) {
             return Vec::new();
         }
@@ -88,7 +88,7 @@ fn finest(axes: &[Axis], source: &Source) -> f64 {
 }
 
 /// The reference solution of a case; finer runs are made and stored where none is given.
-pub fn find_reference(
+pub(crate) fn find_reference(
     from: &ReferenceSource,
     source: &Arc<Source>,
     axes: &[Axis],

@@ -82,12 +82,12 @@ impl Subject {
     }
 
     /// Heading of its report.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str {
         self.description().title
     }
 
     /// What its report shows, in one sentence.
-    pub fn claim(self) -> &'static str {
+    pub(crate) fn claim(self) -> &'static str {
         self.description().claim
     }
 
@@ -97,7 +97,7 @@ impl Subject {
     }
 
     /// Kind of its runs.
-    pub fn job(self) -> Job {
+    pub(crate) fn job(self) -> Job {
         match self {
             Subject::Consistency => Job::Consistency,
             Subject::Patch => Job::Patch,

@@ -38,10 +38,10 @@ const STABILITY: &[ShownFigure] = &[
 ];
 
 /// Heading of the column that [`ending`] fills.
-pub const OUTCOME: &str = "outcome";
+pub(crate) const OUTCOME: &str = "outcome";
 
 /// Adds the table of a case and its figure.
-pub fn add_tables(study: &mut Study, sweep: &Sweep, case: &MeasuredCase) {
+pub(crate) fn add_tables(study: &mut Study, sweep: &Sweep, case: &MeasuredCase) {
     let (shown, label, name) = match sweep.subject {
         Subject::TimeStep => return add_steps(study, sweep, case),
         Subject::Consistency => {
@@ -131,7 +131,7 @@ fn step_cells(record: &RunRecord) -> Vec<Cell> {
 }
 
 /// CPU time and memory of every record: what may differ from one run to the next.
-pub fn timings(sweep: &Sweep, case: &MeasuredCase) -> Table {
+pub(crate) fn timings(sweep: &Sweep, case: &MeasuredCase) -> Table {
     let columns = vec![
         number("set-up", "CPU s"),
         number("solution", "CPU s"),
@@ -151,7 +151,7 @@ pub fn timings(sweep: &Sweep, case: &MeasuredCase) -> Table {
 }
 
 /// How a run ended: "ok", or its warnings or its error.
-pub fn ending(record: &RunRecord) -> String {
+pub(crate) fn ending(record: &RunRecord) -> String {
     match &record.outcome {
         RunOutcome::Done { warnings, .. } if warnings.is_empty() => "ok".into(),
         RunOutcome::Done { warnings, .. } => format!("warned: {}", warnings.join("; ")),

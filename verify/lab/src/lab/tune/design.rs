@@ -16,12 +16,12 @@ pub struct Candidate {
 
 impl Candidate {
     /// A recipe outside the factorial.
-    pub fn single(settings: Vec<Setting>) -> Candidate {
+    pub(crate) fn single(settings: Vec<Setting>) -> Candidate {
         Candidate { settings, factorial: false }
     }
 
     /// Its settings, or "as in the case" where there are none.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         if self.settings.is_empty() {
             AS_IN_CASE.into()
         } else {
@@ -30,7 +30,7 @@ impl Candidate {
     }
 
     /// The level of a knob, if it is a number.
-    pub fn number(&self, knob: Knob) -> Option<f64> {
+    pub(crate) fn number(&self, knob: Knob) -> Option<f64> {
         match self.settings.iter().find(|setting| setting.knob == knob)?.level {
             Level::Number(number) => Some(number),
             Level::Word(_) => None,
@@ -69,7 +69,7 @@ const SAFETY_FACTORS: &[f64] = &[0.4, 0.8, 0.9, 0.95];
 /// The recipe of the case; a full factorial of dilation and cells per spacing; quadratic
 /// bases; and single changes of everything else. `axes`, if there are any, replace all but
 /// the recipe of the case.
-pub fn candidates(case: &Case, axes: &[Axis]) -> Vec<Candidate> {
+pub(crate) fn candidates(case: &Case, axes: &[Axis]) -> Vec<Candidate> {
     let (number, word) = (Setting::number, Setting::word);
     let mut all = vec![Candidate::single(Vec::new())];
     let factorial = |settings| Candidate { settings, factorial: true };
@@ -107,14 +107,14 @@ pub fn candidates(case: &Case, axes: &[Axis]) -> Vec<Candidate> {
 
 /// Whether a knob can change the solution: static ones do not depend on the distribution of
 /// the mass.
-pub fn matters(knob: Knob, case: &Case) -> bool {
+pub(crate) fn matters(knob: Knob, case: &Case) -> bool {
     knob != Knob::Mass || matches!(case.problem.motion, Motion::Dynamic { .. })
 }
 
 /// Solvers of one discretisation, the most accurate first and the case's own last: Newton's
 /// method and relaxation to several tolerances in statics, several safety factors in
 /// dynamics.
-pub fn solvers(case: &Case) -> Vec<Candidate> {
+pub(crate) fn solvers(case: &Case) -> Vec<Candidate> {
     let mut all: Vec<Candidate> = match case.problem.motion {
         Motion::Dynamic { .. } => SAFETY_FACTORS
             .iter()

@@ -19,7 +19,7 @@ const CHANGES: &[(Knob, &str)] = &[
 
 /// The winner with one change each, on the same clouds; the changed recipes are added to
 /// the candidates.
-pub fn one_at_a_time(runner: &mut TrialRunner, winner: &Trial) -> Result<Vec<Trial>> {
+pub(crate) fn one_at_a_time(runner: &mut TrialRunner, winner: &Trial) -> Result<Vec<Trial>> {
     let request = runner.request;
     let own = runner.candidates[winner.candidate].settings.clone();
     let mut points = Vec::new();
@@ -68,7 +68,7 @@ fn changes(runner: &TrialRunner, winner: &Trial) -> Result<Vec<Vec<Setting>>> {
 }
 
 /// The settings in which a change differs from the winner.
-pub fn change_label(candidates: &[Candidate], winner: &Trial, change: &Trial) -> String {
+pub(crate) fn change_label(candidates: &[Candidate], winner: &Trial, change: &Trial) -> String {
     if change.candidate == winner.candidate {
         return format!("spacing x{:.3}", change.factor / winner.factor);
     }
@@ -80,7 +80,7 @@ pub fn change_label(candidates: &[Candidate], winner: &Trial, change: &Trial) ->
 /// The main effect of one level of the factorial: the mean over all recipes with it, over
 /// the mean of all recipes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MainEffect {
+pub(crate) struct MainEffect {
     pub knob: Knob,
     pub level: Level,
     /// On the error, geometric mean \[–\].
@@ -92,7 +92,7 @@ pub struct MainEffect {
 }
 
 /// Main effects of the factorial in its first round, without the trials that failed.
-pub fn main_effects(candidates: &[Candidate], trials: &[Trial]) -> Vec<MainEffect> {
+pub(crate) fn main_effects(candidates: &[Candidate], trials: &[Trial]) -> Vec<MainEffect> {
     let mut rows: Vec<(&Candidate, f64, f64)> = Vec::new();
     let mut seen = std::collections::BTreeSet::new();
     for trial in trials {

@@ -12,9 +12,8 @@ mod search;
 mod trial;
 mod truth;
 
-pub use design::{Candidate, candidates};
-pub use recommend::{Recommendation, recommend};
+pub use recommend::recommend;
 pub use recommend_report::recommendation_study;
 pub use report::{tune_study, tune_text};
 pub use search::{Tuned, tune};
-pub use trial::{Goal, Trial, TuneRequest};
+pub use trial::{Goal, TuneRequest};

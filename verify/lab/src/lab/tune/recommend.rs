@@ -53,7 +53,7 @@ impl Recommendation {
     /// smallest, the one with the smallest worst case. A median is not moved by a case where
     /// the error is small by chance, as a mean is; the worst case is what a user of the
     /// default meets without warning.
-    pub fn chosen(&self) -> &Row {
+    pub(crate) fn chosen(&self) -> &Row {
         let first = &self.rows[0];
         let near = |row: &&Row| {
             row.failures == first.failures && row.median <= EQUAL_WITHIN * first.median

@@ -16,7 +16,7 @@ fn cost_power(components: usize) -> f64 {
 }
 
 /// Order of the error of one candidate in the spacing.
-pub fn order(trials: &[&Trial]) -> f64 {
+pub(crate) fn order(trials: &[&Trial]) -> f64 {
     let samples: Vec<(f64, f64)> = trials
         .iter()
         .filter(|trial| trial.worst().is_finite())
@@ -31,7 +31,7 @@ pub fn order(trials: &[&Trial]) -> f64 {
 /// Score of a trial, smaller is better: for a target error the expected CPU time at it
 /// \[s\], for a CPU budget the expected error \[–\]. Errors below `bar`, that of the reference
 /// solution, count as `bar`.
-pub fn expected(trial: &Trial, goal: Goal, order: f64, components: usize, bar: f64) -> f64 {
+pub(crate) fn expected(trial: &Trial, goal: Goal, order: f64, components: usize, bar: f64) -> f64 {
     let error = trial.worst().max(bar);
     let power = cost_power(components) / order;
     match goal {
@@ -41,7 +41,7 @@ pub fn expected(trial: &Trial, goal: Goal, order: f64, components: usize, bar: f
 }
 
 /// The spacing factor at which a trial's recipe is expected to meet the goal \[–\].
-pub fn expected_factor(trial: &Trial, goal: Goal, order: f64, components: usize) -> f64 {
+pub(crate) fn expected_factor(trial: &Trial, goal: Goal, order: f64, components: usize) -> f64 {
     match goal {
         Goal::Error(target) => trial.factor * (target / trial.worst()).powf(1.0 / order),
         Goal::Budget(cpu_s) => {
@@ -52,7 +52,7 @@ pub fn expected_factor(trial: &Trial, goal: Goal, order: f64, components: usize)
 
 /// The Pareto front, from cheap to expensive: no other trial is both cheaper and more
 /// accurate.
-pub fn front(trials: &[Trial]) -> Vec<&Trial> {
+pub(crate) fn front(trials: &[Trial]) -> Vec<&Trial> {
     let mut sorted: Vec<&Trial> = trials.iter().filter(|trial| trial.worst().is_finite()).collect();
     sorted.sort_by(|a, b| a.cpu_s.total_cmp(&b.cpu_s).then(a.worst().total_cmp(&b.worst())));
     let mut best = f64::INFINITY;

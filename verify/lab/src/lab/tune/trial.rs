@@ -58,7 +58,7 @@ pub struct Trial {
 
 impl Trial {
     /// The largest error over the clouds; infinite where one failed.
-    pub fn worst(&self) -> f64 {
+    pub(crate) fn worst(&self) -> f64 {
         if self.failure.is_some() {
             return f64::INFINITY;
         }
@@ -66,13 +66,13 @@ impl Trial {
     }
 
     /// The smallest error over the clouds.
-    pub fn least(&self) -> f64 {
+    pub(crate) fn least(&self) -> f64 {
         self.errors.iter().copied().fold(f64::INFINITY, f64::min)
     }
 }
 
 /// Runs trials of candidates.
-pub struct TrialRunner<'a> {
+pub(crate) struct TrialRunner<'a> {
     pub request: &'a TuneRequest,
     pub candidates: Vec<Candidate>,
     pub reference: ReferenceSolution,
@@ -82,7 +82,7 @@ pub struct TrialRunner<'a> {
 
 impl<'a> TrialRunner<'a> {
     /// The candidates are still to be added.
-    pub fn new(
+    pub(crate) fn new(
         request: &'a TuneRequest,
         reference: ReferenceSolution,
         group: Group,
@@ -105,7 +105,7 @@ impl<'a> TrialRunner<'a> {
     }
 
     /// Trials of (candidate, spacing factor), all on the same clouds.
-    pub fn trials(&self, points: &[(usize, f64)], clouds: &[u64]) -> Result<Vec<Trial>> {
+    pub(crate) fn trials(&self, points: &[(usize, f64)], clouds: &[u64]) -> Result<Vec<Trial>> {
         let mut tasks = Vec::new();
         for &(candidate, factor) in points {
             tasks.extend(clouds.iter().map(|&cloud| self.task(candidate, factor, cloud)));
@@ -126,7 +126,7 @@ impl<'a> TrialRunner<'a> {
     }
 
     /// Error of the reference solution itself \[–\].
-    pub fn bar(&self) -> f64 {
+    pub(crate) fn bar(&self) -> f64 {
         self.reference.bar(&self.request.source.case, self.group)
     }
 }

@@ -16,7 +16,7 @@ const GROWTH: f64 = 1.2;
 const FINEST: f64 = 8.0;
 
 /// The reference solution of a search.
-pub struct Truth {
+pub(crate) struct Truth {
     pub reference: ReferenceSolution,
     pub group: Group,
     /// Why it cannot decide whether a recipe meets the goal, and what could.
@@ -25,7 +25,7 @@ pub struct Truth {
 
 /// Finds the reference solution; where its own error is as large as the goal, a finer one is made
 /// if that is expected to stay within the CPU time that is allowed for it.
-pub fn truth(request: &TuneRequest, tasks: &TaskRunner) -> Result<Truth> {
+pub(crate) fn truth(request: &TuneRequest, tasks: &TaskRunner) -> Result<Truth> {
     let source = &request.source;
     let mut from = request.reference.clone();
     loop {
@@ -79,7 +79,7 @@ pub fn truth(request: &TuneRequest, tasks: &TaskRunner) -> Result<Truth> {
 }
 
 /// A reference solution, and the quantities whose error is measured.
-pub fn reference(
+pub(crate) fn reference(
     request: &TuneRequest,
     from: &ReferenceSource,
     tasks: &TaskRunner,

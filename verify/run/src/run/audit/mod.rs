@@ -6,7 +6,7 @@ use mtled_checks::report::four_digits;
 use serde_json::{Value, json};
 
 /// `audit` of `result.json`.
-pub fn audit_json(audit: &Audit) -> Value {
+pub(crate) fn audit_json(audit: &Audit) -> Value {
     json!({
         "doubtful": audit.is_doubtful(),
         "rows": audit.rows.iter().map(row_json).collect::<Vec<_>>(),
@@ -64,7 +64,7 @@ fn doubt(row: &Row) -> String {
 }
 
 /// A line that says how the audit ended.
-pub fn audit_line(audit: &Audit) -> String {
+pub(crate) fn audit_line(audit: &Audit) -> String {
     let (all, doubts) = (audit.rows.len(), audit.doubts().count());
     match doubts {
         0 => format!(

@@ -26,7 +26,7 @@ pub struct Indicator {
 impl Indicator {
     /// Error bars at the nodes \[node\] \[m\] where the run has the displacement
     /// \[node\]\[x, y, z\] \[m\].
-    pub fn sizes(&self, displacement: &[f64]) -> Vec<f64> {
+    pub(crate) fn sizes(&self, displacement: &[f64]) -> Vec<f64> {
         let changes = displacement.chunks(3).zip(self.coarser_displacement.chunks(3));
         let length = |(own, coarser): (&[f64], &[f64])| {
             own.iter().zip(coarser).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()

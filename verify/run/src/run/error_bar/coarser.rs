@@ -41,7 +41,7 @@ pub struct CoarserCloud {
 
 /// A coarser cloud with its answers.
 #[derive(Debug)]
-pub struct CoarserRun {
+pub(crate) struct CoarserRun {
     pub cloud: CoarserCloud,
     /// Its last sample.
     pub recording: Recording,
@@ -51,7 +51,7 @@ pub struct CoarserRun {
 }
 
 /// Spacings of the coarser clouds of a problem over that of the run, in the order in which to try them \[–\].
-pub fn factors(problem: &Problem) -> &'static [f64] {
+pub(crate) fn factors(problem: &Problem) -> &'static [f64] {
     match by_newton(problem) {
         Some(_) if problem.dimension.components() == 2 => &BY_NEWTON_IN_A_PLANE,
         Some(_) => &BY_NEWTON,
@@ -60,7 +60,7 @@ pub fn factors(problem: &Problem) -> &'static [f64] {
 }
 
 /// Whether the coarser clouds are solved by Newton's method.
-pub fn is_by_newton(problem: &Problem) -> bool {
+pub(crate) fn is_by_newton(problem: &Problem) -> bool {
     by_newton(problem).is_some()
 }
 
@@ -75,7 +75,7 @@ fn by_newton(problem: &Problem) -> Option<Motion> {
 
 /// Solves a case whose nodes are `spacing` \[m\] apart with every length of its recipe multiplied by
 /// `factor`; nothing of its discretisation is kept.
-pub fn solve_coarser(
+pub(crate) fn solve_coarser(
     case: &Case,
     (spacing, factor): (f64, f64),
     positions: Option<&[Vector3]>,

@@ -11,7 +11,7 @@ use mtled_case::scene::Case;
 const TOO_FAR: f64 = 0.5;
 
 /// Why a run can have no error bar at all.
-pub fn doubt_of_run(case: &Case, solved: &Solved) -> Option<NoErrorBar> {
+pub(crate) fn doubt_of_run(case: &Case, solved: &Solved) -> Option<NoErrorBar> {
     if solved.summary.stopped {
         return Some(NoErrorBar::Stopped);
     }
@@ -27,13 +27,13 @@ pub fn doubt_of_run(case: &Case, solved: &Solved) -> Option<NoErrorBar> {
 
 /// Why forces, moments and energies have none: they hang on what touches, displacements away
 /// from there do not.
-pub fn doubt_of_forces(record: &Recording) -> Option<NoErrorBar> {
+pub(crate) fn doubt_of_forces(record: &Recording) -> Option<NoErrorBar> {
     let touches = record.samples.iter().any(|sample| sample.touching > 0);
     touches.then_some(NoErrorBar::Contact)
 }
 
 /// The error bar of a quantity whose family has values up to `largest`.
-pub fn judged(
+pub(crate) fn judged(
     family: Family,
     size: f64,
     largest: f64,

@@ -9,8 +9,8 @@ mod estimate;
 mod no_error_bar;
 mod report;
 
-pub use bars::{ErrorBar, ErrorBars, Estimated, Indicator};
-pub use coarser::CoarserCloud;
+pub(crate) use bars::Indicator;
+pub use bars::{ErrorBar, Estimated};
 pub use estimate::error_bars;
 pub use no_error_bar::NoErrorBar;
-pub use report::{error_bars_json, error_bars_text, no_bars_text, plus_minus};
+pub(crate) use report::{error_bars_json, error_bars_text, no_bars_text, plus_minus};

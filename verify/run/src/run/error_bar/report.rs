@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 
 /// `error_bars` of `result.json`: the estimated error of every answer in its unit, or in
 /// words why there is none.
-pub fn error_bars_json(bars: &Estimated) -> Value {
+pub(crate) fn error_bars_json(bars: &Estimated) -> Value {
     let bars = match bars {
         Ok(bars) => bars,
         Err(reason) => return json!({ "unknown": reason.to_string() }),
@@ -54,7 +54,7 @@ fn cloud_json(cloud: &CoarserCloud) -> Value {
 }
 
 /// ` ± 2.0e-4` behind an answer; nothing where there is no bar.
-pub fn plus_minus(bars: Option<&Estimated>, name: &str) -> String {
+pub(crate) fn plus_minus(bars: Option<&Estimated>, name: &str) -> String {
     match bars {
         Some(Ok(bars)) => match bars.of(name) {
             Some(Ok(size)) => format!(" ± {size:.1e}"),
@@ -65,7 +65,7 @@ pub fn plus_minus(bars: Option<&Estimated>, name: &str) -> String {
 }
 
 /// For the first lines of a summary: that no answer at all has an error bar, and why.
-pub fn no_bars_text(bars: &Estimated) -> Option<String> {
+pub(crate) fn no_bars_text(bars: &Estimated) -> Option<String> {
     let reason = match bars {
         Err(reason) => reason.to_string(),
         Ok(bars) if bars.bars.iter().all(|bar| bar.size.is_err()) => {
@@ -78,7 +78,7 @@ pub fn no_bars_text(bars: &Estimated) -> Option<String> {
 
 /// What the summary says beside the answers that it lists: lattices, moments, energies, and
 /// what has no error bar.
-pub fn error_bars_text(case: &Case, bars: &Estimated) -> Vec<String> {
+pub(crate) fn error_bars_text(case: &Case, bars: &Estimated) -> Vec<String> {
     let bars = match bars {
         Ok(bars) => bars,
         // Said at the start.

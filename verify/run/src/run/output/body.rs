@@ -21,7 +21,7 @@ const PURPOSE: &str = "A mesh to look at, cut from a lattice by the boundary of 
                        has no mesh and computes on the nodes alone.";
 
 /// What all frames of the display mesh share.
-pub struct BodyFrames {
+pub(crate) struct BodyFrames {
     display: DisplayMesh,
     points: Vec<[f64; 3]>,
     /// φ of the nodes at the vertices.
@@ -57,7 +57,7 @@ fn fibres(problem: &Problem, mesh: &Mesh) -> Option<Vec<f64>> {
 impl BodyFrames {
     /// The display mesh of a body, and what interpolates to its vertices; `None` where it has no
     /// cells.
-    pub fn new(simulation: &Simulation) -> Result<Option<BodyFrames>> {
+    pub(crate) fn new(simulation: &Simulation) -> Result<Option<BodyFrames>> {
         let Simulation { problem, discretisation, .. } = simulation;
         let nodes = discretisation.cloud.positions.len();
         let display = display_mesh(problem, nodes, discretisation.volume())?;
@@ -74,7 +74,7 @@ impl BodyFrames {
 
     /// The fields of a frame at the vertices: displacement of the approximation, what is known of the
     /// material of their regions, and others interpolated from those at the nodes.
-    pub fn frame(
+    pub(crate) fn frame(
         &self,
         simulation: &Simulation,
         frame: &Frame,
@@ -131,7 +131,11 @@ impl BodyFrames {
     }
 
     /// Motions \[component of node\] with their names, as fields.
-    pub fn motions(&self, motions: &[(String, Vec<f64>)], components: usize) -> VtuFrame<'_> {
+    pub(crate) fn motions(
+        &self,
+        motions: &[(String, Vec<f64>)],
+        components: usize,
+    ) -> VtuFrame<'_> {
         let mesh = &self.display.mesh;
         let field = |(name, motion): &(String, Vec<f64>)| {
             PointArray::new(name, 3, vectors(&self.rows, motion, components)).stored(Stored::Single)
@@ -144,7 +148,7 @@ impl BodyFrames {
     }
 
     /// Moves its vertices by offsets \[component of node\] \[m\].
-    pub fn move_by(&mut self, offsets: &[f64], components: usize) {
+    pub(crate) fn move_by(&mut self, offsets: &[f64], components: usize) {
         let moves = vectors(&self.rows, offsets, components);
         for (point, own) in self.points.iter_mut().zip(moves.as_chunks::<3>().0) {
             point.iter_mut().zip(own).for_each(|(x, w)| *x += w);
@@ -152,7 +156,7 @@ impl BodyFrames {
     }
 
     /// Its surface in space: vertices \[m\] and triangles, anticlockwise seen from outside.
-    pub fn surface(&self) -> (Vec<Vector3>, Vec<[u32; 3]>) {
+    pub(crate) fn surface(&self) -> (Vec<Vector3>, Vec<[u32; 3]>) {
         let sides = self.display.mesh.boundary();
         let triangles: Vec<[u32; 3]> =
             sides.iter().filter_map(|(side, _)| side[..].try_into().ok()).collect();
@@ -169,7 +173,7 @@ impl BodyFrames {
     }
 
     /// A frame as what pictures are drawn from.
-    pub fn drawn(&self, frame: VtuFrame) -> Body {
+    pub(crate) fn drawn(&self, frame: VtuFrame) -> Body {
         let field = |array: PointArray| Field {
             name: array.name,
             components: array.components,

@@ -11,7 +11,7 @@ use std::path::Path;
 pub const PAGE_FILE: &str = "index.html";
 
 /// Removes `result.json`, the page and the collections of frames, then the frames, the histories and the states.
-pub fn remove_earlier_run(dir: &Path) -> Result<()> {
+pub(crate) fn remove_earlier_run(dir: &Path) -> Result<()> {
     let mut others = vec![dir.join("history.csv"), dir.join(FIELD_FILE)];
     let mut indices = vec![dir.join("result.json"), dir.join(PAGE_FILE)];
     let unreadable = || format!("cannot read the folder {}", dir.display());

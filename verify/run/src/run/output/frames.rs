@@ -26,7 +26,7 @@ fn frame_name(kind: &str, number: usize) -> String {
 }
 
 /// Whether a file is a frame of a run.
-pub fn is_frame(name: &str) -> bool {
+pub(crate) fn is_frame(name: &str) -> bool {
     let rest = name.strip_prefix(NODES).or(name.strip_prefix(BODY));
     let number = rest.and_then(|rest| rest.strip_suffix(".vtu"));
     number.is_some_and(|n| n.len() >= 4 && n.bytes().all(|digit| digit.is_ascii_digit()))
@@ -50,7 +50,7 @@ pub fn last_body_frame(dir: &Path, number: Option<usize>) -> std::io::Result<Opt
 }
 
 /// Whether a collection names frames of a run, under whatever name of the case.
-pub fn lists_frames(collection: &Path) -> bool {
+pub(crate) fn lists_frames(collection: &Path) -> bool {
     let lists =
         |text: String| [NODES, BODY].iter().any(|kind| text.contains(&format!("file=\"{kind}")));
     std::fs::read_to_string(collection).is_ok_and(lists)
@@ -66,7 +66,7 @@ fn order(problem: &Problem) -> Order {
 }
 
 /// Frames that were written, each with what orders it.
-pub struct Frames {
+pub(crate) struct Frames {
     order: Order,
     at: Vec<f64>,
     /// The body at the end, to be drawn.
@@ -77,7 +77,7 @@ pub struct Frames {
 
 impl Frames {
     /// Writes the collections: of the body under the name of the case, of the nodes beside it.
-    pub fn write_collections(&self, case: &Case, dir: &Path) -> Result<()> {
+    pub(crate) fn write_collections(&self, case: &Case, dir: &Path) -> Result<()> {
         let collection = |kind: &str| -> Vec<(f64, String)> {
             let names = (0..self.at.len()).map(|number| frame_name(kind, number));
             self.at.iter().copied().zip(names).collect()
@@ -92,7 +92,7 @@ impl Frames {
 }
 
 /// Writes the frames of a recording.
-pub fn write_frames(
+pub(crate) fn write_frames(
     case: &Case,
     simulation: &Simulation,
     record: &Recording,
@@ -131,7 +131,7 @@ pub fn write_frames(
 
 /// The body of the last frame of a recording; none without frames, or where nothing of the body
 /// is as large as a cell.
-pub fn body_at_end(
+pub(crate) fn body_at_end(
     case: &Case,
     simulation: &Simulation,
     record: &Recording,

@@ -89,7 +89,7 @@ fn of_loads(case: &Case) -> Vec<String> {
 }
 
 /// [`history`] as CSV.
-pub fn history_csv(case: &Case, record: &Recording) -> Result<String> {
+pub(crate) fn history_csv(case: &Case, record: &Recording) -> Result<String> {
     let (header, rows) = history(case, record);
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(header.iter().map(|name| csv_text(name)))?;

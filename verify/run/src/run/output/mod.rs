@@ -23,9 +23,10 @@ use earlier::remove_earlier_run;
 use mtled_case::scene::Case;
 
 pub use earlier::PAGE_FILE;
-pub use frames::{body_at_end, last_body_frame};
+pub(crate) use frames::body_at_end;
+pub use frames::last_body_frame;
 pub use history::history;
-pub use modes::write_modes;
+pub(crate) use modes::write_modes;
 pub use node_fields::field_at_nodes;
 pub use unloaded::write_unloaded;
 
@@ -39,7 +40,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Writes all files of a run with this `result.json` to `dir`, and returns its text.
-pub fn write_outputs(
+pub(crate) fn write_outputs(
     case: &Case,
     solved: &Solved,
     record: &Recording,
@@ -54,7 +55,7 @@ pub fn write_outputs(
 }
 
 /// Writes what a run had recorded when it ended with an error.
-pub fn write_failed(
+pub(crate) fn write_failed(
     case: &Case,
     simulation: &Simulation,
     record: &Recording,

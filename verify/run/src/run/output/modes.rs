@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// Writes `nodes_modes.vtu` and, unless nothing of the body is as large as a cell, `body_modes.vtu`,
 /// with a field for each mode whose largest displacement of a node is 1.
-pub fn write_modes(simulation: &Simulation, motions: &[&[f64]], dir: &Path) -> Result<()> {
+pub(crate) fn write_modes(simulation: &Simulation, motions: &[&[f64]], dir: &Path) -> Result<()> {
     let positions = &simulation.discretisation.cloud.positions;
     let points: Vec<[f64; 3]> = positions.iter().map(|X| (*X).into()).collect();
     let width = motions.len().to_string().len().max(2);

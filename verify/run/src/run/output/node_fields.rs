@@ -9,7 +9,7 @@ use mtled::motion::nodal_fields::NodalFields;
 /// Displacement of the approximation (not the nodal parameters), and J, Cauchy stress and strain of
 /// the material.
 #[derive(Debug)]
-pub struct NodeFields {
+pub(crate) struct NodeFields {
     /// \[node\]\[x, y, z\] \[m\]
     pub displacement: Vec<f64>,
     /// J, Cauchy stress and strain.
@@ -24,7 +24,7 @@ pub struct NodeFields {
 
 impl NodeFields {
     /// Of a frame, with the error bars of `indicator`.
-    pub fn new(
+    pub(crate) fn new(
         simulation: &Simulation,
         frame: &Frame,
         indicator: Option<&Indicator>,

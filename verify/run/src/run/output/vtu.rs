@@ -72,7 +72,7 @@ pub enum Stored {
 
 /// What the frames of a collection are ordered by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
+pub(crate) enum Order {
     /// Time \[s\].
     Time,
     /// Their number: a static run has no time.
@@ -95,7 +95,7 @@ impl PointArray {
     }
 
     /// The same field, stored otherwise.
-    pub fn stored(self, stored: Stored) -> PointArray {
+    pub(crate) fn stored(self, stored: Stored) -> PointArray {
         PointArray { stored, ..self }
     }
 }
@@ -238,12 +238,12 @@ fn named(name: &str) -> String {
 }
 
 /// Writes a frame to `path` at once.
-pub fn write_vtu(path: &Path, frame: &VtuFrame) -> Result<()> {
+pub(crate) fn write_vtu(path: &Path, frame: &VtuFrame) -> Result<()> {
     write_atomically(path, &to_vtu(frame)?)
 }
 
 /// Writes a collection of frames: what orders them and file names relative to `path`.
-pub fn write_pvd(path: &Path, order: Order, frames: &[(f64, String)]) -> Result<()> {
+pub(crate) fn write_pvd(path: &Path, order: Order, frames: &[(f64, String)]) -> Result<()> {
     let mut text = format!(
         "<?xml version=\"1.0\"?>\n<!-- timestep: {} -->\n<VTKFile type=\"Collection\" version=\"1.0\" \
          byte_order=\"LittleEndian\">\n<Collection>\n",

@@ -20,7 +20,7 @@ const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
 /// The page of a run with this `result.json`, and with the body at its end if there is one.
-pub fn run_page(
+pub(crate) fn run_page(
     case: &Case,
     record: &Recording,
     body: Option<&Body>,

@@ -12,7 +12,7 @@ const MOST_CURVES: usize = 8;
 
 /// Displacements of probes, forces and energies over the run; nothing where it has too few
 /// samples.
-pub fn histories(case: &Case, record: &Recording) -> Vec<Figure> {
+pub(crate) fn histories(case: &Case, record: &Recording) -> Vec<Figure> {
     if record.samples.len() < FEWEST {
         return Vec::new();
     }

@@ -10,7 +10,7 @@ use serde_json::Value as Json;
 const MOST_ROWS: usize = 40;
 
 /// `(1.000, 2.000, 3.000)`.
-pub fn vector(v: &[f64; 3]) -> String {
+pub(crate) fn vector(v: &[f64; 3]) -> String {
     format!("({})", v.map(four_digits).join(", "))
 }
 
@@ -41,7 +41,7 @@ fn bar(result: &Json, family: &str, label: &str, name: &str, key: &str) -> Strin
 }
 
 /// Probes with their displacements and error bars.
-pub fn answers(case: &Case, result: &Json) -> Value {
+pub(crate) fn answers(case: &Case, result: &Json) -> Value {
     let probe = |probe: &Json| {
         let name = probe["name"].as_str().unwrap_or_default();
         let positions = rows(&probe["reference_m"]).count();
@@ -69,7 +69,7 @@ pub fn answers(case: &Case, result: &Json) -> Value {
 }
 
 /// Forces and moments of conditions.
-pub fn reactions(result: &Json) -> Vec<Value> {
+pub(crate) fn reactions(result: &Json) -> Vec<Value> {
     let reaction = |reaction: &Json| {
         let name = reaction["condition"].as_str().unwrap_or_default();
         context! {
@@ -83,7 +83,7 @@ pub fn reactions(result: &Json) -> Vec<Value> {
 }
 
 /// What was asked, what was done; what differs by more than it may comes first.
-pub fn audit(result: &Json) -> Vec<Value> {
+pub(crate) fn audit(result: &Json) -> Vec<Value> {
     let figure = |json: &Json| {
         if json.is_array() {
             vector(&components(json))
@@ -109,7 +109,7 @@ pub fn audit(result: &Json) -> Vec<Value> {
 }
 
 /// What obstacles do.
-pub fn contacts(result: &Json) -> Vec<Value> {
+pub(crate) fn contacts(result: &Json) -> Vec<Value> {
     let number = |json: &Json| json.as_f64().map_or("–".into(), four_digits);
     let contact = |contact: &Json| {
         context! {
@@ -125,7 +125,7 @@ pub fn contacts(result: &Json) -> Vec<Value> {
 }
 
 /// Regions and their materials.
-pub fn materials(case: &Case) -> Vec<Value> {
+pub(crate) fn materials(case: &Case) -> Vec<Value> {
     let regions = &case.problem.regions;
     let numbered = regions.iter().enumerate();
     numbered
@@ -148,7 +148,7 @@ pub fn materials(case: &Case) -> Vec<Value> {
 }
 
 /// Time, memory and work.
-pub fn costs(result: &Json) -> Vec<Value> {
+pub(crate) fn costs(result: &Json) -> Vec<Value> {
     let (timings, work) = (&result["timings"], &result["work_counters"]);
     let seconds = |json: &Json| json.as_f64().map(|s| format!("{s:.2} s"));
     let megabytes = |json: &Json| json.as_f64().map(|bytes| format!("{:.0} MB", bytes / 1e6));

@@ -6,13 +6,13 @@ use mtled_case::scene::Case;
 use mtled_checks::escape::printable;
 use serde_json::{Map, Value, json};
 
-pub fn springs_json(case: &Case, record: &Recording) -> Vec<Value> {
+pub(crate) fn springs_json(case: &Case, record: &Recording) -> Vec<Value> {
     let Some(last) = record.samples.last() else { return Vec::new() };
     let rows = case.problem.loads.springs.iter().zip(&last.spring_forces);
     rows.map(|(spring, force)| json!({ "spring": spring.name, "force_n": array(force) })).collect()
 }
 
-pub fn cavities_json(case: &Case, record: &Recording) -> Vec<Value> {
+pub(crate) fn cavities_json(case: &Case, record: &Recording) -> Vec<Value> {
     let (Some(first), Some(last)) = (record.samples.first(), record.samples.last()) else {
         return Vec::new();
     };
@@ -28,7 +28,7 @@ pub fn cavities_json(case: &Case, record: &Recording) -> Vec<Value> {
     .collect()
 }
 
-pub fn region_volumes_json(case: &Case, record: &Recording) -> Value {
+pub(crate) fn region_volumes_json(case: &Case, record: &Recording) -> Value {
     let Some(last) = record.samples.last().filter(|_| case.outputs.volumes) else {
         return json!({});
     };
@@ -37,7 +37,7 @@ pub fn region_volumes_json(case: &Case, record: &Recording) -> Value {
 }
 
 /// A line for each spring and each cavity.
-pub fn loads_text(case: &Case, last: &Sample) -> Vec<String> {
+pub(crate) fn loads_text(case: &Case, last: &Sample) -> Vec<String> {
     let mut lines = Vec::new();
     lines.extend(case.problem.loads.springs.iter().zip(&last.spring_forces).map(
         |(spring, force)| {

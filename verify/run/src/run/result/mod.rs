@@ -33,7 +33,7 @@ const SCHEMA_VERSION: u32 = 1;
 
 /// `result.json`. Only `timings` may differ between two runs of the same binary on
 /// the same case. `bars` are the error bars, unless they were left out.
-pub fn result_json(
+pub(crate) fn result_json(
     case: &Case,
     solved: &Solved,
     record: &Recording,
@@ -58,7 +58,7 @@ pub fn result_json(
 }
 
 /// `result.json` of a run that ended with an error: what it had reached, marked as such.
-pub fn failed_json(
+pub(crate) fn failed_json(
     case: &Case,
     simulation: &Simulation,
     record: &Recording,
@@ -169,7 +169,7 @@ impl Outcome {
 }
 
 /// How a run ended with this error.
-pub fn outcome_of(error: &Error) -> &'static str {
+pub(crate) fn outcome_of(error: &Error) -> &'static str {
     Outcome::of_error(error).name()
 }
 
@@ -276,7 +276,7 @@ fn energies_json(record: &Recording) -> Value {
 }
 
 /// The main results, a line each, with their error bars.
-pub fn summary_text(
+pub(crate) fn summary_text(
     case: &Case,
     solved: &Solved,
     record: &Recording,

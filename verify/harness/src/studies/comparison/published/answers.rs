@@ -8,7 +8,7 @@ use mtled_case::scene::Case;
 use mtled_run::run::{Recording, Sample};
 
 /// The answer of a run to a published number \[its unit\].
-pub fn answer(case: &Case, found: &Found, number: &Number) -> Result<f64> {
+pub(crate) fn answer(case: &Case, found: &Found, number: &Number) -> Result<f64> {
     match (found, number.modes()) {
         (Found::History(record), None) => of_history(case, record, number),
         (Found::Frequencies(all), Some((first, last))) => {

@@ -17,7 +17,7 @@ use mtled_run::specimens::spacing::{respaced, spacing_of};
 use rayon::prelude::*;
 
 /// Solves every problem at the spacing of its cases, in the full suite at three.
-pub fn published(bench: &Workbench, study: &mut Study) -> Result<()> {
+pub(crate) fn published(bench: &Workbench, study: &mut Study) -> Result<()> {
     let folder = tempfile::tempdir()?;
     unpack(folder.path())?;
     let problems = problems()?;

@@ -10,7 +10,7 @@ use std::path::Path;
 /// A problem with its numbers.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Problem {
+pub(crate) struct Problem {
     /// Its name for readers.
     pub title: String,
     /// What it is about, where it comes from and what is known of its numbers.
@@ -25,7 +25,7 @@ pub struct Problem {
 
 impl Problem {
     /// How many natural frequencies of a case its numbers need; none where it is solved.
-    pub fn modes(&self, case: &str) -> usize {
+    pub(crate) fn modes(&self, case: &str) -> usize {
         let own = self.numbers.iter().filter(|number| number.case == case);
         own.filter_map(Number::modes).map(|(_, last)| last).max().unwrap_or(0)
     }
@@ -34,7 +34,7 @@ impl Problem {
 /// A case of a problem.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct CaseOf {
+pub(crate) struct CaseOf {
     /// Of its file, of a bundled case or of a body with fibres.
     pub name: String,
     /// Spacings that the full suite solves \[m\]; that of the file, which is judged, is among them.
@@ -47,7 +47,7 @@ pub struct CaseOf {
 /// Who a number comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum By {
+pub(crate) enum By {
     /// People who have nothing to do with this program.
     Others,
     /// A formula or an integral.
@@ -59,7 +59,7 @@ pub enum By {
 }
 
 impl By {
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             By::Others => "others",
             By::ClosedForm => "closed form",
@@ -72,7 +72,7 @@ impl By {
 /// When an answer is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum When {
+pub(crate) enum When {
     Start,
     End,
     Maximum,
@@ -102,7 +102,7 @@ fn always() -> [f64; 2] {
 /// One number.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Number {
+pub(crate) struct Number {
     /// Case that it belongs to.
     pub case: String,
     /// In words, for readers and for the id of its check.
@@ -140,13 +140,13 @@ pub struct Number {
 
 impl Number {
     /// What differences are divided by \[`unit`\].
-    pub fn scale(&self) -> f64 {
+    pub(crate) fn scale(&self) -> f64 {
         self.scale.unwrap_or(self.value).abs()
     }
 
     /// Its first and its last mode, counted from 1 and without rigid motions, where it is a natural
     /// frequency.
-    pub fn modes(&self) -> Option<(usize, usize)> {
+    pub(crate) fn modes(&self) -> Option<(usize, usize)> {
         let (first, last) = self.answer.strip_prefix("frequency/")?.split_once('-')?;
         Some((first.parse().ok()?, last.parse().ok()?))
     }
@@ -157,12 +157,12 @@ impl Number {
     }
 
     /// Spread and tolerance over the scale \[–\].
-    pub fn bound(&self) -> f64 {
+    pub(crate) fn bound(&self) -> f64 {
         self.tolerance + self.spread / self.scale()
     }
 
     /// Id of its check.
-    pub fn id(&self, problem: &str) -> String {
+    pub(crate) fn id(&self, problem: &str) -> String {
         let case = if self.case == "case" { String::new() } else { format!("/{}", self.case) };
         let name = self.name.replace([' ', ',', '.', '’'], "_");
         format!("published/{problem}{case}/{name}")
@@ -170,7 +170,7 @@ impl Number {
 }
 
 /// The problems with their names.
-pub fn problems() -> Result<Vec<(&'static Published, Problem)>> {
+pub(crate) fn problems() -> Result<Vec<(&'static Published, Problem)>> {
     let read = |published: &'static Published| {
         let problem = toml_edit::de::from_str(published.numbers);
         Ok((published, problem.with_context(|| format!("numbers of {}", published.name))?))
@@ -179,7 +179,7 @@ pub fn problems() -> Result<Vec<(&'static Published, Problem)>> {
 }
 
 /// Writes what cases name into `folder`.
-pub fn unpack(folder: &Path) -> Result<()> {
+pub(crate) fn unpack(folder: &Path) -> Result<()> {
     for (name, text) in PUBLISHED_FILES {
         write_atomically(&folder.join(name), text.as_bytes())?;
     }
@@ -187,7 +187,7 @@ pub fn unpack(folder: &Path) -> Result<()> {
 }
 
 /// A case of a problem; what it names lies in `folder`.
-pub fn case(published: &Published, name: &str, folder: &Path) -> Result<Case> {
+pub(crate) fn case(published: &Published, name: &str, folder: &Path) -> Result<Case> {
     let own = published.cases.iter().find(|(own, _)| *own == name).map(|(_, text)| *text);
     let bundled = || CASES.iter().find(|(other, _)| *other == name).map(|(_, text)| *text);
     let with_fibres = || FIBRES.iter().find(|body| body.name == name).map(|body| body.case);

@@ -11,7 +11,7 @@ use mtled_run::run::{self, Recording, error_bars, solve_case};
 use std::collections::BTreeMap;
 
 /// A run that is to be done.
-pub struct Plan {
+pub(crate) struct Plan {
     pub problem: String,
     pub case: Case,
     pub spacing: f64,
@@ -21,14 +21,14 @@ pub struct Plan {
 }
 
 /// What a run finds.
-pub enum Found {
+pub(crate) enum Found {
     History(Recording),
     /// The lowest ones of elastic vibrations, in ascending order \[Hz\].
     Frequencies(Vec<f64>),
 }
 
 /// A run that was done.
-pub struct Solved {
+pub(crate) struct Solved {
     pub problem: String,
     pub case: Case,
     pub spacing: f64,
@@ -45,7 +45,7 @@ pub struct Solved {
 }
 
 impl Solved {
-    pub fn remark(&self) -> String {
+    pub(crate) fn remark(&self) -> String {
         match &self.found {
             Err(reason) => format!("no answer: {reason}"),
             Ok(_) => self.doubts.join("; "),
@@ -54,7 +54,7 @@ impl Solved {
 }
 
 /// Finds what the plan asks for on one thread, whose time is measured.
-pub fn solved(plan: Plan, with_bars: bool) -> Solved {
+pub(crate) fn solved(plan: Plan, with_bars: bool) -> Solved {
     let Plan { problem, case, spacing, is_own, modes } = plan;
     let start = ThreadTime::now();
     let mut run = Solved {

@@ -5,7 +5,7 @@ use super::runs::Solved;
 use mtled_checks::study::{Cell, Table, number, text};
 
 /// One published number beside one run.
-pub struct Row {
+pub(crate) struct Row {
     pub problem: String,
     pub case: String,
     pub spacing: f64,
@@ -39,7 +39,7 @@ fn known(value: Option<f64>) -> Cell {
 }
 
 /// Every number beside every run.
-pub fn numbers_table(rows: &[(Row, &Number)]) -> Table {
+pub(crate) fn numbers_table(rows: &[(Row, &Number)]) -> Table {
     let line = |(row, number): &(Row, &Number)| {
         vec![
             Cell::Text(row.problem.clone()),
@@ -81,7 +81,7 @@ pub fn numbers_table(rows: &[(Row, &Number)]) -> Table {
 }
 
 /// Where the numbers come from.
-pub fn sources_table(rows: &[(Row, &Number)]) -> Table {
+pub(crate) fn sources_table(rows: &[(Row, &Number)]) -> Table {
     let line = |(row, number): &(Row, &Number)| {
         let cell = |text: &str| Cell::Text(text.into());
         vec![
@@ -103,7 +103,7 @@ pub fn sources_table(rows: &[(Row, &Number)]) -> Table {
 }
 
 /// What every run costs.
-pub fn costs_table(runs: &[Solved]) -> Table {
+pub(crate) fn costs_table(runs: &[Solved]) -> Table {
     let line = |run: &Solved| {
         vec![
             Cell::Text(run.problem.clone()),

@@ -13,7 +13,7 @@ use mtled_run::specimens::simple::{
 };
 
 /// A family of bodies: what its members have in common, and how one is made from random numbers.
-pub struct Family {
+pub(crate) struct Family {
     pub id: &'static str,
     /// In tables and messages.
     pub label: &'static str,
@@ -25,7 +25,7 @@ pub struct Family {
 
 const SPACE: Dimension = Dimension::Three;
 
-pub const FAMILIES: [Family; 8] = [
+pub(crate) const FAMILIES: [Family; 8] = [
     Family {
         id: "square",
         label: "squares in plane strain",
@@ -87,7 +87,7 @@ pub const FAMILIES: [Family; 8] = [
 impl Family {
     /// Member `seed` of the family: jitter 0 to 0.45, dilation 1.6 to 2.4, 1.1
     /// to 2 cells per spacing and ν from 0 to 0.499 at random.
-    pub fn member(&self, seed: u64) -> anyhow::Result<Problem> {
+    pub(crate) fn member(&self, seed: u64) -> anyhow::Result<Problem> {
         let mut random = Random(seed.wrapping_mul(0x9e37_79b9).wrapping_add(self.id.len() as u64));
         let mut between =
             |low: f64, high: f64| low + 0.5 * (high - low) * (1.0 + random.symmetric());

@@ -39,7 +39,7 @@ struct Limits {
 }
 
 /// Compares the estimates on single specimens, on random clouds and during runs.
-pub fn time_step(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+pub(crate) fn time_step(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let specimens = specimens(bench)?;
     let mut rows = Vec::new();
     let (mut lanczos, mut bound) = (Vec::new(), Vec::new());

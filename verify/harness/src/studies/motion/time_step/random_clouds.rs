@@ -24,7 +24,7 @@ struct Ratios {
 }
 
 /// Compares the default step and three bounds with the largest stable step of every member.
-pub fn random_clouds(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+pub(crate) fn random_clouds(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let seeds: u64 = bench.pick(3, 25);
     let mut rows = Vec::new();
     let mut all = Vec::new();

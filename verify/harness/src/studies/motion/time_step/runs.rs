@@ -55,7 +55,7 @@ struct SampledRun {
 }
 
 /// Checks the step of every run and the cost of its control.
-pub fn runs(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
+pub(crate) fn runs(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
     let problems = problems(bench)?;
     let runs: anyhow::Result<Vec<SampledRun>> = problems
         .into_par_iter()

@@ -17,7 +17,7 @@ use mtled_run::specimens::simple::{
 
 /// A problem whose largest stable step is measured.
 #[derive(Debug, Clone)]
-pub struct Specimen {
+pub(crate) struct Specimen {
     pub id: String,
     /// In tables and messages.
     pub label: String,
@@ -47,7 +47,7 @@ fn specimen(
 }
 
 /// Each differs from the jittered block in one or two respects.
-pub fn specimens(bench: &Workbench) -> anyhow::Result<Vec<Specimen>> {
+pub(crate) fn specimens(bench: &Workbench) -> anyhow::Result<Vec<Specimen>> {
     let cube = |jitter| block(Dimension::Three, bench.pick(6.0, 9.0), jitter);
     let square = |jitter| block(PLANE, bench.pick(9.0, 17.0), jitter);
     let spacing = SIZE / (bench.pick(6.0, 9.0) - 1.0);

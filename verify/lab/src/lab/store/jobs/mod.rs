@@ -65,7 +65,7 @@ struct PlannedRun {
 
 impl JobPlan {
     /// Removes the parts of an earlier plan, which are done or out of date.
-    pub fn clear(&self) -> Result<()> {
+    pub(crate) fn clear(&self) -> Result<()> {
         let Ok(entries) = std::fs::read_dir(&self.folder) else { return Ok(()) };
         for entry in entries {
             let path = entry?.path();
@@ -79,7 +79,7 @@ impl JobPlan {
     }
 
     /// Deals tasks that are not stored into parts and writes these with their workflows.
-    pub fn write(&self, tasks: &[(String, &Task)], store: &Store) -> Result<Planned> {
+    pub(crate) fn write(&self, tasks: &[(String, &Task)], store: &Store) -> Result<Planned> {
         self.clear()?;
         std::fs::create_dir_all(store.folder())
             .with_context(|| format!("cannot make the store {}", store.folder().display()))?;
