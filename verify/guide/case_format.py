@@ -7,12 +7,11 @@ Every key must have a description, every number its unit, and a key that may be 
 what then counts. --check writes nothing and fails where the page is not that of the program.
 """
 
-import json
 import re
-import subprocess
 import sys
 
 from pages import GUIDE
+from schema import Schema, choices, default_of, name_of, unit_of, write
 
 PAGE = GUIDE / "src" / "case_format.md"
 FIRST = """# The case format
@@ -35,10 +34,6 @@ the description says when the key may be left out. Paths are relative to the cas
 """
 
 
-def name_of(reference):
-    return re.sub(r"Format$", "", reference.rsplit("/", 1)[-1])
-
-
 def title(name):
     """GridFormat → Grid; HalfSpace → Half space."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).capitalize()
@@ -49,9 +44,9 @@ def link(name):
     return f"[{text.lower()}](#{text.lower().replace(' ', '-')})"
 
 
-class Schema:
-    def __init__(self, root):
-        self.root, self.definitions = root, root["$defs"]
+class Format(Schema):
+    def __init__(self, program):
+        super().__init__(program)
         self.faults, self.keys = [], 0
 
     def type_of(self, schema):
@@ -71,19 +66,10 @@ class Schema:
             return f"table of {self.type_of(schema['additionalProperties'])} by name"
         return {"object": "table", "integer": "whole number", "string": "text"}.get(kind, kind)
 
-    def words(self, schema):
-        """The description of a key, or of its type."""
-        if "description" in schema:
-            return " ".join(schema["description"].split())
-        for inner in [schema, *schema.get("anyOf", [])]:
-            if "$ref" in inner:
-                return self.words(self.definitions[inner["$ref"].rsplit("/", 1)[-1]])
-        return ""
-
     def row(self, place, key, schema, needed):
         self.keys += 1
         words, kind = self.words(schema), self.type_of(schema)
-        unit = re.search(r"\[([^\]]+)\]", words)
+        unit = unit_of(words)
         if not words:
             self.faults.append(f"{place}.{key} has no description")
         if "number" in kind.replace("whole number", "") and not unit and "list" not in kind:
@@ -92,8 +78,8 @@ class Schema:
         default = "–"
         if needed:
             default = "**needed**"
-        elif schema.get("default") is not None:
-            default = f"`{json.dumps(schema['default'], ensure_ascii=False)}`"
+        elif default_of(schema):
+            default = f"`{default_of(schema)}`"
         elif stated:
             default = "`" + stated[1].strip("(;,") + "`"
             if not re.fullmatch(r"`(\"\w+\"|[\d.e-]+)`", default):
@@ -101,7 +87,7 @@ class Schema:
         elif "left out" not in words and "default" not in schema:
             self.faults.append(f"{place}.{key} does not say what counts where it is left out")
         words = words.replace("|", "\\|").replace("<", "&lt;").replace("*", "\\*")
-        return f"| `{key}` | {kind} | {unit[1] if unit else ''} | {default} | {words} |"
+        return f"| `{key}` | {kind} | {unit} | {default} | {words} |"
 
     def table(self, place, schema):
         if not schema.get("properties"):
@@ -113,15 +99,12 @@ class Schema:
 
     def choice(self, place, variants):
         """Words to choose from, and tables with one key."""
-        lines, words = [], []
-        for variant in variants:
-            words += [(word, variant.get("description", ""))
-                      for word in variant.get("enum", [variant["const"]] if "const" in variant else [])]
+        lines, words = [], list(choices(variants))
         if words:
             lines += ["| value | |", "|---|---|"]
             for word, description in words:
                 self.keys += 1
-                text = " ".join(description.split()).replace("|", "\\|").replace("*", "\\*")
+                text = description.replace("|", "\\|").replace("*", "\\*")
                 lines.append(f'| `"{word}"` | {text} |')
             lines.append("")
         for variant in variants:
@@ -150,36 +133,14 @@ class Schema:
             lines += self.section(name_of(name), self.definitions[name])
         return "\n".join(lines).rstrip() + "\n"
 
-    def order(self):
-        """Definitions in the order in which a reader meets them."""
-        met = []
-
-        def visit(schema):
-            found = re.findall(r'"\$ref": "#/\$defs/(\w+)"', json.dumps(schema))
-            new = [name for name in dict.fromkeys(found) if name not in met]
-            for name in new:
-                if name not in met:
-                    met.append(name)
-                    visit(self.definitions[name])
-
-        for key in self.root["required"] + list(self.root["properties"]):
-            visit(self.root["properties"][key])
-        assert set(met) == set(self.definitions), set(self.definitions) - set(met)
-        return met
-
 
 def main():
-    schema = Schema(json.loads(subprocess.check_output([sys.argv[1], "case", "schema"])))
-    page = schema.page()
+    schema = Format(sys.argv[1])
+    written = write(PAGE, schema.page())
     for fault in schema.faults:
         print(fault, file=sys.stderr)
-    if "--check" not in sys.argv:
-        PAGE.write_text(page, encoding="utf-8")
-    elif PAGE.read_text(encoding="utf-8") != page:
-        print(f"{PAGE} is not that of {sys.argv[1]}: run case_format.py again", file=sys.stderr)
-        return 1
     print(f"{schema.keys} keys and values, {len(schema.faults)} faults")
-    return 1 if schema.faults else 0
+    return 1 if schema.faults or not written else 0
 
 
 if __name__ == "__main__":

@@ -1,13 +1,11 @@
 """Cases from dicts, from dataclasses and with Python functions."""
 
-import json
-from dataclasses import fields
-
 import mtled
 import numpy as np
 import pytest
 from mtled import problem as p
 from mtled import toml
+from mtled.problem._tables import table_of
 
 EDGE = 0.1
 
@@ -45,53 +43,39 @@ def test_a_mistake_in_a_dataclass_has_the_key_of_the_case_file():
     assert caught.value.key == "discretisation.spacing" and caught.value.file == "case.toml"
 
 
-def test_dataclasses_have_all_keys_of_the_case_file_and_no_others():
-    schema = json.loads(mtled.schema())
-    definitions = schema["$defs"]
-
-    def own(*kinds):
-        return {p.key_of(part.name) for kind in kinds for part in fields(kind)} - {"kind"}
-
-    def variants(name):
-        rows = [row for row in definitions[name]["oneOf"] if "properties" in row]
-        return {key: row for row in rows for key in row["properties"]}
-
-    def keys(row):
-        while "$ref" in row:
-            row = definitions[row["$ref"].split("/")[-1]]
-        return set(row.get("properties", {}))
-
-    plain = {
-        "MaterialFormat": p.Material, "OgdenTermFormat": p.OgdenTerm, "RegionFormat": p.Region,
-        "DiscretisationFormat": p.Recipe, "GridFormat": p.Grid, "RefineSpacingFormat": p.RefineSpacing,
-        "RefineCellFormat": p.RefineCell, "DisplacementFormat": p.Displacement, "RotationFormat": p.Rotation,
-        "FormulaFormat": p.Formula, "DataFormat": p.Data, "BodyForceFormat": p.BodyForce,
-        "TractionFormat": p.Traction, "PressureFormat": p.Pressure, "InitialVelocityFormat": p.InitialVelocity,
-        "ObstacleFormat": p.Obstacle, "PointsFormat": p.Points, "LatticeFormat": p.Lattice, "ProbeFormat": p.Probe,
-        "PlaneFormat": p.PlaneStrain, "OutputFormat": p.Output, "PronyTermFormat": p.PronyTerm,
-        "ActiveStressFormat": p.ActiveStress, "SpringFormat": p.Spring, "CavityFormat": p.Cavity,
-        "FluidFormat": p.Fluid,
+def test_what_has_no_key_in_a_case_file_is_written_without():
+    box, ball = p.Box([0, 0, 0], [1, 1, 1]), p.Sphere([0, 0, 0], 1.0)
+    tables = [{"box": {"min": [0, 0, 0], "max": [1, 1, 1]}}, {"sphere": {"centre": [0, 0, 0], "radius": 1.0}}]
+    assert table_of(p.Difference(box, ball)) == {"difference": tables}
+    assert table_of(p.Union([box, ball])) == {"union": tables}
+    assert table_of(p.Not(p.InShape(ball))) == {"not": {"shape": tables[1]}}
+    assert table_of(p.Table([(0, 0), (1, 2)])) == {"table": [[0, 0], [1, 2]]}
+    assert table_of(p.Static()) == {"method": "static"}
+    turned = p.Prescribe("top", "all", p.Rotation([0, 0, 0], [0, 0, 1], 0.5), release_s=2.0)
+    assert table_of(turned) == {
+        "name": "top", "where": "all", "of": "surface", "release": 2.0,
+        "rotation": {"point": [0, 0, 0], "axis": [0, 0, 1], "angle": 0.5},
     }  # fmt: skip
-    for name, kind in plain.items():
-        assert own(kind) == keys(definitions[name]), name
-    assert own(p.Static, p.Dynamic) == keys(definitions["TimeFormat"])
-    motions = {"displacement", "rotation", "formula", "data"}
-    assert own(p.Prescribe) - {"motion"} | motions == keys(definitions["PrescribeFormat"])
-    ways = {"displacement", "rotation"}
-    assert own(p.RigidMotion) - {"way"} | ways == keys(definitions["RigidMotionFormat"])
-    assert own(p.Problem) - {"shape"} | {"geometry", "dimension"} == keys(schema)
+    with pytest.raises(TypeError, match="the motion of top is .* Rotation, or a function"):
+        table_of(p.Prescribe("top", "all", box))
 
-    shapes = {kind.kind: kind for kind in (p.Box, p.Cylinder, p.Sphere, p.Ellipsoid, p.Polygon, p.HalfSpace, p.Stl,
-                                           p.LabelMap, p.Union, p.Intersection, p.Difference)}  # fmt: skip
-    selections = {kind.kind: kind for kind in (p.Plane, p.HalfSpace, p.Box, p.Sphere, p.InShape, p.Label, p.Facing, p.Union,
-                                               p.Intersection, p.Not)}  # fmt: skip
-    amplitudes = {kind.kind: kind for kind in (p.Linear, p.Smooth, p.Table)}
-    for name, known in [("ShapeFormat", shapes), ("SelectorFormat", selections), ("AmplitudeFormat", amplitudes)]:
-        found = variants(name)
-        assert set(found) == set(known), name
-        for kind, row in found.items():
-            inner = keys(row["properties"][kind])
-            assert not inner or inner | {"tolerance"} == own(known[kind]) | {"tolerance"}, kind
+
+def test_each_dataclass_is_a_table_that_case_files_take():
+    held = p.Prescribe("foot", p.HalfSpace([0, 0, 0.03], [0, 0, 1]), p.Formula("0", "0", "0"), of="volume")
+    moved = p.RigidMotion([0, 0, -0.001], amplitude=p.Table([(0, 0), (1, 1)]))
+    stretched(
+        shape=p.Union([p.Box([0, 0, 0], [EDGE] * 3), p.Cylinder([0, 0, 0], [0, 0, 1], 0.03, 0.05)]),
+        prescribe=[held],
+        region=[p.Region("top", p.Facing([0, 0, 1], 0.5), "tissue"), p.Region("rest", "all", "tissue")],
+        traction=[p.Traction("side", p.Plane([EDGE, 0, 0], [1, 0, 0]), [1.0, 0, 0], amplitude=p.Linear(0.5))],
+        pressure=[p.Pressure("lid", p.Box([0, 0, 0.09], [EDGE] * 3, tolerance_m=1e-4), 10.0)],
+        body_force=[p.BodyForce([0, 0, -9.81], where=p.Not(p.Sphere([0, 0, 0], 0.01)))],
+        obstacle=[p.Obstacle("plate", p.HalfSpace([0, 0, 0.2], [0, 0, -1]), friction=p.Coulomb(0.3), motion=[moved])],
+        discretisation=p.Recipe(spacing_m=0.02, grid=p.Grid(refine=[p.RefineCell("all", 0.01)])),
+        time=p.Dynamic(0.1, damping_per_s=1.0),
+        probe=[p.Probe("line", lattice=p.Lattice([0, 0, 0], [EDGE] * 3, [2, 2, 2]))],
+        output=p.Output(frames=1),
+    ).case()
 
 
 def test_a_dict_is_the_same_case_as_its_file():

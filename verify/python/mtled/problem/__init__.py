@@ -1,116 +1,15 @@
 """Cases from dataclasses, with the units in the names of their fields.
 
 A field ``young_modulus_pa`` is the key ``young_modulus`` of a case file, in Pa. Fields that are
-``None`` are left out, and the defaults of the case file count. ``mtled case schema`` describes
-every key; the names of laws, clouds and solvers are those of the case file.
+``None`` are left out, and the defaults of the case file count. What a table needs, a vector and its
+components may be given without their names; all else goes by name.
 """
 
-from .conditions import (
-    BodyForce,
-    Cavity,
-    Data,
-    Displacement,
-    Fluid,
-    Formula,
-    InitialVelocity,
-    Linear,
-    Obstacle,
-    Prescribe,
-    Pressure,
-    RigidMotion,
-    Rotation,
-    Smooth,
-    Spring,
-    Table,
-    Traction,
-)
-from .recipe import (
-    ActiveStress,
-    Direction,
-    Grid,
-    Material,
-    OgdenTerm,
-    PronyTerm,
-    Recipe,
-    RefineCell,
-    RefineSpacing,
-    Region,
-)
-from .shapes import (
-    Box,
-    Cylinder,
-    Difference,
-    Distance,
-    Ellipsoid,
-    Facing,
-    HalfSpace,
-    InShape,
-    Intersection,
-    Label,
-    LabelMap,
-    Not,
-    Plane,
-    Polygon,
-    Sphere,
-    Stl,
-    Union,
-)
-from .statement import Problem
-from .tables import key_of
-from .time import Dynamic, Lattice, Output, PlaneStrain, Points, Probe, Static
-
-__all__ = [
-    "ActiveStress",
-    "BodyForce",
-    "Box",
-    "Cavity",
-    "Cylinder",
-    "Data",
-    "Difference",
-    "Direction",
-    "Displacement",
-    "Distance",
-    "Dynamic",
-    "Ellipsoid",
-    "Facing",
-    "Fluid",
-    "Formula",
-    "Grid",
-    "HalfSpace",
-    "InShape",
-    "InitialVelocity",
-    "Intersection",
-    "Label",
-    "LabelMap",
-    "Lattice",
-    "Linear",
-    "Material",
-    "Not",
-    "Obstacle",
-    "OgdenTerm",
-    "Output",
-    "Plane",
-    "PlaneStrain",
-    "Points",
-    "Polygon",
-    "Prescribe",
-    "Pressure",
-    "Probe",
-    "Problem",
-    "PronyTerm",
-    "Recipe",
-    "RefineCell",
-    "RefineSpacing",
-    "Region",
-    "RigidMotion",
-    "Rotation",
-    "Smooth",
-    "Sphere",
-    "Spring",
-    "Static",
-    "Stl",
-    "Table",
-    "Traction",
-    "Union",
-    "key_of",
-]
+# ruff: noqa: F403
+from ._conditions import *
+from ._materials import *
+from ._problem import *
+from ._recipe import *
+from ._shapes import *
+from ._statement import *
+from ._tables import *

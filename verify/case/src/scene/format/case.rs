@@ -67,7 +67,7 @@ pub struct CaseFormat {
     /// Where displacements are recorded; nowhere if left out.
     #[serde(default)]
     pub probe: Vec<ProbeFormat>,
-    /// What is written; as below if left out.
+    /// What is written; with the defaults of its keys if left out.
     #[serde(default)]
     pub output: OutputFormat,
 }

@@ -57,7 +57,7 @@ pub struct DiscretisationFormat {
     pub volumetric_projection: Option<VolumetricProjectionFormat>,
     /// Borders between materials of different stiffness; "sharp" if left out.
     pub material_borders: Option<MaterialBordersFormat>,
-    /// The background grid that quadrature points come from; as below if left out.
+    /// The background grid that quadrature points come from; with the defaults of its keys if left out.
     #[serde(default)]
     pub grid: GridFormat,
 }

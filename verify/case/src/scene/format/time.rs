@@ -49,7 +49,9 @@ pub struct TimeFormat {
 choice! {
     /// Central differences in time, or a static solution.
     MethodFormat {
+        /// The motion of the body in time.
         "dynamic" Dynamic,
+        /// The state at rest that the loads and conditions lead to.
         "static" Static,
     }
 }
