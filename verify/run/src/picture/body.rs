@@ -67,7 +67,7 @@ impl Field {
     }
 
     /// Whether its colours start at zero.
-    pub(crate) fn from_zero(&self) -> bool {
+    pub(crate) fn begins_at_zero(&self) -> bool {
         matches!(
             self.name.as_str(),
             DISPLACEMENT | "displacement_error_bar" | "von_mises_stress" | "contact_pressure"

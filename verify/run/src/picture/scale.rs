@@ -31,7 +31,7 @@ impl Scale {
         let whole = field.unit() == "m";
         let (mut low, mut high) =
             if whole { (at(0.0), at(1.0)) } else { (at(TAILS), at(1.0 - TAILS)) };
-        if field.from_zero() {
+        if field.begins_at_zero() {
             low = 0.0;
         }
         // A constant has a scale too.
@@ -39,7 +39,7 @@ impl Scale {
         if high - low <= 1e-6 * size || high <= low {
             let half = if size > 0.0 { 0.5 * size } else { 0.5 };
             (low, high) =
-                if field.from_zero() { (0.0, 2.0 * half) } else { (low - half, high + half) };
+                if field.begins_at_zero() { (0.0, 2.0 * half) } else { (low - half, high + half) };
         }
         let cut = at(0.0) < low - 1e-6 * size || at(1.0) > high + 1e-6 * size;
         let (unit, factor) = prefixed(field.unit(), low.abs().max(high.abs()));

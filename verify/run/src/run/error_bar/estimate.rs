@@ -93,7 +93,7 @@ fn held_all_around(solved: &Solved) -> bool {
 
 /// Estimates the error of the discretisation of every answer of a finished run by solving the
 /// case on coarser clouds, which takes a fraction of its time. `indicates` asks for
-/// [`ErrorBars::indicator`].
+/// `ErrorBars::indicator`.
 pub fn error_bars(
     case: &Case,
     solved: &Solved,
