@@ -6,9 +6,9 @@ use mtled::discretisation::Discretisation;
 use mtled::discretisation::neighbours::Neighbours;
 use mtled::discretisation::nodes::node_cloud;
 use mtled::discretisation::quadrature::quadrature;
+use mtled::force::Workspace;
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
-use mtled::motion::internal_force::Workspace;
 use mtled::problem::{Basis, Gradients, Problem};
 use mtled_benches::bodies::{cube, recommended};
 use mtled_benches::measure::{Group, all_threads, one_thread, settings, smoke};
@@ -119,7 +119,7 @@ fn critical_step(criterion: &mut Criterion) {
     let (size, one) = (BodySize::of(&discretisation), one_thread());
     let mut group = Group::new(criterion, TMP, "model").of_long_calls();
     group.measure("bind", &size, &one, || drop(black_box(assemble(&problem, &discretisation))));
-    let (rest, mut workspace) = (vec![0.0; model.size()], Workspace::new(&model));
+    let (rest, mut workspace) = (vec![0.0; model.size()], Workspace::new(&model.points));
     group.measure("critical_step", &size, &one, || {
         black_box(critical_time_step(&model, &rest, 0.0, None, &mut workspace));
     });

@@ -5,9 +5,9 @@ use anyhow::ensure;
 use mtled::algebra::random::Random;
 use mtled::discretisation::Discretisation;
 use mtled::discretisation::nodes::node_cloud;
+use mtled::force::{Workspace, internal_force};
 use mtled::material::{Law, Material, MooneyRivlin};
 use mtled::model::Model;
-use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::{
     BackgroundGrid, Cloud, Dimension, GradientStorage, Gradients, Motion, Problem, StepControl,
     VolumetricProjection, defaults,
@@ -184,13 +184,13 @@ impl DeformedModel {
     /// A model that exists already.
     pub fn of(model: Model) -> DeformedModel {
         let (u, f) = (deformed(&model), vec![0.0; model.size()]);
-        let workspace = Workspace::new(&model);
+        let workspace = Workspace::new(&model.points);
         DeformedModel { model, u, f, workspace }
     }
 
     /// One evaluation of the internal force.
     pub fn evaluate(&mut self) {
-        internal_force(&self.model, &self.u, &mut self.workspace, &mut self.f);
+        internal_force(&self.model.points, &self.u, &mut self.workspace, &mut self.f);
     }
 }
 

@@ -57,6 +57,8 @@ pub mod error;
 
 pub mod discretisation;
 
+pub mod force;
+
 pub mod model;
 pub mod motion;
 

@@ -11,9 +11,9 @@ use crate::algebra::packed::dot;
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::Discretisation;
 use crate::error::Error;
+use crate::force::{internal_force, strain_energy};
 use crate::model::Model;
 use crate::motion::extra_stress::ExtraState;
-use crate::motion::internal_force::{internal_force, strain_energy};
 use crate::motion::newton::Balanced;
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, add_following, external_force};
@@ -162,7 +162,7 @@ impl<'a> Adjoint<'a> {
         ExtraState::new(&model).act(&model, t, &mut buffers.workspace);
         external_force(&model, t, &mut buffers.f_ext);
         add_following(&model, t, &u, &mut buffers.f_ext);
-        internal_force(&model, &u, &mut buffers.workspace, &mut buffers.f_int);
+        internal_force(&model.points, &u, &mut buffers.workspace, &mut buffers.f_int);
         let unbalanced = buffers.f_ext.iter().zip(&buffers.f_int).map(|(ext, int)| ext - int);
         let mut jump = vec![0.0; u.len()];
         let mut moved = u.clone();
@@ -172,7 +172,7 @@ impl<'a> Adjoint<'a> {
             jump[i] += delta;
         });
         self.balanced.keep_contacts(&mut jump);
-        Ok(Side { force: unbalanced.collect(), jump, energy: strain_energy(&model, &u) })
+        Ok(Side { force: unbalanced.collect(), jump, energy: strain_energy(&model.points, &u) })
     }
 }
 
@@ -211,8 +211,8 @@ fn asked(answer: &Answer, model: &Model, balanced: &mut Balanced, t: f64) -> Ask
         }
         Answer::StrainEnergy => {
             let mut buffers = Buffers::new(model, false);
-            internal_force(model, &u, &mut buffers.workspace, &mut buffers.f_int);
-            (strain_energy(model, &u), buffers.f_int, still())
+            internal_force(&model.points, &u, &mut buffers.workspace, &mut buffers.f_int);
+            (strain_energy(&model.points, &u), buffers.f_int, still())
         }
     };
     balanced.keep_contacts(&mut held);

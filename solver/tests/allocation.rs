@@ -105,7 +105,7 @@ fn clamped() -> Problem {
 /// More than 1024 points, so that there are several blocks.
 fn finer(mut problem: Problem) -> Problem {
     problem.recipe.grid.cell = EDGE / 12.0;
-    assert!(build(&problem).1.blocks.len() > 1);
+    assert!(build(&problem).1.points.blocks.len() > 1);
     problem
 }
 

@@ -73,6 +73,12 @@ pub fn eight_points<S: Simd>(_: S) -> PhantomData<f64x8<S>> {
     PhantomData
 }
 
+/// The type of a number with its derivative, without a value.
+#[inline(always)]
+pub fn with_slopes<N>(_: PhantomData<N>) -> PhantomData<Dual<N>> {
+    PhantomData
+}
+
 /// Values and, where these are computed, their derivatives in one direction.
 #[derive(Debug, Clone, Default)]
 pub struct Parts<T> {

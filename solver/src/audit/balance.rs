@@ -4,8 +4,8 @@
 use super::{Kind, Row, Run};
 use crate::algebra::packed::largest;
 use crate::algebra::tensor::{Vector3, vector_at};
+use crate::force::{internal_force, potential_energy};
 use crate::motion::energy::{energies, excess_of_mean};
-use crate::motion::internal_force::{internal_force, potential_energy};
 use crate::motion::step::{add_following, external_force};
 
 /// Sum of all forces on a body at rest over the sum of their sizes \[–\]: Newton's method leaves up
@@ -74,11 +74,15 @@ impl Run<'_> {
         let (model, u) = (self.model, &self.state.displacement);
         let mut force = vec![0.0; model.size()];
         let mut workspace = self.state.workspace(model);
-        internal_force(model, u, &mut workspace, &mut force);
+        internal_force(&model.points, u, &mut workspace, &mut force);
         let works = || u.iter().zip(&force).map(|(u, f)| u * f);
         let (done, sizes): (f64, f64) = (works().sum(), works().map(f64::abs).sum());
         let energy = |factor: f64| {
-            potential_energy(model, &u.iter().map(|u| factor * u).collect::<Vec<_>>(), &workspace)
+            potential_energy(
+                &model.points,
+                &u.iter().map(|u| factor * u).collect::<Vec<_>>(),
+                &workspace,
+            )
         };
         let [less, same, more] = [1.0 - CHANGE, 1.0, 1.0 + CHANGE].map(energy);
         let asked = (more - less) / (2.0 * CHANGE);

@@ -3,7 +3,7 @@
 use crate::algebra::tensor::{Matrix3, Vector3, bounding_box, vector_at};
 use crate::discretisation::{Discretisation, Rows, Warning};
 use crate::error::Error;
-use crate::model::blocks::{Block, Sums, blocks};
+use crate::force::{Block, PackedPoints, stiffness_diagonal};
 use crate::model::contact::{ContactPlan, check_obstacles};
 use crate::model::essential::{Constraints, check_shared_nodes};
 use crate::model::following::FollowingLoads;
@@ -11,7 +11,6 @@ use crate::model::load::{
     LoadPattern, check_loads, follow_masses, initial_velocity, load_patterns,
 };
 use crate::model::mass::{fictitious_mass, fit_moments, lumped_mass};
-use crate::model::stiffness::stiffness_diagonal;
 use crate::model::time_step_bound::per_point_bound;
 use crate::problem::{Amplitude, Dimension, MassRule, Motion, Problem, Region, RelaxationMass};
 
@@ -32,10 +31,8 @@ pub struct Model {
     /// Diagonal of K at rest, the mean over the components of a node
     /// \[node\] \[N/m\].
     pub stiffness: Vec<f64>,
-    /// The quadrature points, block by block.
-    pub blocks: Vec<Block>,
-    /// The order in which the forces of the blocks are summed.
-    pub sums: Sums,
+    /// The quadrature points, packed for the internal force.
+    pub points: PackedPoints,
     /// The external forces.
     pub loads: Vec<LoadPattern>,
     /// External forces that depend on displacements.
@@ -79,10 +76,9 @@ impl Model {
         let (lumped_mass, loads) =
             masses_and_loads(problem, discretisation, &bodies, lumped, &mut warnings)?;
         let components = problem.dimension.components();
-        let blocks = blocks(problem, discretisation)?;
+        let points = PackedPoints::new(problem, discretisation)?;
         let following = FollowingLoads::new(problem, discretisation)?;
-        let mut stiffness =
-            stiffness_diagonal(&blocks, components, lumped_mass.len(), f64::INFINITY);
+        let mut stiffness = stiffness_diagonal(&points, lumped_mass.len(), f64::INFINITY);
         following.add_to_diagonal(components, &mut stiffness);
         let inertia =
             if lumped { lumped_mass.clone() } else { fictitious_mass(&stiffness, &lumped_mass) };
@@ -100,8 +96,7 @@ impl Model {
             components,
             bodies,
             positions: discretisation.cloud.positions.clone(),
-            sums: Sums::new(&blocks, lumped_mass.len()),
-            blocks,
+            points,
             stiffness,
             inertia,
             added_mass: 0.0,
@@ -147,7 +142,7 @@ impl Model {
     /// Fibre frames \[point\]; none where the law of a point has no fibres.
     pub fn fibre_frames(&self) -> Vec<Option<Matrix3>> {
         let mut frames = vec![None; self.point_positions.len()];
-        for block in &self.blocks {
+        for block in &self.points.blocks {
             block.occupied().for_each(|lane| frames[block.point(lane)] = block.frame(lane));
         }
         frames
@@ -158,7 +153,8 @@ impl Model {
         let conditions = &self.constraints.conditions;
         let loads = self.loads.iter().map(|load| &load.amplitude);
         let held = conditions.iter().map(|condition| &condition.amplitude);
-        let active = self.blocks.iter().filter_map(|block| Some(&block.active.as_ref()?.amplitude));
+        let active =
+            self.points.blocks.iter().filter_map(|block| Some(&block.active.as_ref()?.amplitude));
         let all = loads
             .chain(self.following.amplitudes())
             .chain(held)
@@ -169,17 +165,17 @@ impl Model {
 
     /// Whether there are stresses beside those of the laws.
     pub fn has_extra_stress(&self) -> bool {
-        self.blocks.iter().any(Block::has_extra_stress)
+        self.points.blocks.iter().any(Block::has_extra_stress)
     }
 
     /// Whether a stress depends on what was before.
     pub fn has_memory(&self) -> bool {
-        self.blocks.iter().any(|block| block.viscosity.is_some())
+        self.points.blocks.iter().any(|block| block.viscosity.is_some())
     }
 
     /// Bytes that one evaluation of the internal force reads from the blocks.
     pub fn bytes_per_step(&self) -> usize {
-        self.blocks.iter().map(Block::bytes).sum()
+        self.points.blocks.iter().map(Block::bytes).sum()
     }
 }
 

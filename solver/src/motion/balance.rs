@@ -1,10 +1,10 @@
 //! The imbalance of forces, and norms of it.
 
 use crate::algebra::packed::{dot, largest};
+use crate::force::{OwnPressures, SmallestJacobian, internal_force_with};
 use crate::model::Model;
 use crate::model::essential::ConstraintForces;
 use crate::model::following::OwnFluid;
-use crate::motion::internal_force::{OwnPressures, SmallestJacobian, internal_force_with};
 use crate::motion::step::Buffers;
 
 /// Nodal force over stiffness times displacement below which a body counts as free of
@@ -50,7 +50,7 @@ impl Imbalance {
     ) -> Imbalance {
         model.following.add_force((t, fluids), u, model.components, &mut buffers.f_ext);
         let smallest_jacobian =
-            internal_force_with(model, u, own, &mut buffers.workspace, &mut buffers.f_int);
+            internal_force_with(&model.points, u, own, &mut buffers.workspace, &mut buffers.f_int);
         let force: Vec<f64> = buffers
             .f_ext
             .iter()

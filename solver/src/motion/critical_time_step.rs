@@ -3,8 +3,8 @@
 
 use crate::algebra::packed::{axpy, combine, dot, norm, normalise, orthogonalise};
 use crate::algebra::random::noise;
+use crate::force::Workspace;
 use crate::model::Model;
-use crate::motion::internal_force::Workspace;
 use crate::motion::tangent::Tangent;
 
 /// The critical step and what it cost.
@@ -125,7 +125,7 @@ fn local_squares(model: &Model, field: &[f64]) -> Vec<f64> {
         field[d * node as usize..d * (node as usize + 1)].iter().map(|x| x * x).sum()
     };
     let mut sums = vec![(0.0, 0.0); model.positions.len()];
-    for block in &model.blocks {
+    for block in &model.points.blocks {
         for lane in block.occupied() {
             let nodes = || block.support_nodes(lane, d).map(|local| block.nodes[local]);
             let mean = nodes().map(square).sum::<f64>() / nodes().count() as f64;

@@ -2,8 +2,8 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::tensor::{Vector3, vector_at};
+use crate::force::{internal_force, strain_energy};
 use crate::model::Model;
-use crate::motion::internal_force::{internal_force, strain_energy};
 use crate::motion::state::{State, kinetic_energy};
 
 /// Energies \[J\] half a step before the time of the state, like velocities.
@@ -66,8 +66,8 @@ pub fn excess_of_mean(model: &Model, state: &State) -> f64 {
     let mut change = vec![0.0; model.size()];
     let mut before = change.clone();
     let last = displacement_before(state);
-    internal_force(model, &state.displacement, &mut workspace, &mut change);
-    internal_force(model, &last, &mut workspace, &mut before);
+    internal_force(&model.points, &state.displacement, &mut workspace, &mut change);
+    internal_force(&model.points, &last, &mut workspace, &mut before);
     change.iter_mut().zip(&before).for_each(|(f, b)| *f -= b);
     let moved = state.displacement.iter().zip(&last).map(|(u, b)| u - b);
     0.25 * moved.zip(&change).map(|(u, f)| u * f).sum::<f64>()
@@ -83,7 +83,9 @@ fn displacement_before(state: &State) -> Vec<f64> {
 /// t − Δt and t, and the accumulated work.
 pub fn energies(model: &Model, state: &State) -> Energies {
     let before = displacement_before(state);
-    let strain = 0.5 * (strain_energy(model, &before) + strain_energy(model, &state.displacement));
+    let strain = 0.5
+        * (strain_energy(&model.points, &before)
+            + strain_energy(&model.points, &state.displacement));
     let impacts = &state.contact.impacts;
     Energies {
         kinetic: kinetic_energy(model, &state.velocity),

@@ -2,10 +2,10 @@
 
 use crate::discretisation::Discretisation;
 use crate::error::Error;
+use crate::force::Workspace;
 use crate::model::Model;
 use crate::model::essential::Constraints;
 use crate::motion::critical_time_step::critical_time_step;
-use crate::motion::internal_force::Workspace;
 use crate::problem::{Motion, Problem};
 
 /// Largest fraction of the body's mass that may be added \[–\].
@@ -65,5 +65,5 @@ fn with_limit(
 
 fn time_step_at_rest(model: &Model) -> f64 {
     let rest = vec![0.0; model.size()];
-    critical_time_step(model, &rest, 0.0, None, &mut Workspace::new(model)).time_step
+    critical_time_step(model, &rest, 0.0, None, &mut Workspace::new(&model.points)).time_step
 }

@@ -1,11 +1,9 @@
-//! Runs: internal forces, time steps, dynamic relaxation and Newton's method.
+//! Runs: time steps, dynamic relaxation and Newton's method.
 
 pub mod balance;
 pub mod critical_time_step;
 pub mod energy;
 pub mod extra_stress;
-pub mod internal_force;
-mod kernel;
 pub mod mass_scaling;
 pub mod newton;
 pub mod nodal_fields;

@@ -3,9 +3,9 @@
 
 use crate::algebra::tensor::{Matrix3, Vector3};
 use crate::discretisation::Discretisation;
+use crate::force::projected_mean_stress;
 use crate::material::Law;
 use crate::model::Model;
-use crate::motion::internal_force::projected_mean_stress;
 use crate::problem::Problem;
 use rayon::prelude::*;
 
@@ -55,7 +55,8 @@ impl NodalFields {
         let nodes = &discretisation.cloud.positions;
         let frames = model.fibre_frames();
         let mut fits: Vec<Vec<(u16, Fit)>> = vec![Vec::new(); nodes.len()];
-        for (point, mean_stress) in projected_mean_stress(model, u).into_iter().enumerate() {
+        for (point, mean_stress) in projected_mean_stress(&model.points, u).into_iter().enumerate()
+        {
             let F = rows.deformation_gradient(point, u, model.components);
             let (X, region) = (quadrature.positions[point], quadrature.regions[point]);
             let law = &problem.regions[region as usize].material.law;

@@ -1,9 +1,9 @@
 //! The loop over time, and the choice between motion, relaxation and Newton's method.
 
 use crate::error::Error;
+use crate::force::internal_force;
 use crate::model::Model;
 use crate::model::contact::Impacts;
-use crate::motion::internal_force::internal_force;
 use crate::motion::newton::{equilibrate, follow};
 use crate::motion::observe::{Continue, Observer, View, notify};
 use crate::motion::relaxation::relax;
@@ -87,8 +87,12 @@ fn solve_static(
 fn show_again(model: &Model, state: &State, reached: f64, observer: &mut dyn Observer) {
     let mut buffers = Buffers::new(model, false);
     state.extra.act(model, state.time, &mut buffers.workspace);
-    let smallest =
-        internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
+    let smallest = internal_force(
+        &model.points,
+        &state.displacement,
+        &mut buffers.workspace,
+        &mut buffers.f_int,
+    );
     observer.restart();
     notify(model, state, smallest.jacobian, reached, observer);
 }
@@ -151,7 +155,7 @@ fn integrate(
         0 => 1.0,
         _ => {
             let (u, workspace) = (&state.displacement, &mut buffers.workspace);
-            internal_force(model, u, workspace, &mut buffers.f_int).jacobian
+            internal_force(&model.points, u, workspace, &mut buffers.f_int).jacobian
         }
     };
     let mut stopped = notify(model, state, jacobian, 0.0, observer) == Continue::Stop;
@@ -184,8 +188,12 @@ fn integrate(
         }
     }
     // A step evaluates J before it moves the nodes: the last state is still to be checked.
-    let smallest_jacobian =
-        internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
+    let smallest_jacobian = internal_force(
+        &model.points,
+        &state.displacement,
+        &mut buffers.workspace,
+        &mut buffers.f_int,
+    );
     control.record_jacobian(smallest_jacobian);
     check_divergence(model, state, &StepReport { smallest_jacobian, largest_increment: 0.0 })?;
     let contact_loss = ContactLoss::of(&state.contact.impacts);

@@ -4,10 +4,10 @@
 use crate::algebra::packed::{axpy, dot, largest};
 use crate::algebra::tensor::{Vector3, vector_at};
 use crate::error::{Error, Instability};
+use crate::force::Workspace;
 use crate::geometry::indices;
 use crate::model::Model;
 use crate::model::essential::ConstraintForces;
-use crate::motion::internal_force::Workspace;
 use crate::motion::state::State;
 use crate::motion::tangent::Tangent;
 use nalgebra::{DMatrix, DVector};

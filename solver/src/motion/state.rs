@@ -1,11 +1,11 @@
 //! The state of a run.
 
 use crate::algebra::tensor::{Vector3, vector_at};
+use crate::force::{Workspace, internal_force};
 use crate::model::Model;
 use crate::model::contact::{ContactForce, ContactState};
 use crate::model::essential::{ConstraintForces, Reaction};
 use crate::motion::extra_stress::ExtraState;
-use crate::motion::internal_force::{Workspace, internal_force};
 
 /// Displacements and velocities at one instant, and the work so far.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
@@ -98,7 +98,7 @@ impl State {
     /// Has the extra stresses remember a static equilibrium.
     pub(crate) fn remember(&mut self, model: &Model, workspace: &mut Workspace) {
         self.extra.act(model, self.time, workspace);
-        internal_force(model, &self.displacement, workspace, &mut vec![0.0; model.size()]);
+        internal_force(&model.points, &self.displacement, workspace, &mut vec![0.0; model.size()]);
         let work = self.extra.remember(model, self.time, workspace);
         self.work.extra += work;
         // The work of conditions and contact is what closes the balance of a static run.
@@ -107,7 +107,7 @@ impl State {
 
     /// Scratch memory for forces and products with the extra stresses of this state.
     pub fn workspace(&self, model: &Model) -> Workspace {
-        let mut workspace = Workspace::new(model);
+        let mut workspace = Workspace::new(&model.points);
         self.extra.act(model, self.time, &mut workspace);
         workspace
     }

@@ -1,9 +1,9 @@
 //! One step of the central difference method or of dynamic relaxation.
 
 use crate::algebra::tensor::{Vector3, vector_at};
+use crate::force::{SmallestJacobian, Workspace, internal_force};
 use crate::model::Model;
 use crate::model::contact::{ContactStep, Moved};
-use crate::motion::internal_force::{SmallestJacobian, Workspace, internal_force};
 use crate::motion::state::State;
 use rayon::prelude::*;
 
@@ -77,7 +77,7 @@ impl Buffers {
     pub fn new(model: &Model, track_work: bool) -> Buffers {
         let zeros = || vec![0.0; model.size()];
         Buffers {
-            workspace: Workspace::new(model),
+            workspace: Workspace::new(&model.points),
             f_int: zeros(),
             f_ext: zeros(),
             velocity_before: if track_work { zeros() } else { Vec::new() },
@@ -107,8 +107,12 @@ pub fn step(
 ) -> StepReport {
     state.extra.interval = state.time_step;
     state.extra.act(model, load_time, &mut buffers.workspace);
-    let smallest_jacobian =
-        internal_force(model, &state.displacement, &mut buffers.workspace, &mut buffers.f_int);
+    let smallest_jacobian = internal_force(
+        &model.points,
+        &state.displacement,
+        &mut buffers.workspace,
+        &mut buffers.f_int,
+    );
     state.work.extra += state.extra.remember(model, load_time, &mut buffers.workspace);
     external_force(model, load_time, &mut buffers.f_ext);
     add_following(model, load_time, &state.displacement, &mut buffers.f_ext);

@@ -2,9 +2,9 @@
 #![allow(non_snake_case)]
 
 use crate::error::Error;
+use crate::force::SmallestJacobian;
 use crate::model::Model;
 use crate::motion::critical_time_step::{CriticalStep, critical_time_step, local_growth};
-use crate::motion::internal_force::SmallestJacobian;
 use crate::motion::state::State;
 use crate::motion::step::{Buffers, StepReport, worst_node};
 use crate::motion::summary::Summary;

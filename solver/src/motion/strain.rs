@@ -17,7 +17,7 @@ const CRUSHED: f64 = 0.3;
 /// is that of parts that resist a change of volume.
 pub fn strain_warnings(model: &Model, discretisation: &Discretisation, u: &[f64]) -> Vec<Warning> {
     let (mut strained, mut crushed) = ((LARGE_STRAIN, None), (CRUSHED, None));
-    for block in &model.blocks {
+    for block in &model.points.blocks {
         let is_linear = matches!(block.law, Law::LinearElastic(_));
         if !is_linear && block.law.projected_fraction() > 0.0 {
             continue;
@@ -58,7 +58,7 @@ pub fn smallest_patch_jacobian(
     u: &[f64],
 ) -> Option<f64> {
     let projected = |point: usize| {
-        let block = model.blocks.iter().find(|block| block.points.contains(&point));
+        let block = model.points.blocks.iter().find(|block| block.points.contains(&point));
         block.is_some_and(|block| block.law.projected_fraction() > 0.0)
     };
     let patches = discretisation.patches.windows(2).map(|ends| ends[0]..ends[1]);

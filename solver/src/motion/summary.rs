@@ -3,9 +3,9 @@
 
 use crate::algebra::tensor::Vector3;
 use crate::error::Instability;
+use crate::force::SmallestJacobian;
 use crate::model::Model;
 use crate::model::contact::Impacts;
-use crate::motion::internal_force::SmallestJacobian;
 
 /// Outcome and cost of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +91,7 @@ impl Summary {
     /// The point that casts doubt on a finished run, if there is one.
     pub fn collapsed_point(&self, model: &Model) -> Option<CollapsedPoint> {
         let SmallestJacobian { jacobian, point } = self.smallest_jacobian;
-        let block = model.blocks.iter().find(|block| block.points.contains(&point))?;
+        let block = model.points.blocks.iter().find(|block| block.points.contains(&point))?;
         let resists = block.law.projected_fraction() > 0.0;
         (resists && jacobian < COLLAPSED).then(|| CollapsedPoint {
             point,

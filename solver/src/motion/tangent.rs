@@ -2,13 +2,13 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::block_matrix::BlockMatrix;
+use crate::force::{
+    Block, Chunk, ChunkTangent, OwnPressures, Workspace, for_each_chunk, linearise,
+    linearised_stiffness_times,
+};
 use crate::model::essential::ConstraintForces;
 use crate::model::following::{FollowingTangent, OwnFluid};
-use crate::model::{Block, Chunk, Following, Model};
-use crate::motion::internal_force::{
-    OwnPressures, Workspace, for_each_chunk, linearise, linearised_stiffness_times,
-};
-use crate::motion::kernel::ChunkTangent;
+use crate::model::{Following, Model};
 
 /// v ↦ Π M^(−1/2) K M^(−1/2) Π v with Π the projection onto free displacements.
 pub(crate) struct Tangent<'a> {
@@ -33,7 +33,7 @@ impl<'a> Tangent<'a> {
         let d = model.components;
         let root_mass =
             model.inertia.iter().flat_map(|m| std::iter::repeat_n(m.sqrt(), d)).collect();
-        linearise(model, u, workspace);
+        linearise(&model.points, u, workspace);
         let forces = ConstraintForces::default();
         let Model { following: loads, components, .. } = model;
         let of_loads = || FollowingTangent::new(loads, (t, None), u, *components);
@@ -118,7 +118,7 @@ impl<'a> Tangent<'a> {
     /// Visits the tangents of all chunks, at fixed pressures where patches have their own but for the
     /// part that J gives at once.
     pub fn for_each_chunk(&mut self, visit: impl FnMut(&Block, &Chunk, &ChunkTangent)) {
-        for_each_chunk(self.model, self.own.as_ref(), self.workspace, visit);
+        for_each_chunk(&self.model.points, self.own.as_ref(), self.workspace, visit);
     }
 
     /// The stiffness of pressures that turn with the surface \[N/m\], which is taken from that of the
@@ -130,7 +130,7 @@ impl<'a> Tangent<'a> {
     fn internal_stiffness_times(&mut self, direction: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.u.len()];
         linearised_stiffness_times(
-            self.model,
+            &self.model.points,
             direction,
             self.own.as_ref(),
             self.workspace,

@@ -57,7 +57,7 @@ pub fn find_unloaded(
     let cpu = cpu_seconds();
     let found = unload(&case.problem, settings, &mut Notified(notify))?;
     let Unloaded { offsets, image, model, summary, distances, found, stopped, .. } = found;
-    let without = model.blocks.iter().flat_map(|block| &block.quadrature_weights).sum();
+    let without = model.points.blocks.iter().flat_map(|block| &block.quadrature_weights).sum();
     let volumes = (image.volume(), without);
     Ok(FoundUnloaded {
         case: case.clone(),

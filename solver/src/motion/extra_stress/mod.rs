@@ -3,10 +3,11 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::lanes::{LANES, SimdBlock};
+use crate::force::{
+    Block, ENTRIES, ExtraStress, Found, Symmetric, Workspace, deformation_gradients,
+};
 use crate::material::PronySeries;
-use crate::model::{Block, Model};
-use crate::motion::internal_force::{Workspace, deformation_gradients};
-use crate::motion::kernel::{ENTRIES, ExtraStress, Found, Symmetric};
+use crate::model::Model;
 
 /// Extra stresses of all blocks at the last time that was remembered; nothing where no material
 /// has any.
@@ -107,7 +108,7 @@ impl ExtraState {
             return ExtraState::default();
         }
         let state = |block: &Block| block.has_extra_stress().then(|| BlockState::new(block));
-        ExtraState { blocks: model.blocks.iter().map(state).collect(), interval: 0.0 }
+        ExtraState { blocks: model.points.blocks.iter().map(state).collect(), interval: 0.0 }
     }
 
     /// As of [`State`](crate::motion::state::State::misfit).
@@ -142,7 +143,7 @@ impl ExtraState {
 
     fn act_with(&self, model: &Model, tension: impl Fn(&Block) -> f64, workspace: &mut Workspace) {
         let interval = self.interval;
-        for (index, (block, state)) in model.blocks.iter().zip(&self.blocks).enumerate() {
+        for (index, (block, state)) in model.points.blocks.iter().zip(&self.blocks).enumerate() {
             let (Some(state), Some(extra)) = (state, workspace.extra(index)) else { continue };
             let tension = tension(block);
             let decay = || terms(block).map(|term| (term, term.left_after(interval)));
@@ -164,7 +165,8 @@ impl ExtraState {
     pub fn remember(&mut self, model: &Model, t: f64, workspace: &mut Workspace) -> f64 {
         let interval = std::mem::take(&mut self.interval);
         let mut total = 0.0;
-        for (index, (block, state)) in model.blocks.iter().zip(&mut self.blocks).enumerate() {
+        for (index, (block, state)) in model.points.blocks.iter().zip(&mut self.blocks).enumerate()
+        {
             let (Some(state), Some(extra)) = (state, workspace.extra(index)) else { continue };
             let tension = tension(block, t);
             for (group, found) in extra.found.iter().enumerate() {
@@ -194,10 +196,10 @@ impl ExtraState {
     /// with the stresses that are remembered.
     pub fn work_towards(&self, model: &Model, u: &[f64]) -> f64 {
         let mut total = 0.0;
-        for (block, state) in model.blocks.iter().zip(&self.blocks) {
+        for (block, state) in model.points.blocks.iter().zip(&self.blocks) {
             let Some(state) = state else { continue };
             let mut now = vec![Symmetric::default(); block.groups()];
-            deformation_gradients(model, block, u, |lane, F| {
+            deformation_gradients(&model.points, block, u, |lane, F| {
                 let C = F.transpose() * F;
                 for (entry, place) in now[lane / LANES].iter_mut().zip(ENTRIES) {
                     entry.0[lane % LANES] = C[place];
@@ -219,7 +221,7 @@ impl ExtraState {
             return Vec::new();
         }
         let mut stresses = vec![[0.0; 6]; model.point_positions.len()];
-        for (block, state) in model.blocks.iter().zip(&self.blocks) {
+        for (block, state) in model.points.blocks.iter().zip(&self.blocks) {
             let Some(state) = state else { continue };
             let relaxing = block.viscosity.as_ref().map_or(0.0, PronySeries::relaxing);
             for lane in block.occupied() {

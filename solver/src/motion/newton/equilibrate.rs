@@ -8,9 +8,9 @@ use super::unknowns::Unknowns;
 use super::unknowns::can_be_unknowns;
 use crate::algebra::packed::dot;
 use crate::error::{Error, Instability};
+use crate::force::strain_energy;
 use crate::model::Model;
 use crate::model::following::OwnFluid;
-use crate::motion::internal_force::strain_energy;
 use crate::motion::observe::{Continue, Observer, notify};
 use crate::motion::stability::Stability;
 use crate::motion::state::State;
@@ -222,7 +222,8 @@ impl Solver<'_> {
         self.counts.increments += 1;
         self.counts.residual = imbalance.relative(model);
         self.smallest_jacobian = self.smallest_jacobian.or(imbalance.smallest_jacobian);
-        let stored = strain_energy(model, &u) - strain_energy(model, &state.displacement);
+        let stored =
+            strain_energy(&model.points, &u) - strain_energy(&model.points, &state.displacement);
         external_force(model, state.time, &mut buffers.f_ext);
         let fluids = self.exact_fluids(&state.displacement, self.path.fraction(state.time));
         self.add_following(state.time, fluids, &state.displacement, buffers);

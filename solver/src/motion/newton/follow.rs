@@ -2,8 +2,8 @@
 
 use super::equilibrate::equilibrate;
 use crate::error::Error;
+use crate::force::Workspace;
 use crate::model::Model;
-use crate::motion::internal_force::Workspace;
 use crate::motion::observe::{Continue, Observer, View, notify};
 use crate::motion::state::State;
 use crate::motion::step::{add_following, external_force};
@@ -48,7 +48,7 @@ fn acts(model: &Model, state: &State) -> bool {
     let mut force = vec![0.0; model.size()];
     external_force(model, t, &mut force);
     add_following(model, t, u, &mut force);
-    let pulls = model.blocks.iter().filter_map(|block| block.active.as_ref());
+    let pulls = model.points.blocks.iter().filter_map(|block| block.active.as_ref());
     let pulls = pulls.map(|active| active.tension * active.amplitude.at(t));
     let mut moves = false;
     let forces = &mut Default::default();
@@ -95,7 +95,7 @@ fn part(
         *state = kept;
         with_progress(error, range.0)
     })?;
-    state.remember(model, &mut Workspace::new(model));
+    state.remember(model, &mut Workspace::new(&model.points));
     let jacobian = summary.smallest_jacobian.jacobian;
     let stop = notify(model, state, jacobian, range.1, observer) == Continue::Stop;
     let stopped = stop || summary.stopped;

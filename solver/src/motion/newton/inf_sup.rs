@@ -5,10 +5,10 @@ use super::free_space::FreeSpace;
 use super::linear::{MOST_WITH_PRESSURES, Saddle, SaddlePatch, Solver, System};
 use crate::algebra::packed::{axpy, dot, largest, normalise, orthogonalise};
 use crate::algebra::random::noise;
+use crate::force::{ModuliAtRest, OwnPressures, Workspace};
+use crate::model::Model;
 use crate::model::rigid_motions::free_rigid_motions;
-use crate::model::{Model, ModuliAtRest};
 use crate::motion::critical_time_step::largest_ritz_pair;
-use crate::motion::internal_force::{OwnPressures, Workspace};
 use crate::motion::tangent::Tangent;
 
 /// Projected bulk modulus over the shear modulus that acts beside the pressures \[–\]: with it the
@@ -49,7 +49,7 @@ pub fn inf_sup(model: &Model) -> Option<InfSup> {
     if free_rigid_motions(model, 0.0, &rest) > 0 {
         return None;
     }
-    let mut workspace = Workspace::new(model);
+    let mut workspace = Workspace::new(&model.points);
     let mut schur = Schur::new(model, &rest, &mut workspace)?;
     if !schur.moves() {
         let pressures = schur.pressures;
@@ -104,7 +104,7 @@ struct Schur<'a, 'w> {
 impl<'a, 'w> Schur<'a, 'w> {
     fn new(model: &'a Model, rest: &'a [f64], workspace: &'w mut Workspace) -> Option<Self> {
         let (mut patches, mut scales, mut constant) = (Vec::new(), Vec::new(), Vec::new());
-        for block in &model.blocks {
+        for block in &model.points.blocks {
             let Some(projection) = &block.projection else { continue };
             let (moduli, s) = (ModuliAtRest::of(block), projection.fraction);
             let mu = moduli.shear;
@@ -224,6 +224,6 @@ impl<'a, 'w> Schur<'a, 'w> {
 
 /// The tangent A.
 fn at_rest<'a>(model: &'a Model, rest: &'a [f64], workspace: &'a mut Workspace) -> Tangent<'a> {
-    let own = OwnPressures::zero(model, SHEAR_ALONE);
+    let own = OwnPressures::zero(&model.points, SHEAR_ALONE);
     Tangent::new(model, rest, 0.0, workspace).with_pressures(Some(own))
 }

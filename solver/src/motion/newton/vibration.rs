@@ -9,9 +9,9 @@ use crate::algebra::lowest_modes::Operators;
 use crate::algebra::packed::{make_orthogonal, overlap};
 use crate::algebra::tensor::Vector3;
 use crate::discretisation::Rows;
+use crate::force::{Workspace, internal_force};
 use crate::model::Model;
 use crate::model::rigid_motions::free_rigid_fields;
-use crate::motion::internal_force::{Workspace, internal_force};
 use crate::motion::tangent::Tangent;
 use rayon::prelude::*;
 
@@ -55,10 +55,10 @@ impl<'a> Vibration<'a> {
         go_on: &'a mut dyn FnMut(usize) -> bool,
     ) -> Vibration<'a> {
         let rest = vec![0.0; model.size()];
-        let mut workspace = Workspace::new(model);
+        let mut workspace = Workspace::new(&model.points);
         let unknown = are_unknowns(model);
         let pressures = unknown.then(|| {
-            internal_force(model, &rest, &mut workspace, &mut vec![0.0; rest.len()]);
+            internal_force(&model.points, &rest, &mut workspace, &mut vec![0.0; rest.len()]);
             Pressures::of_j(model, &workspace)
         });
         let mut vibration = Vibration {

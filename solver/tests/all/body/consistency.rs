@@ -4,10 +4,10 @@
 use crate::common::*;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Discretisation;
+use mtled::force::strain_energy;
 use mtled::geometry::{Field, Panel, Selector, Shape};
 use mtled::model::Model;
 use mtled::model::essential::ConstraintForces;
-use mtled::motion::internal_force::strain_energy;
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -156,7 +156,7 @@ fn projected_forces_are_the_derivative_of_the_projected_energy() {
             let energy = |shift: f64| {
                 let mut moved = u.clone();
                 moved[i] += shift;
-                strain_energy(&model, &moved)
+                strain_energy(&model.points, &moved)
             };
             let difference = (energy(1e-7) - energy(-1e-7)) / 2e-7;
             assert!((difference - f[i]).abs() < 1e-5 * scale, "{law:?}: {difference} {}", f[i]);
@@ -171,7 +171,7 @@ fn a_material_that_changes_its_volume_is_not_projected() {
     let discretisation = Discretisation::new(&problem).unwrap();
     let projected = |problem: &Problem| {
         let model = Model::new(problem, &discretisation).unwrap();
-        model.blocks.iter().any(|block| block.projection.is_some())
+        model.points.blocks.iter().any(|block| block.projection.is_some())
     };
     assert!(!projected(&problem));
     assert!(projected(&with_law(problem, neo_hookean(3000.0, 0.49))));

@@ -1,12 +1,10 @@
 //! The inf-sup value of the pressures of patches, against dense matrices.
 
 use crate::common::*;
+use mtled::force::{OwnPressures, Workspace, linearise, linearised_stiffness_times};
 use mtled::geometry::Selector;
 use mtled::material::*;
 use mtled::model::Model;
-use mtled::motion::internal_force::{
-    OwnPressures, Workspace, linearise, linearised_stiffness_times,
-};
 use mtled::motion::newton::inf_sup;
 use mtled::problem::*;
 use nalgebra::DMatrix;
@@ -37,15 +35,21 @@ fn held_all_around(mut problem: Problem) -> Problem {
 /// of functions that no point of their patch sees.
 fn dense(model: &Model) -> Vec<f64> {
     let (size, rest) = (model.size(), vec![0.0; model.size()]);
-    let mut workspace = Workspace::new(model);
-    linearise(model, &rest, &mut workspace);
-    let own = OwnPressures::zero(model, 2.0 / 3.0);
+    let mut workspace = Workspace::new(&model.points);
+    linearise(&model.points, &rest, &mut workspace);
+    let own = OwnPressures::zero(&model.points, 2.0 / 3.0);
     let mut columns = Vec::new();
     let mut volumes = Vec::new();
     for i in 0..size {
         let (mut direction, mut product) = (rest.clone(), rest.clone());
         direction[i] = 1.0;
-        linearised_stiffness_times(model, &direction, Some(&own), &mut workspace, &mut product);
+        linearised_stiffness_times(
+            &model.points,
+            &direction,
+            Some(&own),
+            &mut workspace,
+            &mut product,
+        );
         columns.extend(product);
         volumes.extend(workspace.patches().flat_map(|patch| patch.volume));
     }

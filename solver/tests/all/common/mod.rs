@@ -5,12 +5,12 @@
 pub use mtled::algebra::tensor::vector_at;
 use mtled::algebra::tensor::{Vector3, rotation};
 use mtled::discretisation::Discretisation;
+use mtled::force::{Workspace, internal_force};
 use mtled::geometry::{Extent, Selector, Shape};
 use mtled::material::*;
 use mtled::model::Model;
 use mtled::model::essential::Reaction;
 use mtled::motion::energy::Energies;
-use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::*;
 use nalgebra::DMatrix;
@@ -228,7 +228,7 @@ pub fn field(model: &Model, u: impl Fn(&Vector3) -> Vector3) -> Vec<f64> {
 /// Internal forces at displacements `u`.
 pub fn forces(model: &Model, u: &[f64]) -> Vec<f64> {
     let mut f = vec![0.0; model.size()];
-    internal_force(model, u, &mut Workspace::new(model), &mut f);
+    internal_force(&model.points, u, &mut Workspace::new(&model.points), &mut f);
     f
 }
 

@@ -105,7 +105,7 @@ fn relaxation_and_newton_agree_on_an_indenter_that_sticks() {
 #[test]
 fn the_work_of_a_plate_is_the_strain_energy_of_the_block() {
     let (model, state) = run(&pressed(Motion::Newton(Newton::default())));
-    let stored = mtled::motion::internal_force::strain_energy(&model, &state.displacement);
+    let stored = mtled::force::strain_energy(&model.points, &state.displacement);
     assert!(stored > 0.0 && (state.work.constraint / stored - 1.0).abs() < 1e-12);
 }
 

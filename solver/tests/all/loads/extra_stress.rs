@@ -5,11 +5,9 @@ use crate::common::statics::{Solved, solve_by};
 use crate::common::*;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
+use mtled::force::{Workspace, internal_force, potential_energy, stiffness_times, strain_energy};
 use mtled::geometry::{Extent, Field, Selector};
 use mtled::material::*;
-use mtled::motion::internal_force::{
-    Workspace, internal_force, potential_energy, stiffness_times, strain_energy,
-};
 use mtled::motion::state::State;
 use mtled::problem::*;
 use mtled::simulation::Simulation;
@@ -48,7 +46,7 @@ fn sheared(law: Law, amplitude: Amplitude) -> Problem {
 fn shear_stress(solved: &Solved) -> f64 {
     let Solved { model, state, .. } = solved;
     let mut force = vec![0.0; model.size()];
-    internal_force(model, &state.displacement, &mut state.workspace(model), &mut force);
+    internal_force(&model.points, &state.displacement, &mut state.workspace(model), &mut force);
     let moments = model.positions.iter().zip(force.chunks(3)).map(|(X, f)| f[0] * X.y);
     moments.sum::<f64>() / EDGE.powi(3)
 }
@@ -177,8 +175,10 @@ fn works_close_the_balance_and_relaxation_takes_energy_from_a_slow_cycle() {
     assert!(work.extra > 0.0);
     // All that the conditions have done is lost or in branches: the strain is gone.
     assert!((work.constraint / work.extra - 1.0).abs() < 1e-9, "{work:?}");
-    let largest =
-        strain_energy(&solved.model, &field(&solved.model, |X| Vector3::new(0.4 * X.y, 0.0, 0.0)));
+    let largest = strain_energy(
+        &solved.model.points,
+        &field(&solved.model, |X| Vector3::new(0.4 * X.y, 0.0, 0.0)),
+    );
     assert!(work.extra > 0.05 * largest, "{} of {largest}", work.extra);
 }
 
@@ -256,22 +256,22 @@ fn forces_with_extra_stresses_are_the_derivative_of_their_potential_and_have_a_s
         // Remembered after a while at one state, then moved to another.
         let mut workspace = state.workspace(&model);
         let mut force = vec![0.0; model.size()];
-        internal_force(&model, &state.displacement, &mut workspace, &mut force);
+        internal_force(&model.points, &state.displacement, &mut workspace, &mut force);
         state.extra.remember(&model, 0.0, &mut workspace);
         let mut workspace: Workspace = state.workspace(&model);
         let u = noise(&model, 0.01, 9);
-        internal_force(&model, &u, &mut workspace, &mut force);
+        internal_force(&model.points, &u, &mut workspace, &mut force);
         let (v, w) = (noise(&model, 1.0, 11), noise(&model, 1.0, 13));
         let energy = |s: f64| {
             let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + s * v).collect();
-            potential_energy(&model, &moved, &workspace)
+            potential_energy(&model.points, &moved, &workspace)
         };
         let slope = (energy(1e-6) - energy(-1e-6)) / 2e-6;
         let product: f64 = force.iter().zip(&v).map(|(f, v)| f * v).sum();
         assert!((product / slope - 1.0).abs() < 1e-6, "{product} {slope}");
         let mut times = |v: &[f64]| {
             let mut product = vec![0.0; model.size()];
-            stiffness_times(&model, &u, v, &mut workspace, &mut product);
+            stiffness_times(&model.points, &u, v, &mut workspace, &mut product);
             product
         };
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

@@ -3,9 +3,9 @@
 
 use crate::common::*;
 use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
+use mtled::force::{Workspace, internal_force, stiffness_times, strain_energy};
 use mtled::material::Law;
 use mtled::model::Model;
-use mtled::motion::internal_force::{Workspace, internal_force, stiffness_times, strain_energy};
 use mtled::problem::{Fibres, Field, Problem, VolumetricProjection};
 use proptest::prelude::*;
 
@@ -82,7 +82,7 @@ fn the_internal_force_is_the_gradient_of_the_strain_energy() {
             let step = 1e-6;
             let energy = |sign: f64| {
                 let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + sign * step * v).collect();
-                strain_energy(&model, &moved)
+                strain_energy(&model.points, &moved)
             };
             let slope = (energy(1.0) - energy(-1.0)) / (2.0 * step);
             let f = forces(&model, &u);
@@ -96,7 +96,7 @@ fn the_internal_force_is_the_gradient_of_the_strain_energy() {
 /// K v at `u`.
 fn product(model: &Model, u: &[f64], v: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; model.size()];
-    stiffness_times(model, u, v, &mut Workspace::new(model), &mut product);
+    stiffness_times(&model.points, u, v, &mut Workspace::new(&model.points), &mut product);
     product
 }
 
@@ -153,10 +153,10 @@ fn every_set_of_vector_instructions_gives_the_same_forces_up_to_round_off() {
             problem.recipe.volumetric_projection = VolumetricProjection::Patches;
             let (_, model) = build(&problem);
             let u = noise(&model, 1e-3, 4);
-            let mut workspace = Workspace::new(&model);
+            let mut workspace = Workspace::new(&model.points);
             workspace.level = fearless_simd::Level::baseline();
             let mut plain = vec![0.0; model.size()];
-            internal_force(&model, &u, &mut workspace, &mut plain);
+            internal_force(&model.points, &u, &mut workspace, &mut plain);
             let fast = forces(&model, &u);
             for (a, b) in plain.iter().zip(&fast) {
                 assert!((a - b).abs() < 1e-13 * largest(&fast), "{law:?}: {a:e} {b:e}");
@@ -209,7 +209,7 @@ fn a_body_that_is_turned_with_its_fibres_stores_the_same_energy() {
         let sheet = Some((Q * Vector3::new(0.3, -0.2, 1.0)).into());
         problem.regions[0].fibres = Some(Fibres { fibre, sheet });
         let (_, model) = build(&problem);
-        strain_energy(&model, &field(&model, |X| Q * bent(&(Q.transpose() * X))))
+        strain_energy(&model.points, &field(&model, |X| Q * bent(&(Q.transpose() * X))))
     };
     for law in objective_laws().into_iter().filter(Law::has_fibres) {
         let (home, turned) = (energy(Matrix3::identity(), law), energy(turn, law));

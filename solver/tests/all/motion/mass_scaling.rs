@@ -3,10 +3,10 @@
 use crate::common::*;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
+use mtled::force::Workspace;
 use mtled::geometry::{Selector, Shape};
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
-use mtled::motion::internal_force::Workspace;
 use mtled::motion::mass_scaling::raise_masses;
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
@@ -43,7 +43,7 @@ fn scaled(problem: &Problem) -> Result<Model, Error> {
 
 fn step_at_rest(model: &Model) -> f64 {
     let rest = vec![0.0; model.size()];
-    critical_time_step(model, &rest, 0.0, None, &mut Workspace::new(model)).time_step
+    critical_time_step(model, &rest, 0.0, None, &mut Workspace::new(&model.points)).time_step
 }
 
 #[test]

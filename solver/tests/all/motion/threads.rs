@@ -35,7 +35,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
 #[test]
 fn the_internal_force_has_the_same_bits_on_any_number_of_threads() {
     let (discretisation, model) = build(&large_problem());
-    assert!(discretisation.supports.len() > 4096 && model.blocks.len() > 2);
+    assert!(discretisation.supports.len() > 4096 && model.points.blocks.len() > 2);
     on_each_pool(|| bits(&forces(&model, &noise(&model, 1e-3, 1))));
 }
 

@@ -3,9 +3,9 @@
 use crate::common::*;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Discretisation;
+use mtled::force::Workspace;
 use mtled::model::Model;
 use mtled::motion::critical_time_step::{critical_time_step, local_growth};
-use mtled::motion::internal_force::Workspace;
 use mtled::problem::*;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -54,7 +54,7 @@ fn constrained_limit(problem: &Problem, discretisation: &Discretisation, model: 
 }
 
 fn by_lanczos(model: &Model, u: &[f64]) -> f64 {
-    critical_time_step(model, u, 0.0, None, &mut Workspace::new(model)).time_step
+    critical_time_step(model, u, 0.0, None, &mut Workspace::new(&model.points)).time_step
 }
 
 /// Within one per cent of the limit and, but for round-off, never above it.
@@ -103,7 +103,7 @@ fn a_compressed_body_has_a_smaller_limit_than_a_body_at_rest() {
 #[test]
 fn local_growth_follows_the_largest_eigenvalue_wherever_the_body_stiffens() {
     let (_, model) = build(&jittered(square(9), 0.2, 1));
-    let mut workspace = Workspace::new(&model);
+    let mut workspace = Workspace::new(&model.points);
     let rest = vec![0.0; model.size()];
     let first = critical_time_step(&model, &rest, 0.0, None, &mut workspace);
     // The corner far from the origin is pressed, wherever the stiffest mode is at rest.
@@ -122,7 +122,7 @@ fn local_growth_follows_the_largest_eigenvalue_wherever_the_body_stiffens() {
 #[test]
 fn an_earlier_run_saves_products() {
     let (_, model) = build(&jittered(cube(3), 0.2, 1));
-    let (u, mut workspace) = (vec![0.0; model.size()], Workspace::new(&model));
+    let (u, mut workspace) = (vec![0.0; model.size()], Workspace::new(&model.points));
     let first = critical_time_step(&model, &u, 0.0, None, &mut workspace);
     let again = critical_time_step(&model, &u, 0.0, Some(&first), &mut workspace);
     assert!(again.products < first.products, "{} {}", again.products, first.products);

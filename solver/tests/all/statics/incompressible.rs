@@ -5,11 +5,11 @@
 use crate::common::statics::*;
 use crate::common::*;
 use mtled::algebra::tensor::Vector3;
-use mtled::material::*;
-use mtled::model::Model;
-use mtled::motion::internal_force::{
+use mtled::force::{
     OwnPressures, Workspace, internal_force_with, linearise, linearised_stiffness_times,
 };
+use mtled::material::*;
+use mtled::model::Model;
 use mtled::motion::summary::{NewtonCounts, PatchPressures};
 use mtled::problem::*;
 
@@ -168,10 +168,10 @@ fn a_floating_body_comes_to_rest_on_a_floor_at_any_bulk_modulus() {
 
 /// K v of patches with pressures of their own.
 fn product(model: &Model, u: &[f64], v: &[f64], own: &OwnPressures) -> Vec<f64> {
-    let mut workspace = Workspace::new(model);
-    linearise(model, u, &mut workspace);
+    let mut workspace = Workspace::new(&model.points);
+    linearise(&model.points, u, &mut workspace);
     let mut product = vec![0.0; model.size()];
-    linearised_stiffness_times(model, v, Some(own), &mut workspace, &mut product);
+    linearised_stiffness_times(&model.points, v, Some(own), &mut workspace, &mut product);
     product
 }
 
@@ -181,15 +181,15 @@ fn the_tangent_is_the_derivative_of_the_force_whatever_the_pressures() {
         let problem = projected(jittered(cube(3), 0.2, 1), 0.4999);
         let (_, model) = build(&with_law(problem, rubber(0.4999, volumetric)));
         let (u, v) = (noise(&model, 1e-3 * EDGE, 1), noise(&model, 1e-3 * EDGE, 2));
-        let mut workspace = Workspace::new(&model);
+        let mut workspace = Workspace::new(&model.points);
         let mut force = |step: f64, own: &OwnPressures| {
             let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + step * v).collect();
             let mut f = vec![0.0; model.size()];
-            internal_force_with(&model, &moved, Some(own), &mut workspace, &mut f);
+            internal_force_with(&model.points, &moved, Some(own), &mut workspace, &mut f);
             f
         };
         // Far from those that J gives, which are some thousand times as large.
-        let own = OwnPressures::zero(&model, 30.0);
+        let own = OwnPressures::zero(&model.points, 30.0);
         let (ahead, back) = (force(1e-4, &own), force(-1e-4, &own));
         let slope: Vec<f64> = ahead.iter().zip(&back).map(|(a, b)| (a - b) / 2e-4).collect();
         let product = product(&model, &u, &v, &own);
@@ -202,7 +202,7 @@ fn the_tangent_is_the_derivative_of_the_force_whatever_the_pressures() {
 fn the_tangent_with_pressures_is_symmetric() {
     let (_, model) = build(&projected(jittered(cube(3), 0.2, 1), 0.4999));
     let [u, v, w] = [1, 2, 3].map(|seed| noise(&model, 1e-3 * EDGE, seed));
-    let own = OwnPressures::zero(&model, 30.0);
+    let own = OwnPressures::zero(&model.points, 30.0);
     let work = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let there = work(&w, &product(&model, &u, &v, &own));
     let back = work(&v, &product(&model, &u, &w, &own));
@@ -214,12 +214,12 @@ fn the_tangent_with_pressures_is_symmetric() {
 fn pressures_taken_from_j_leave_the_force_as_it_is() {
     let (_, model) = build(&projected(jittered(cube(3), 0.2, 1), 0.4999));
     let u = noise(&model, 1e-3 * EDGE, 1);
-    let (mut workspace, plain) = (Workspace::new(&model), forces(&model, &u));
+    let (mut workspace, plain) = (Workspace::new(&model.points), forces(&model, &u));
     let mut f = vec![0.0; model.size()];
-    let mut own = OwnPressures::zero(&model, 30.0);
-    internal_force_with(&model, &u, Some(&own), &mut workspace, &mut f);
+    let mut own = OwnPressures::zero(&model.points, 30.0);
+    internal_force_with(&model.points, &u, Some(&own), &mut workspace, &mut f);
     assert!(difference(&f, &plain) > 0.1);
     own.set_values(&workspace.pressures_of_j());
-    internal_force_with(&model, &u, Some(&own), &mut workspace, &mut f);
+    internal_force_with(&model.points, &u, Some(&own), &mut workspace, &mut f);
     assert!(difference(&f, &plain) < 1e-13);
 }

@@ -7,11 +7,11 @@ use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::discretisation::Rows;
 use mtled::error::Error;
+use mtled::force::point_volumes;
 use mtled::model::CavityState;
 use mtled::model::contact::ContactForce;
 use mtled::model::essential::Reaction;
 use mtled::motion::energy::{Energies, Momenta};
-use mtled::motion::internal_force::point_volumes;
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled_case::scene::{Case, ProbeKind};
 
@@ -215,7 +215,7 @@ impl<'a> Recorder<'a> {
     fn region_volumes(&self, view: &View) -> Vec<f64> {
         let Some((regions, count)) = &self.regions else { return Vec::new() };
         let mut volumes = vec![0.0; *count];
-        let points = point_volumes(view.model, &view.state.displacement);
+        let points = point_volumes(&view.model.points, &view.state.displacement);
         regions.iter().zip(points).for_each(|(region, own)| volumes[*region as usize] += own);
         volumes
     }

@@ -119,10 +119,10 @@ fn fingerprint(model: &Model) -> String {
     model.positions.iter().flat_map(|X| X.iter()).for_each(|number| add(*number));
     let of_nodes = model.inertia.iter().chain(&model.stiffness).chain(&model.initial_velocity);
     of_nodes.for_each(|number| add(*number));
-    for block in &model.blocks {
+    for block in &model.points.blocks {
         block.frames.iter().flatten().flat_map(|entry| entry.0).for_each(&mut add);
     }
-    for block in &model.blocks {
+    for block in &model.points.blocks {
         let material = (&block.law, &block.viscosity, &block.active);
         hash.update(format!("{material:?}").as_bytes());
     }

@@ -5,9 +5,9 @@ use clap::ValueEnum;
 use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
+use mtled::force::Workspace;
 use mtled::model::zero_energy::{ZeroEnergyModes, zero_energy_modes};
 use mtled::motion::critical_time_step::{CriticalStep, critical_time_step};
-use mtled::motion::internal_force::Workspace;
 use mtled::motion::newton::{InfSup, inf_sup};
 use mtled_case::scene::Case;
 use mtled_run::machine::peak_memory;
@@ -67,8 +67,13 @@ pub(crate) fn examine<'a>(
 ) -> Result<Inspection<'a>, Error> {
     let Simulation { discretisation, model, .. } = simulation;
     let sizes = || (0..discretisation.supports.len()).map(|q| discretisation.supports.row(q).len());
-    let critical =
-        critical_time_step(model, &vec![0.0; model.size()], 0.0, None, &mut Workspace::new(model));
+    let critical = critical_time_step(
+        model,
+        &vec![0.0; model.size()],
+        0.0,
+        None,
+        &mut Workspace::new(&model.points),
+    );
     let peak = peak_memory();
     let searched = match search {
         Search::Auto => model.positions.len() <= LARGEST_SEARCH,

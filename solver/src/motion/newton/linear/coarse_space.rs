@@ -6,8 +6,9 @@ use crate::algebra::sparse::{Combine, Padded, Sparse, pad, unpad};
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::spline_lattice::Lattice;
 use crate::algebra::tensor::Vector3;
+use crate::force::{Block, Chunk, ModuliAtRest, stiffness_diagonal};
+use crate::model::Model;
 use crate::model::following::directions;
-use crate::model::{Block, Chunk, Model, ModuliAtRest, stiffness_diagonal};
 use std::collections::BTreeMap;
 
 /// The stiffness at rest that a preconditioner inverts.
@@ -24,7 +25,7 @@ impl Stiffness {
         if most.is_infinite() {
             return Stiffness { diagonal: model.stiffness.clone(), most };
         }
-        let mut diagonal = stiffness_diagonal(&model.blocks, d, nodes, most);
+        let mut diagonal = stiffness_diagonal(&model.points, nodes, most);
         model.following.add_to_diagonal(d, &mut diagonal);
         Stiffness { diagonal, most }
     }
@@ -62,7 +63,7 @@ pub(super) struct Held {
 impl CoarseSpace {
     pub fn new(model: &Model, at_rest: &Stiffness) -> CoarseSpace {
         let d = model.components;
-        let volume: f64 = model.blocks.iter().flat_map(|b| &b.quadrature_weights).sum();
+        let volume: f64 = model.points.blocks.iter().flat_map(|b| &b.quadrature_weights).sum();
         let spacing = (volume / model.positions.len() as f64).powf(1.0 / d as f64);
         let lattice = Lattice::of_cells(&model.positions, SPACING * spacing, d);
         let mut numbers = Numbers { of: vec![None; lattice.len()], count: 0 };
@@ -206,7 +207,7 @@ impl Functions {
 
     fn add_stiffness(&self, model: &Model, most: f64, matrix: &mut BlockMatrix) {
         let mut found = Vec::new();
-        for block in &model.blocks {
+        for block in &model.points.blocks {
             let moduli = ModuliAtRest::of(block).capped(most);
             for (weight, X) in self.lumps(model, block) {
                 self.at(&X, &mut found);

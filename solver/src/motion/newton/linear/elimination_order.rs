@@ -1,7 +1,8 @@
 //! An order of the nodes in which factors have few entries.
 
 use crate::algebra::tensor::bounding_box;
-use crate::model::{Block, Model};
+use crate::force::Block;
+use crate::model::Model;
 
 /// Nodes in an order, and how many entries the factors of a stiffness have in it.
 pub(super) struct Order {
@@ -44,7 +45,7 @@ struct Groups {
 impl Groups {
     fn new(model: &Model) -> Groups {
         let mut nodes = Vec::new();
-        for block in &model.blocks {
+        for block in &model.points.blocks {
             add_groups(block, model.components, &mut nodes);
         }
         let mut of = vec![Vec::new(); model.positions.len()];

@@ -7,10 +7,9 @@ use super::system::System;
 use crate::algebra::block_matrix::BlockMatrix;
 use crate::algebra::sparse_cholesky::{Scratch, SparseCholesky};
 use crate::algebra::tensor::{Vector3, cofactor};
-use crate::model::blocks::{GradientQuad, QUAD, with_gradients};
+use crate::force::{Block, Chunk, ChunkTangent, GradientQuad, QUAD, with_gradients};
+use crate::model::Model;
 use crate::model::following::directions;
-use crate::model::{Block, Chunk, Model};
-use crate::motion::kernel::ChunkTangent;
 use crate::motion::newton::free_space::FreeSpace;
 use crate::motion::tangent::Tangent;
 use faer::perm::Perm;
@@ -133,6 +132,7 @@ fn in_order(
 fn add_tangent(matrix: &mut BlockMatrix, tangent: &mut Tangent) {
     let components = tangent.model().components;
     tangent.for_each_chunk(|block, chunk, tangent| {
+        // Chooses the precision in which gradients are stored.
         with_gradients!(&block.grad_phi, gradients => match components {
             2 => add_chunk::<_, 2>(matrix, (block, gradients), chunk, tangent),
             _ => add_chunk::<_, 3>(matrix, (block, gradients), chunk, tangent),
@@ -142,7 +142,7 @@ fn add_tangent(matrix: &mut BlockMatrix, tangent: &mut Tangent) {
 
 /// Neighbours of all points.
 fn pairs(model: &Model) -> f64 {
-    model.blocks.iter().map(|block| block.places.len() * QUAD).sum::<usize>() as f64
+    model.points.blocks.iter().map(|block| block.places.len() * QUAD).sum::<usize>() as f64
 }
 
 /// Adds the tangent of a chunk.
@@ -190,9 +190,9 @@ mod tests {
     use super::*;
     use crate::algebra::packed::dot;
     use crate::algebra::random::Random;
+    use crate::force::{OwnPressures, Workspace};
     use crate::geometry::Shape;
     use crate::material::{ElasticConstants, Law, Material, NeoHookeanLogJ};
-    use crate::motion::internal_force::{OwnPressures, Workspace};
     use crate::problem::{Dimension, Problem, Recipe};
     use crate::simulation::Simulation;
 
@@ -210,8 +210,8 @@ mod tests {
         let mut field =
             || -> Vec<f64> { (0..model.size()).map(|_| 1e-3 * random.vector(1).x).collect() };
         let (u, v) = (field(), field());
-        let mut workspace = Workspace::new(&model);
-        let own = own_part.map(|most| OwnPressures::zero(&model, most));
+        let mut workspace = Workspace::new(&model.points);
+        let own = own_part.map(|most| OwnPressures::zero(&model.points, most));
         let mut tangent = Tangent::new(&model, &u, 0.0, &mut workspace).with_pressures(own);
         let mut matrix = BlockMatrix::new(model.positions.len(), model.components);
         add_tangent(&mut matrix, &mut tangent);

@@ -3,9 +3,9 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::packed::axpy;
+use crate::force::{Block, ModuliAtRest, OwnPressures, Workspace};
 use crate::material::Law;
-use crate::model::{Block, Model, ModuliAtRest};
-use crate::motion::internal_force::{OwnPressures, Workspace};
+use crate::model::Model;
 use crate::motion::newton::linear::{Saddle, SaddlePatch};
 
 /// Largest projected bulk modulus over the shear modulus beside pressures that are unknowns \[–\].
@@ -44,7 +44,7 @@ struct AtRest<'a> {
 impl Pressures {
     /// Those that J gave in the last evaluation.
     pub fn of_j(model: &Model, workspace: &Workspace) -> Pressures {
-        let own = OwnPressures::zero(model, MOST);
+        let own = OwnPressures::zero(&model.points, MOST);
         let mut pressures = Pressures { own, of_j: Vec::new(), bulk: Vec::new() };
         pressures.see(model, workspace);
         pressures.own.set_values(&pressures.of_j);
@@ -108,7 +108,7 @@ impl AtRest<'_> {
 
 /// All patches, block by block.
 fn patches(model: &Model) -> impl Iterator<Item = AtRest<'_>> {
-    model.blocks.iter().flat_map(of_block)
+    model.points.blocks.iter().flat_map(of_block)
 }
 
 fn of_block(block: &Block) -> impl Iterator<Item = AtRest<'_>> {
@@ -126,7 +126,7 @@ fn of_block(block: &Block) -> impl Iterator<Item = AtRest<'_>> {
 
 /// Largest projected bulk modulus over the shear modulus \[–\].
 fn largest_ratio(model: &Model) -> f64 {
-    let ratios = model.blocks.iter().map(|block| {
+    let ratios = model.points.blocks.iter().map(|block| {
         let moduli = ModuliAtRest::of(block);
         moduli.projected / moduli.shear
     });

@@ -6,8 +6,8 @@ use crate::studies::workbench::Workbench;
 use anyhow::Result;
 use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
+use mtled::force::strain_energy;
 use mtled::geometry::{Selector, Shape};
-use mtled::motion::internal_force::strain_energy;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::{Amplitude, Cloud, Dimension, EssentialCondition, Problem, Recipe};
 use mtled_checks::study::{Cell, Study, Table, number, text};
@@ -98,7 +98,7 @@ fn energy(patch: &Patch, spacing: f64, poisson_ratio: f64, seed: u64) -> Result<
     let problem = problem(patch, spacing, poisson_ratio, seed)?;
     let solved = integrate(Simulation::with_any_recipe(&problem)?, &mut Unobserved)?;
     let model = &solved.simulation.model;
-    Ok(strain_energy(model, &solved.simulation.state.displacement))
+    Ok(strain_energy(&model.points, &solved.simulation.state.displacement))
 }
 
 /// Energies of several clouds against one another and against that of a finer cloud.

@@ -6,11 +6,11 @@ use crate::studies::workbench::relative_error;
 use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
+use mtled::force::Workspace;
 use mtled::model::Model;
 use mtled::model::essential::Reaction;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::energy::Energies;
-use mtled::motion::internal_force::Workspace;
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::motion::summary::CollapsedPoint;
 use mtled::problem::Motion;
@@ -111,7 +111,8 @@ fn set_duration(case: &HardCase, simulation: &mut Simulation) {
     let Simulation { problem, model, .. } = simulation;
     if let (Some(steps), Motion::Dynamic { end, step, .. }) = (case.steps, &mut problem.motion) {
         let rest = vec![0.0; model.size()];
-        let critical = critical_time_step(model, &rest, 0.0, None, &mut Workspace::new(model));
+        let critical =
+            critical_time_step(model, &rest, 0.0, None, &mut Workspace::new(&model.points));
         *end = step.safety_factor * critical.time_step * steps as f64;
     }
 }

@@ -11,8 +11,8 @@ use anyhow::Result;
 use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::discretisation::Discretisation;
+use mtled::force::projected_mean_stress;
 use mtled::material::{ElasticConstants, Law};
-use mtled::motion::internal_force::projected_mean_stress;
 use mtled::motion::nodal_fields::NodalFields;
 use mtled::motion::observe::Unobserved;
 use mtled::problem::Problem;
@@ -231,8 +231,10 @@ fn errors_at_points(solution: &Oriented, problem: &Problem, solved: &Solved) -> 
     let (rows, quadrature) = (&discretisation.supports, &discretisation.quadrature);
     let law = problem.regions[0].material.law;
     let pressure = pressure_of(&law);
-    let projected =
-        projected_mean_stress(&solved.simulation.model, &solved.simulation.state.displacement);
+    let projected = projected_mean_stress(
+        &solved.simulation.model.points,
+        &solved.simulation.state.displacement,
+    );
     let (mut error, mut size, mut pressure_error, mut pressure_size) = (0.0, 0.0, 0.0, 0.0);
     let (mut surplus, mut gain, mut volume) = (0.0, 0.0, 0.0);
     for (i, (X, weight)) in quadrature.positions.iter().zip(&quadrature.weights).enumerate() {

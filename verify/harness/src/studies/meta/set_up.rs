@@ -2,9 +2,9 @@
 
 use crate::studies::workbench::{Workbench, exact};
 use mtled::discretisation::Discretisation;
+use mtled::force::{Workspace, internal_force};
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
-use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::problem::{Amplitude, Dimension, Gradients, Problem};
 use mtled_checks::measure::larger;
 use mtled_checks::study::{Cell, Figure, Plot, Study, Table, axis, curve, number, text};
@@ -129,12 +129,13 @@ fn measure(label: String, problem: Problem) -> anyhow::Result<Costs> {
     let discretisation = discretisation?;
     let (model, model_seconds) = timed(|| Model::new(&problem, &discretisation));
     let model = model?;
-    let mut workspace = Workspace::new(&model);
+    let mut workspace = Workspace::new(&model.points);
     let u = vec![0.0; model.size()];
     let (_, critical) = timed(|| critical_time_step(&model, &u, 0.0, None, &mut workspace));
     let mut f = u.clone();
-    let mut steps: Vec<f64> =
-        (0..9).map(|_| timed(|| internal_force(&model, &u, &mut workspace, &mut f)).1).collect();
+    let mut steps: Vec<f64> = (0..9)
+        .map(|_| timed(|| internal_force(&model.points, &u, &mut workspace, &mut f)).1)
+        .collect();
     steps.sort_by(f64::total_cmp);
     let correction = discretisation
         .correction

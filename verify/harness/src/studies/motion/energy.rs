@@ -281,7 +281,7 @@ fn determinism(bench: &Workbench, study: &mut Study) -> anyhow::Result<()> {
 fn final_bits(problem: &Problem, threads: usize) -> anyhow::Result<(usize, Vec<u64>)> {
     on_threads(threads, || {
         let simulation = Simulation::with_any_recipe(problem)?;
-        let blocks = simulation.model.blocks.len();
+        let blocks = simulation.model.points.blocks.len();
         let solved = integrate(simulation, &mut Unobserved)?;
         let bits = solved.simulation.state.displacement.iter().map(|u| u.to_bits()).collect();
         Ok((blocks, bits))

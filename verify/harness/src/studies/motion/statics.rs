@@ -6,7 +6,7 @@ use crate::studies::workbench::{Workbench, exact};
 use anyhow::{Context, Result, bail};
 use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
-use mtled::motion::internal_force::{Workspace, stiffness_times};
+use mtled::force::{Workspace, stiffness_times};
 use mtled::motion::observe::{Continue, Observer, Unobserved, View};
 use mtled::problem::{Cloud, Motion, Newton, Problem, Relaxation, RelaxationMass};
 use mtled_case::scene::Case;
@@ -172,7 +172,7 @@ fn asymmetry(solved: &Solved) -> f64 {
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
     let times = |v: &[f64]| {
         let mut product = vec![0.0; u.len()];
-        stiffness_times(model, u, v, &mut Workspace::new(model), &mut product);
+        stiffness_times(&model.points, u, v, &mut Workspace::new(&model.points), &mut product);
         product
     };
     let (v, w) = (irregular(std::f64::consts::SQRT_2), irregular(std::f64::consts::E));

@@ -3,10 +3,10 @@
 use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
+use mtled::force::Workspace;
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
 use mtled::motion::energy::{Energies, excess_of_mean};
-use mtled::motion::internal_force::Workspace;
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -110,7 +110,8 @@ pub(crate) fn vibrate(steps: usize, fraction: f64, seed: u64) -> anyhow::Result<
     problem.motion = Motion::Dynamic { end: 1.0, step: StepControl::default(), damping: 0.0 };
     let model = Simulation::with_any_recipe(&problem)?.model;
     let at_rest = vec![0.0; model.size()];
-    let critical = critical_time_step(&model, &at_rest, 0.0, None, &mut Workspace::new(&model));
+    let critical =
+        critical_time_step(&model, &at_rest, 0.0, None, &mut Workspace::new(&model.points));
     let time_step = fraction * critical.time_step;
     let control = StepControl { fixed: Some(time_step), ..StepControl::default() };
     let end = time_step * steps as f64;

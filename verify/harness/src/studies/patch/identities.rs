@@ -6,7 +6,7 @@ use crate::studies::workbench::{Workbench, exact};
 use mtled::Simulation;
 use mtled::algebra::random::Random;
 use mtled::algebra::tensor::{Matrix3, Vector3, rotation};
-use mtled::motion::internal_force::{Workspace, internal_force};
+use mtled::force::{Workspace, internal_force};
 use mtled_checks::measure::larger;
 use mtled_checks::study::Study;
 
@@ -66,7 +66,7 @@ fn field(simulation: &Simulation, mut u: impl FnMut(&Vector3) -> Vector3) -> Vec
 fn forces(simulation: &Simulation, u: &[f64]) -> Vec<Vector3> {
     let model = &simulation.model;
     let mut f = vec![0.0; model.size()];
-    internal_force(model, u, &mut Workspace::new(model), &mut f);
+    internal_force(&model.points, u, &mut Workspace::new(&model.points), &mut f);
     f.chunks(model.components).map(vector).collect()
 }
 

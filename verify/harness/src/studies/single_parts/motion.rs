@@ -8,10 +8,10 @@ use anyhow::Result;
 use mtled::Simulation;
 use mtled::algebra::random::Random;
 use mtled::algebra::tensor::Vector3;
+use mtled::force::{Workspace, internal_force};
 use mtled::geometry::{Selector, Shape};
 use mtled::model::Model;
 use mtled::model::contact::{ContactState, ContactStep};
-use mtled::motion::internal_force::{Workspace, internal_force};
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -34,7 +34,10 @@ pub(crate) fn threads(bench: &Workbench, study: &mut Study) -> Result<()> {
     problem.recipe = recipe(SIZE / 10.0, 0.3, bench.seed(3));
     problem.recipe.grid = BackgroundGrid::with_cell(SIZE / 20.0);
     let model = Simulation::with_any_recipe(&problem)?.model;
-    anyhow::ensure!(model.blocks.len() > 4, "too few blocks to show a dependence on threads");
+    anyhow::ensure!(
+        model.points.blocks.len() > 4,
+        "too few blocks to show a dependence on threads"
+    );
     let mut random = Random(bench.seed(5));
     let u: Vec<f64> = (0..model.size()).map(|_| 1e-3 * SIZE * random.symmetric()).collect();
     let alone = force_on(1, &model, &u)?;
@@ -53,7 +56,7 @@ pub(crate) fn threads(bench: &Workbench, study: &mut Study) -> Result<()> {
 fn force_on(threads: usize, model: &Model, u: &[f64]) -> Result<Vec<f64>> {
     Ok(on_threads(threads, || {
         let mut f = vec![0.0; u.len()];
-        internal_force(model, u, &mut Workspace::new(model), &mut f);
+        internal_force(&model.points, u, &mut Workspace::new(&model.points), &mut f);
         f
     })?)
 }

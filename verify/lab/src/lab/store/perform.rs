@@ -10,8 +10,8 @@ use cpu_time::ThreadTime;
 use mtled::Simulation;
 use mtled::algebra::tensor::{Matrix3, Vector3};
 use mtled::error::Error;
+use mtled::force::Workspace;
 use mtled::motion::critical_time_step::critical_time_step;
-use mtled::motion::internal_force::Workspace;
 use mtled_case::reference::{is_dynamic, quantities};
 use mtled_case::scene::Case;
 use mtled_run::accuracy::{SAMPLES, values};
@@ -199,7 +199,7 @@ fn step_figures(case: &Case, simulation: &Simulation) -> Result<Figures, Error> 
 /// products.
 fn steps(simulation: &Simulation, u: &[f64], t: f64) -> (f64, f64, usize) {
     let model = &simulation.model;
-    let critical = critical_time_step(model, u, t, None, &mut Workspace::new(model));
+    let critical = critical_time_step(model, u, t, None, &mut Workspace::new(&model.points));
     let velocity = trial_velocity(model, &simulation.discretisation.cloud.spacing);
     let stable = largest_stable_step(model, u, t, &velocity, critical.time_step);
     (critical.time_step, stable, critical.products)

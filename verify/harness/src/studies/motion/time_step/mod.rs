@@ -10,8 +10,8 @@ use crate::studies::motion::time_step::runs::runs;
 use crate::studies::motion::time_step::specimens::{Specimen, specimens};
 use crate::studies::workbench::Workbench;
 use mtled::Simulation;
+use mtled::force::Workspace;
 use mtled::motion::critical_time_step::critical_time_step;
-use mtled::motion::internal_force::Workspace;
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
@@ -90,7 +90,7 @@ fn measure(specimen: &Specimen) -> anyhow::Result<Limits> {
     let simulation = Simulation::with_any_recipe(&specimen.problem)?;
     let model = &simulation.model;
     let mut state = State::new(model);
-    let mut workspace = Workspace::new(model);
+    let mut workspace = Workspace::new(&model.points);
     let rest = critical_time_step(model, &state.displacement, 0.0, None, &mut workspace);
     if specimen.deformed {
         simulate(model, &specimen.problem.motion, &mut state, &mut Unobserved)?;

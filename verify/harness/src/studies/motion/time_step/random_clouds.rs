@@ -3,9 +3,9 @@
 use crate::studies::motion::time_step::families::{FAMILIES, Family};
 use crate::studies::workbench::{Workbench, range};
 use mtled::Simulation;
+use mtled::force::Workspace;
 use mtled::model::time_step_bound::comparison_bounds;
 use mtled::motion::critical_time_step::critical_time_step;
-use mtled::motion::internal_force::Workspace;
 use mtled::problem::StepControl;
 use mtled_checks::study::{
     Bound, Cell, Check, Figure, Kind, Plot, SeriesStyle, Study, Table, axis, number, styled, text,
@@ -79,7 +79,7 @@ fn measure(family: &Family, seed: u64) -> anyhow::Result<Ratios> {
         Simulation::with_any_recipe(&problem).map_err(|error| located(error.into()))?;
     let model = &simulation.model;
     let u = vec![0.0; model.size()];
-    let critical = critical_time_step(model, &u, 0.0, None, &mut Workspace::new(model));
+    let critical = critical_time_step(model, &u, 0.0, None, &mut Workspace::new(&model.points));
     let velocity = trial_velocity(model, &simulation.discretisation.cloud.spacing);
     let largest = largest_stable_step(model, &u, 0.0, &velocity, critical.time_step);
     let bounds = comparison_bounds(&problem, &simulation.discretisation, &model.lumped_mass);

@@ -3,9 +3,9 @@
 use crate::studies::workbench::{Workbench, range};
 use mtled::Simulation;
 use mtled::algebra::tensor::Vector3;
+use mtled::force::Workspace;
 use mtled::model::Model;
 use mtled::motion::critical_time_step::critical_time_step;
-use mtled::motion::internal_force::Workspace;
 use mtled::motion::observe::{Continue, Observer, View};
 use mtled::problem::{
     Amplitude, Dimension, EssentialCondition, Motion, Prescribed, Problem, Relaxation,
@@ -28,7 +28,7 @@ struct Limits {
 
 impl Limits {
     fn new(model: &Model) -> Limits {
-        Limits { workspace: Workspace::new(model), samples: Vec::new() }
+        Limits { workspace: Workspace::new(&model.points), samples: Vec::new() }
     }
 }
 
@@ -99,7 +99,7 @@ fn run(id: &'static str, label: &'static str, problem: &Problem) -> anyhow::Resu
     let summary = simulation.run(&mut limits)?;
     // The first Lanczos run belongs to the set-up.
     let fresh = vec![0.0; simulation.model.size()];
-    let mut workspace = Workspace::new(&simulation.model);
+    let mut workspace = Workspace::new(&simulation.model.points);
     let first =
         critical_time_step(&simulation.model, &fresh, 0.0, None, &mut workspace).products + 1;
     let cost = (summary.lanczos_evaluations - first) as f64 / summary.steps as f64;

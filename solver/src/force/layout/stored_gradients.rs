@@ -14,8 +14,8 @@ pub enum StoredGradients {
 macro_rules! with_gradients {
     ($stored:expr, $gradients:ident => $body:expr) => {
         match $stored {
-            $crate::model::blocks::StoredGradients::Double($gradients) => $body,
-            $crate::model::blocks::StoredGradients::Single($gradients) => $body,
+            $crate::force::StoredGradients::Double($gradients) => $body,
+            $crate::force::StoredGradients::Single($gradients) => $body,
         }
     };
 }

@@ -1,6 +1,6 @@
-//! The diagonal of the stiffness at rest.
+//! Moduli and the diagonal of the stiffness at rest.
 
-use crate::model::blocks::{Block, GradientQuad, with_gradients};
+use crate::force::layout::{Block, GradientQuad, PackedPoints, with_gradients};
 
 /// The moduli of a block at rest \[Pa\].
 #[derive(Debug, Clone, Copy)]
@@ -41,15 +41,11 @@ impl ModuliAtRest {
 /// μ)/d), a patch s U''(1) Σ_b |Σ_q w B_b Grad φ|²/d, its modulus no more than `most` μ. Nodes
 /// without points lie within held volumes: they get the mean of the others, which matters to no
 /// result.
-pub fn stiffness_diagonal(
-    blocks: &[Block],
-    components: usize,
-    nodes: usize,
-    most: f64,
-) -> Vec<f64> {
+pub fn stiffness_diagonal(points: &PackedPoints, nodes: usize, most: f64) -> Vec<f64> {
     let mut diagonal = vec![0.0; nodes];
-    for block in blocks {
-        let local = with_gradients!(&block.grad_phi, gradients => match components {
+    for block in &points.blocks {
+        // Chooses the precision in which gradients are stored.
+        let local = with_gradients!(&block.grad_phi, gradients => match points.components {
             2 => block_diagonal::<_, 2>(block, gradients, most),
             _ => block_diagonal::<_, 3>(block, gradients, most),
         });

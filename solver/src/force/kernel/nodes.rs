@@ -3,43 +3,49 @@
 #![allow(non_snake_case)]
 
 use crate::algebra::lanes::{SimdBlock, prefetch};
-use crate::model::Block;
-use crate::model::blocks::{Adder, GradientQuad, LocalVectors, Place, QUAD, Reader};
+use crate::force::layout::{
+    Adder, Block, GradientQuad, LocalVectors, Place, QUAD, Reader, with_gradients,
+};
 use fearless_simd::{Simd, f64x4, prelude::*};
 use std::ops::Range;
+
+/// Places and gradients of some slots.
+type Slots<'a, G, const D: usize> = (&'a [[Place; QUAD]], &'a [[G; D]]);
 
 /// Rows of I + Σ_a u_a ⊗ Grad φ_a at the points of some SIMD blocks; `identity` is 1, or 0 for
 /// the derivative. In a plane the third row and column are left alone.
 #[inline(always)]
-pub fn deformation_gradients<S: Simd, G: GradientQuad, const D: usize>(
+pub fn deformation_gradients<S: Simd, const D: usize>(
     simd: S,
-    (block, grad_phi): (&Block, &[G]),
+    block: &Block,
     groups: Range<usize>,
     u: &LocalVectors,
     identity: f64,
     deformation: &mut [SimdBlock],
 ) {
     let u = u.reader();
-    for (group, rows) in groups.zip(deformation.as_chunks_mut::<9>().0) {
-        for half in 0..2 {
-            let (places, gradients) = block.slots::<G, D>(grad_phi, 2 * group + half);
-            let sums = displacement_gradient::<S, G, D>(simd, places, gradients, u);
-            for i in 0..D {
-                for j in 0..D {
-                    let entry = if i == j { sums[i][j] + identity } else { sums[i][j] };
-                    rows[3 * i + j].0.as_chunks_mut::<QUAD>().0[half] = entry.into();
+    // Chooses the precision in which gradients are stored.
+    with_gradients!(&block.grad_phi, grad_phi => {
+        for (group, rows) in groups.zip(deformation.as_chunks_mut::<9>().0) {
+            for half in 0..2 {
+                let slots = block.slots::<_, D>(grad_phi, 2 * group + half);
+                let sums = displacement_gradient(simd, slots, u);
+                for i in 0..D {
+                    for j in 0..D {
+                        let entry = if i == j { sums[i][j] + identity } else { sums[i][j] };
+                        rows[3 * i + j].0.as_chunks_mut::<QUAD>().0[half] = entry.into();
+                    }
                 }
             }
         }
-    }
+    });
 }
 
 /// Σ_a u_a ⊗ Grad φ_a at the four points of a quad.
 #[inline(always)]
 fn displacement_gradient<S: Simd, G: GradientQuad, const D: usize>(
     simd: S,
-    places: &[[Place; QUAD]],
-    gradients: &[[G; D]],
+    (places, gradients): Slots<G, D>,
     u: Reader,
 ) -> [[f64x4<S>; D]; D] {
     let mut sums = [[f64x4::splat(simd, 0.0); D]; D];
@@ -84,9 +90,9 @@ fn components<S: Simd, const D: usize>(
 /// the processor is told to fetch what the next chunk will read, as many slots ahead as this
 /// chunk has.
 #[inline(always)]
-pub fn add_forces<S: Simd, G: GradientQuad, const D: usize>(
+pub fn add_forces<S: Simd, const D: usize>(
     simd: S,
-    (block, grad_phi): (&Block, &[G]),
+    block: &Block,
     groups: Range<usize>,
     stress: &[SimdBlock],
     f: &mut LocalVectors,
@@ -94,41 +100,53 @@ pub fn add_forces<S: Simd, G: GradientQuad, const D: usize>(
     let mut f = f.adder();
     let ahead = block.starts[2 * groups.end] - block.starts[2 * groups.start];
     let weights = block.quadrature_weights.as_chunks::<QUAD>().0;
-    for (group, rows) in groups.zip(stress.as_chunks::<9>().0) {
-        for half in 0..2 {
-            let quad = 2 * group + half;
-            let weight: f64x4<S> = weights[quad].simd_into(simd);
-            let mut weighted = [[weight; D]; D];
-            for i in 0..D {
-                for j in 0..D {
-                    let entry: f64x4<S> =
-                        rows[3 * i + j].0.as_chunks::<QUAD>().0[half].simd_into(simd);
-                    weighted[i][j] = entry * weight;
-                }
-            }
-            let (places, gradients) = block.slots::<G, D>(grad_phi, quad);
-            let next = block.slots_ahead::<G, D>(grad_phi, quad, ahead);
-            for (slot, (places, gradients)) in places.iter().zip(gradients).enumerate() {
-                prefetch_slot(next, slot);
-                let mut force = [f64x4::splat(simd, 0.0); D];
+    // Chooses the precision in which gradients are stored.
+    with_gradients!(&block.grad_phi, grad_phi => {
+        for (group, rows) in groups.zip(stress.as_chunks::<9>().0) {
+            for half in 0..2 {
+                let quad = 2 * group + half;
+                let weight: f64x4<S> = weights[quad].simd_into(simd);
+                let mut weighted = [[weight; D]; D];
                 for i in 0..D {
-                    force[i] = weighted[i][0] * gradients[0].widen(simd);
-                    for j in 1..D {
-                        force[i] = weighted[i][j].mul_add(gradients[j].widen(simd), force[i]);
+                    for j in 0..D {
+                        let entry: f64x4<S> =
+                            rows[3 * i + j].0.as_chunks::<QUAD>().0[half].simd_into(simd);
+                        weighted[i][j] = entry * weight;
                     }
                 }
-                add_components::<S, D>(simd, &force, places, &mut f);
+                let slots = block.slots::<_, D>(grad_phi, quad);
+                let next = block.slots_ahead::<_, D>(grad_phi, quad, ahead);
+                add_weighted(simd, &weighted, slots, next, &mut f);
             }
         }
+    });
+}
+
+/// f_a += w P Grad φ_a of the four points of a quad, from w P; `next` is what to fetch on the way.
+#[inline(always)]
+fn add_weighted<S: Simd, G: GradientQuad, const D: usize>(
+    simd: S,
+    weighted: &[[f64x4<S>; D]; D],
+    (places, gradients): Slots<G, D>,
+    next: Slots<G, D>,
+    f: &mut Adder,
+) {
+    for (slot, (places, gradients)) in places.iter().zip(gradients).enumerate() {
+        prefetch_slot(next, slot);
+        let mut force = [f64x4::splat(simd, 0.0); D];
+        for i in 0..D {
+            force[i] = weighted[i][0] * gradients[0].widen(simd);
+            for j in 1..D {
+                force[i] = weighted[i][j].mul_add(gradients[j].widen(simd), force[i]);
+            }
+        }
+        add_components::<S, D>(simd, &force, places, f);
     }
 }
 
 /// Prefetches both lines that a slot can touch.
 #[inline(always)]
-fn prefetch_slot<G, const D: usize>(
-    (places, gradients): (&[[Place; QUAD]], &[[G; D]]),
-    slot: usize,
-) {
+fn prefetch_slot<G, const D: usize>((places, gradients): Slots<G, D>, slot: usize) {
     if slot.is_multiple_of(8) {
         prefetch(places, slot);
     }

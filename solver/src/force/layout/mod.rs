@@ -4,6 +4,7 @@
 mod block;
 mod local_vectors;
 mod numbering;
+mod packed_points;
 mod packing;
 mod partition;
 mod stored_gradients;
@@ -11,7 +12,6 @@ mod summation;
 
 pub use block::{Block, Chunk};
 pub use local_vectors::{Adder, LocalVectors, Place, QUAD, Reader};
-pub use partition::blocks;
+pub use packed_points::PackedPoints;
 pub(crate) use stored_gradients::with_gradients;
 pub use stored_gradients::{GradientQuad, StoredGradients};
-pub use summation::Sums;

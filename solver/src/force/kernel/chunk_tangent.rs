@@ -7,10 +7,11 @@ use super::scratch::Scratch;
 use crate::algebra::block_matrix::PointTangent;
 use crate::algebra::lanes::{LANES, Lanes, SimdBlock};
 use crate::algebra::tensor::Matrix3;
+use crate::force::layout::{Block, Chunk};
+use crate::force::projection::OwnPressure;
 use crate::material::with_law;
-use crate::model::projection::OwnPressure;
-use crate::model::{Block, Chunk};
 use fearless_simd::Simd;
+use std::marker::PhantomData;
 
 /// The tangent operator at the points of a chunk.
 #[derive(Debug, Default)]
@@ -28,6 +29,7 @@ pub struct ChunkTangent {
 #[inline(always)]
 pub fn chunk_tangent<S: Simd, R: Lanes<S>>(
     simd: S,
+    _: PhantomData<R>,
     (block, own): (&Block, Option<&BlockPressures>),
     (index, components): (usize, usize),
     scratch: &mut Scratch,
@@ -48,6 +50,10 @@ pub fn chunk_tangent<S: Simd, R: Lanes<S>>(
     tangent.patch = [[0.0; 4]; 4];
     let fixed = block.projection.as_ref().map(|projection| {
         let own = own.map(|own| own.of(index));
+        let part = own.map_or(1.0, |own| own.part);
+        let of_points: Vec<f64> = tangent.deformation.iter().map(Matrix3::determinant).collect();
+        tangent.patch = projection.slopes(&block.law, groups.clone(), &of_points, part);
+        // Chooses the law of the block.
         with_law!(&block.law, law => {
             jacobians::<S, R>(simd, count, deformation, jacobian);
             let of_patch = (projection, own);
@@ -56,14 +62,10 @@ pub fn chunk_tangent<S: Simd, R: Lanes<S>>(
             (projection, OwnPressure { moments, slopes: [0.0; 4], part: 0.0 })
         })
     });
-    if let Some((projection, _)) = fixed {
-        let part = own.map_or(1.0, |own| own.of(index).part);
-        let jacobians: Vec<f64> = tangent.deformation.iter().map(Matrix3::determinant).collect();
-        tangent.patch = projection.slopes(&block.law, groups.clone(), &jacobians, part);
-    }
     let columns = (0..9).filter(|column| column / 3 < components && column % 3 < components);
     for column in columns {
         set_slope(&mut deformation.slopes, (count, column), 1.0);
+        // Chooses the law of the block.
         with_law!(&block.law, law => {
             if let Some((projection, own)) = fixed {
                 jacobians::<S, R>(simd, count, deformation, jacobian);

@@ -1,8 +1,9 @@
 //! Pressures of patches as unknowns beside the displacements.
 #![allow(non_snake_case)]
 
-use crate::model::projection::OwnPressure;
-use crate::model::{Model, ModuliAtRest};
+use crate::force::at_rest::ModuliAtRest;
+use crate::force::layout::PackedPoints;
+use crate::force::projection::OwnPressure;
 
 /// Of the patches of all blocks.
 #[derive(Debug, Clone)]
@@ -33,8 +34,8 @@ impl BlockPressures {
 impl OwnPressures {
     /// All are 0. The part c of each block is such that no more than `most` shear moduli
     /// of its projected bulk modulus act beside them (method book, eq. 21.14).
-    pub fn zero(model: &Model, most: f64) -> OwnPressures {
-        let blocks = model.blocks.iter().map(|block| {
+    pub fn zero(points: &PackedPoints, most: f64) -> OwnPressures {
+        let blocks = points.blocks.iter().map(|block| {
             let patches = if block.projection.is_some() { block.chunks.len() } else { 0 };
             BlockPressures {
                 moments: vec![[0.0; 4]; patches],
@@ -45,7 +46,7 @@ impl OwnPressures {
         OwnPressures { blocks: blocks.collect() }
     }
 
-    /// Of a block of the model.
+    /// Of a block of the body.
     pub fn block(&self, index: usize) -> &BlockPressures {
         &self.blocks[index]
     }

@@ -6,8 +6,8 @@
 use crate::algebra::lanes::{Lanes, Parts, SimdBlock};
 use crate::algebra::real::Real;
 use crate::algebra::tensor::{Tensor, map, times_symmetric, transposed};
+use crate::force::projection::{OwnPressure, PatchMoments, Projection};
 use crate::material::{ConstitutiveLaw, Deformation};
-use crate::model::projection::{OwnPressure, PatchMoments, Projection};
 use fearless_simd::Simd;
 use std::ops::Range;
 

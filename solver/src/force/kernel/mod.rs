@@ -12,9 +12,8 @@ mod scratch;
 mod tangents;
 
 use crate::algebra::lanes::{Lanes, Parts, SimdBlock};
+use crate::force::layout::{Block, Chunk, LocalVectors};
 use crate::material::with_law;
-use crate::model::blocks::{LocalVectors, with_gradients};
-use crate::model::{Block, Chunk};
 pub use chunk_tangent::{ChunkTangent, chunk_tangent};
 pub use extra::{ENTRIES, ExtraStress, Found, Symmetric};
 use fearless_simd::Simd;
@@ -22,11 +21,12 @@ use nodes::{add_forces, deformation_gradients};
 pub use own_pressures::{BlockPressures, OwnPressures};
 use points::{jacobians, pressures, stresses};
 pub use scratch::{Local, Scratch};
+use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Keeps F at displacements `u` for the derivatives there, of which each would compute it again.
 #[inline(always)]
-pub fn linearise<S: Simd, const D: usize>(
+pub fn keep_gradients<S: Simd, const D: usize>(
     simd: S,
     block: &Block,
     u: &LocalVectors,
@@ -37,10 +37,7 @@ pub fn linearise<S: Simd, const D: usize>(
     tangents.clear();
     for Chunk { groups, .. } in &block.chunks {
         let rows = &mut deformation.values[..9 * groups.len()];
-        with_gradients!(&block.grad_phi, grad_phi => {
-            let stream = (block, &grad_phi[..]);
-            deformation_gradients::<S, _, D>(simd, stream, groups.clone(), u, 1.0, rows);
-        });
+        deformation_gradients::<S, D>(simd, block, groups.clone(), u, 1.0, rows);
         linearised.extend_from_slice(rows);
     }
 }
@@ -51,6 +48,7 @@ pub fn linearise<S: Simd, const D: usize>(
 #[inline(always)]
 pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
     simd: S,
+    _: PhantomData<R>,
     (block, own): (&Block, Option<&BlockPressures>),
     Local { u, f }: &mut Local,
     scratch: &mut Scratch,
@@ -63,19 +61,17 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
     let is_known = R::SLOPES && tangents.are_worth(block);
     for (patch, Chunk { lanes, groups }) in block.chunks.iter().enumerate() {
         let count = groups.len();
-        with_gradients!(&block.grad_phi, grad_phi => {
-            let (stream, groups) = ((block, &grad_phi[..]), groups.clone());
-            let Parts { values, slopes } = &mut *deformation;
-            if R::SLOPES {
-                let known = &linearised[9 * groups.start..9 * groups.end];
-                values[..known.len()].copy_from_slice(known);
-                deformation_gradients::<S, _, D>(simd, stream, groups, u, 0.0, slopes);
-            } else {
-                deformation_gradients::<S, _, D>(simd, stream, groups, u, 1.0, values);
-            }
-        });
+        let Parts { values, slopes } = &mut *deformation;
+        if R::SLOPES {
+            let known = &linearised[9 * groups.start..9 * groups.end];
+            values[..known.len()].copy_from_slice(known);
+            deformation_gradients::<S, D>(simd, block, groups.clone(), u, 0.0, slopes);
+        } else {
+            deformation_gradients::<S, D>(simd, block, groups.clone(), u, 1.0, values);
+        }
         let projection = block.projection.as_ref();
         let frames = block.frames.get(groups.clone()).unwrap_or(&[]);
+        // Chooses the law of the block.
         with_law!(&block.law, law => {
             if is_known {
                 let work = (&mut *deformation, &mut *stress, &mut *jacobian);
@@ -101,10 +97,7 @@ pub fn block_force<S: Simd, R: Lanes<S>, const D: usize>(
         }
         *smallest = smaller(*smallest, lanes.clone(), jacobian);
         let stress = if R::SLOPES { &stress.slopes } else { &stress.values };
-        with_gradients!(&block.grad_phi, grad_phi => {
-            let stream = (block, &grad_phi[..]);
-            add_forces::<S, _, D>(simd, stream, groups.clone(), stress, f);
-        });
+        add_forces::<S, D>(simd, block, groups.clone(), stress, f);
     }
 }
 

@@ -3,9 +3,9 @@
 use super::extra::ExtraStress;
 use super::tangents::Tangents;
 use crate::algebra::lanes::{LANES, Parts, SimdBlock};
-use crate::model::Block;
-use crate::model::blocks::LocalVectors;
-use crate::model::projection::PatchMoments;
+use crate::force::layout::Block;
+use crate::force::layout::LocalVectors;
+use crate::force::projection::PatchMoments;
 
 /// Vectors at the nodes of the block that a thread works on.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ impl Local {
     }
 }
 
-/// Scratch memory of one block; but for what `linearise` keeps, nothing in it outlives a step.
+/// Scratch memory of one block; but for what `keep_gradients` keeps, nothing in it outlives a step.
 #[derive(Debug)]
 pub struct Scratch {
     /// Forces on the block's nodes, where they are added later \[component of node\] \[N\].

@@ -10,7 +10,7 @@ use crate::discretisation::Discretisation;
 use crate::discretisation::patches::orthonormal_basis;
 use crate::discretisation::rows::Rows;
 use crate::error::Error;
-use crate::model::projection::{BasisBlock, Projection};
+use crate::force::projection::{BasisBlock, Projection};
 use crate::problem::{Problem, Region, VolumetricProjection};
 use std::ops::Range;
 

@@ -2,8 +2,8 @@
 
 use super::points::stresses;
 use crate::algebra::lanes::{LANES, Lanes, Parts, SimdBlock};
+use crate::force::layout::Block;
 use crate::material::ConstitutiveLaw;
-use crate::model::Block;
 use fearless_simd::Simd;
 use std::ops::Range;
 
@@ -97,12 +97,13 @@ mod tests {
     use super::WORTH;
     use crate::algebra::random::Random;
     use crate::algebra::tensor::Vector3;
+    use crate::discretisation::Discretisation;
+    use crate::force::forces::{Workspace, linearise, linearised_stiffness_times};
+    use crate::force::layout::PackedPoints;
     use crate::geometry::Shape;
     use crate::material::VolumetricTerm;
     use crate::material::{ElasticConstants, Law, Material, Ogden, OgdenTerm, OgdenTerms};
-    use crate::motion::internal_force::{Workspace, linearise, linearised_stiffness_times};
     use crate::problem::{Dimension, Problem, Recipe};
-    use crate::simulation::Simulation;
 
     /// The largest difference between the first derivative and the last of some at the same
     /// displacements, over the largest entry.
@@ -117,16 +118,17 @@ mod tests {
         let material = Material { density: 1000.0, law };
         let mut problem = Problem::new(body, material, Recipe::with_spacing(0.01));
         problem.dimension = dimension;
-        let model = Simulation::new(&problem).unwrap().model;
+        let discretisation = Discretisation::new(&problem).unwrap();
+        let points = PackedPoints::new(&problem, &discretisation).unwrap();
+        let size = points.components * discretisation.cloud.positions.len();
         let mut random = Random(7);
-        let mut field =
-            || -> Vec<f64> { (0..model.size()).map(|_| 1e-3 * random.vector(1).x).collect() };
+        let mut field = || -> Vec<f64> { (0..size).map(|_| 1e-3 * random.vector(1).x).collect() };
         let (u, v) = (field(), field());
-        let mut workspace = Workspace::new(&model);
-        linearise(&model, &u, &mut workspace);
+        let mut workspace = Workspace::new(&points);
+        linearise(&points, &u, &mut workspace);
         let mut product = || {
-            let mut product = vec![0.0; model.size()];
-            linearised_stiffness_times(&model, &v, None, &mut workspace, &mut product);
+            let mut product = vec![0.0; size];
+            linearised_stiffness_times(&points, &v, None, &mut workspace, &mut product);
             product
         };
         let first = product();

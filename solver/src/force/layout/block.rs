@@ -5,8 +5,8 @@ use super::local_vectors::{Place, QUAD, stride};
 use super::stored_gradients::{GradientQuad, StoredGradients, with_gradients};
 use crate::algebra::lanes::{LANES, SimdBlock};
 use crate::algebra::tensor::Matrix3;
+use crate::force::projection::Projection;
 use crate::material::{Law, PronySeries};
-use crate::model::projection::Projection;
 use crate::problem::ActiveStress;
 use std::ops::Range;
 
