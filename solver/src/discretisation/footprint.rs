@@ -9,7 +9,8 @@ use crate::discretisation::placed_nodes::PANEL;
 use crate::discretisation::quadrature::followed_edge;
 use crate::discretisation::shape_memory::ShapeMemory;
 use crate::geometry::{GeometryError, POINTS, Selector, Shape, merges_voxels};
-use crate::problem::{Cloud, Dimension, InsideRule, Loads, Problem, Refinement};
+use crate::problem::defaults::SINGLE_FROM;
+use crate::problem::{Cloud, Dimension, GradientStorage, InsideRule, Loads, Problem, Refinement};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -36,6 +37,8 @@ pub struct Footprint {
 const PROGRAM: f64 = 24.0e6;
 const PER_NODE: f64 = 1400.0;
 const PER_ENTRY: f64 = 60.0;
+/// Of gradients in single precision, half of 24, where the default is double precision.
+const PER_SINGLE_ENTRY: f64 = PER_ENTRY - 12.0;
 const PER_PANEL: f64 = 710.0;
 /// What the audit finds of the surface of a body from an image, in all and per node.
 const OF_IMAGE: [f64; 2] = [2e6, 3000.0];
@@ -135,8 +138,11 @@ impl Footprint {
     fn with_bytes(self, problem: &Problem) -> Footprint {
         let shapes = ShapeMemory::of(problem_shapes(problem), problem_selectors(problem));
         let entries = self.points * self.neighbours;
+        let single = problem.recipe.gradient_storage == GradientStorage::Single;
+        let small = entries < SINGLE_FROM as f64;
+        let per_entry = if single && small { PER_SINGLE_ENTRY } else { PER_ENTRY };
         let set_up = PER_NODE * self.nodes
-            + PER_ENTRY * entries
+            + per_entry * entries
             + PER_BATCH_ENTRY * self.points.min(BATCH) * self.neighbours
             + PER_PANEL * self.panels
             + PER_HELD_NODE * self.held.min(self.nodes)
