@@ -91,7 +91,7 @@ impl Report {
 
     /// Whether every study ran, every question was decided, every bound is kept and nothing got
     /// worse.
-    pub(crate) fn passed(&self) -> bool {
+    pub fn passed(&self) -> bool {
         self.outcome() == Outcome::Passed
     }
 
