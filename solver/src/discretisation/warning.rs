@@ -124,6 +124,17 @@ pub enum Warning {
         /// The amplitude there \[–\].
         factor: f64,
     },
+    /// A static problem begins with a rotation of more than half a turn.
+    #[error(
+        "\"{name}\" turns by {angle:.4} rad at once, more than half a turn: the solution is that of the \
+         shorter way to the same place; state how it gets there, as with amplitude = {{ linear = {{ duration = 1 }} }}"
+    )]
+    SuddenTurn {
+        /// Of the condition.
+        name: String,
+        /// At the start \[rad\].
+        angle: f64,
+    },
     /// A condition is released before the load of a static problem ends.
     #[error(
         "\"{name}\" is released at {release} s and the load ends at {end} s: the solution is that of a body \

@@ -9,7 +9,10 @@ use crate::model::essential::Constraints;
 use crate::model::loaded_part::LoadedPart;
 use crate::model::loaded_volume::LoadedVolume;
 use crate::model::mass::masses;
-use crate::problem::{Amplitude, Cavity, Loads, Motion, Problem, Traction};
+use crate::problem::{
+    Amplitude, Cavity, EssentialCondition, Loads, Motion, Prescribed, Problem, Traction,
+};
+use std::f64::consts::PI;
 
 /// A nodal force pattern with the amplitude that scales it.
 #[derive(Debug, Clone)]
@@ -195,6 +198,7 @@ pub fn check_loads(
         names.map(|name| Warning::CarriedTraction { name: name.clone() }).collect();
     if !matches!(problem.motion, Motion::Dynamic { .. }) {
         warnings.extend(unfinished(problem).chain(released(problem)));
+        warnings.extend(problem.conditions.iter().filter_map(sudden_turn));
     }
     warnings
 }
@@ -206,6 +210,14 @@ fn released(problem: &Problem) -> impl Iterator<Item = Warning> {
         let release = condition.release.filter(|release| *release <= end)?;
         Some(Warning::ReleasedEarly { name: condition.name.clone(), release, end })
     })
+}
+
+/// A rotation that begins with more than half a turn.
+fn sudden_turn(condition: &EssentialCondition) -> Option<Warning> {
+    let Prescribed::Rotation { angle, .. } = condition.prescribed else { return None };
+    let angle = angle * condition.amplitude.at(0.0);
+    let name = condition.name.clone();
+    (angle.abs() > PI).then_some(Warning::SuddenTurn { name, angle })
 }
 
 /// Amplitudes that are on their way when the load of a static problem ends.

@@ -1,12 +1,12 @@
 //! The cells, from the coarsest to those in which the signed distance is linear.
 #![allow(non_snake_case)]
 
-use super::corner::{Corner, Known};
-use super::cost::{cost, cost_of};
+use super::corner::{Corner, EDGE, Known};
+use super::cost::{self, cost, cost_of};
 use super::level::level;
 use super::sampled::{Cell, Cut, Sampled, Volume};
 use super::seams::{is_seam, may_have_seams};
-use super::simplex::{Halves, OF_BOX, Tetrahedron, vector_area, volume};
+use super::simplex::{Halves, OF_BOX, Tetrahedron, Triangle, vector_area, volume};
 use super::surface::Facet;
 use crate::algebra::tensor::Vector3;
 use crate::error::Error;
@@ -38,6 +38,8 @@ const BEND_OF_LAST: f64 = 0.05;
 /// What a border with two sides in a cell may hide there, over its bend \[–\]: a layer as thick as that lies
 /// between corners and centre.
 const HIDDEN: f64 = 2.0;
+/// Distance of a place on the surface from it, over half of the edge of a cell \[–\]: round-off.
+const ON_SURFACE: f64 = 1e-9;
 /// Tetrahedra that a part without distances passes are halved so often.
 const HALVINGS: usize = 3;
 /// The nodes of a body from an image may take so many times that: its set-up takes seconds.
@@ -78,7 +80,7 @@ pub(crate) fn sample(divided: &Divided) -> Result<Sampled, Error> {
     let count = counts.x * counts.y * if flat { 1 } else { counts.z };
     let mut cells: Vec<Cell> = (0..count).map(|n| divided.cell(n, counts, &start, edge)).collect();
     let times = if !flat && divided.body.has_labels() { OF_IMAGE } else { 1 };
-    let mut budget = BUDGET.0 + times * BUDGET.1 * divided.nodes;
+    let mut budget = cost::times(divided.body) * BUDGET.0 + times * BUDGET.1 * divided.nodes;
     let cost = cost(divided.body) + divided.parts.iter().map(|part| cost_of(part)).sum::<usize>();
     let mut sampled =
         Sampled { volumes: vec![Volume::default(); divided.parts.len()], ..Sampled::default() };
@@ -234,9 +236,16 @@ impl Divided<'_> {
         };
         let is_edge = corner.is_none() && bend > BEND * 2.0 * cell.half.x;
         let bend = corner.map_or(bend, |corner| corner.misfit);
-        let border = halves.border.iter().filter(|t| vector_area(t).norm() > 0.0);
+        let on_surface = |corners: &Triangle| {
+            if is_edge { *corners } else { self.on_surface(corners, cell.half.x) }
+        };
+        let corners = halves.border.iter().map(on_surface);
         let mut facets = Vec::with_capacity(halves.border.len());
-        facets.extend(border.map(|corners| Facet { corners: *corners, edge: is_edge }));
+        facets.extend(
+            corners
+                .filter(|corners| vector_area(corners).norm() > 0.0)
+                .map(|corners| Facet { corners, edge: is_edge }),
+        );
         let mut volumes = vec![(Vector3::zeros(), 0.0); self.parts.len()];
         let mut add = |tetrahedra: &[Tetrahedron], part: usize| {
             for tetrahedron in tetrahedra {
@@ -257,6 +266,28 @@ impl Divided<'_> {
         let edge = is_edge && !halves.border.is_empty();
         let border_bends = if owner.is_none() { self.border_bends(cell) } else { Vec::new() };
         Fate::Cut(Cut { pieces, facets, bend, edge, edges, by_places, border_bends })
+    }
+
+    /// A triangle with its corners on the surface, beside which linear functions have put them: a
+    /// selection may be of the surface alone. Beside an edge another face may be nearer.
+    fn on_surface(&self, corners: &Triangle, half: f64) -> Triangle {
+        let distances = corners.map(|X| self.distance(&X));
+        let is_there = |distance: &f64| distance.abs() <= ON_SURFACE * half;
+        if self.body.has_labels() || distances.iter().all(is_there) {
+            return *corners;
+        }
+        let gradient = |X: &Vector3| self.dimension.in_plane(self.body.gradient(&self.at(*X)));
+        let middle = corners.iter().sum::<Vector3>() / 3.0;
+        let (normal, distance) = (gradient(&middle), self.distance(&middle));
+        [0, 1, 2].map(|n| {
+            let X = corners[n];
+            let own = gradient(&X);
+            if own.dot(&normal) > EDGE {
+                X - distances[n] * own
+            } else {
+                X - (normal.dot(&(X - middle)) + distance) * normal
+            }
+        })
     }
 
     /// What faces that are flat leave of a cell, and places along their edges.

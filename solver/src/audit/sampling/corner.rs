@@ -14,7 +14,7 @@ const SAME_FACE: f64 = 0.99;
 
 /// Cosine of the least angle between faces that meet in an edge \[–\]: smooth surfaces are cut by planes that
 /// turn by less, and need no nodes where these meet.
-const EDGE: f64 = 0.9;
+pub(super) const EDGE: f64 = 0.9;
 /// Deviation from the distance from a face beside it, over that \[–\]: at a right edge it is 0.3.
 const FLAT: f64 = 0.1;
 

@@ -5,6 +5,7 @@ use crate::geometry::{Selector, Shape};
 /// Cost of a signed distance of a shape that is no primitive, over that of one that is \[–\].
 const OF_LABELS: usize = 1;
 const OF_TRIANGLES: usize = 40;
+const OF_COSTLY: usize = 8;
 /// The same of a part without distances, which is asked at many places of a cell.
 const OF_PLACES: usize = 4;
 
@@ -17,6 +18,11 @@ pub(super) fn cost(shape: &Shape) -> usize {
         Shape::Surface(_) | Shape::Function(_) => OF_TRIANGLES,
         _ => 1,
     }
+}
+
+/// What may be spent on a body over what is spent on a primitive \[–\]: its set-up takes longer by more.
+pub(super) fn times(shape: &Shape) -> usize {
+    if cost(shape) >= OF_TRIANGLES { OF_COSTLY } else { 1 }
 }
 
 /// The same of a part.

@@ -186,3 +186,83 @@ fn a_ball_has_no_edges() {
         assert!((found.volume() / volume - 1.0).abs() < 5e-3, "{spacing}: {}", found.volume());
     }
 }
+
+#[test]
+fn what_is_selected_of_a_face_is_all_of_it_whatever_the_cells() {
+    let mut random = Random(7);
+    for n in 0..120 {
+        let mut within =
+            |low: f64, high: f64| low + (high - low) * 0.5 * (1.0 + random.symmetric());
+        let size = Vector3::from_fn(|_, _| within(0.02, 0.12));
+        let (body, spacing) =
+            (Shape::Box { min: Vector3::zeros(), max: size }, within(0.008, 0.02));
+        let (dimension, parts) = (&Dimension::Three, vec![&Selector::All]);
+        let nodes = (size.product() / spacing.powi(3)) as usize;
+        let found = sample(&Divided { body: &body, dimension, parts, spacing, nodes }).unwrap();
+        for axis in 0..3 {
+            let exact = size.product() / size[axis];
+            for point in [Vector3::zeros(), size] {
+                let normal = Vector3::ith(axis, 1.0);
+                let face = Selector::Plane { point, normal, tolerance: 1e-3 * spacing };
+                let area = part_of_surface(&found.facets, &face, dimension, spacing).area;
+                assert!((area / exact - 1.0).abs() < 0.02, "{n}: {axis} {area} {exact}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_inside_of_a_tube_is_selected_by_a_cylinder_of_its_radius() {
+    let cylinder = |radius: f64| Shape::Cylinder {
+        base: Vector3::zeros(),
+        axis: Vector3::z(),
+        radius,
+        height: 0.05,
+    };
+    let (inner, outer) = (0.02, 0.04);
+    let hole = Shape::Cylinder {
+        base: Vector3::new(0.0, 0.0, -1.0),
+        axis: Vector3::z(),
+        radius: inner,
+        height: 2.0,
+    };
+    let body = Shape::Difference(Box::new(cylinder(outer)), Box::new(hole.clone()));
+    for spacing in [0.01, 0.007, 0.005] {
+        let found = sampled(&body, spacing);
+        let part = Selector::Inside { shape: hole.clone(), tolerance: 1e-3 * spacing };
+        let area = part_of_surface(&found.facets, &part, &Dimension::Three, spacing).area;
+        let exact = 2.0 * std::f64::consts::PI * inner * 0.05;
+        assert!((area / exact - 1.0).abs() < 0.02, "{spacing}: {area} {exact}");
+    }
+}
+
+/// A box of twelve triangles, turned.
+fn turned_box(size: &Vector3, axis: &Vector3, angle: f64) -> Shape {
+    let turn = nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(*axis), angle);
+    let corner = |n: usize| Vector3::from_fn(|k, _| if n >> k & 1 == 1 { size[k] } else { 0.0 });
+    let vertices = (0..8).map(|n| turn * corner(n)).collect();
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let triangles = faces.into_iter().flat_map(halves).collect();
+    Shape::Surface(Arc::new(crate::geometry::Surface::new(vertices, triangles).unwrap()))
+}
+
+#[test]
+fn a_box_of_triangles_has_its_volume_however_it_is_turned() {
+    let mut random = Random(11);
+    for n in 0..30 {
+        let mut within =
+            |low: f64, high: f64| low + (high - low) * 0.5 * (1.0 + random.symmetric());
+        let size = Vector3::from_fn(|_, _| within(0.05, 0.12));
+        let axis = Vector3::from_fn(|_, _| within(-1.0, 1.0));
+        let body = turned_box(&size, &axis, within(0.0, 3.0));
+        let spacing = within(0.01, 0.02);
+        let (dimension, parts) = (&Dimension::Three, vec![&Selector::All]);
+        let nodes = (size.product() / spacing.powi(3)) as usize;
+        let found = sample(&Divided { body: &body, dimension, parts, spacing, nodes }).unwrap();
+        let (volume, exact) = (found.volume(), size.product());
+        let off = (volume - exact).abs();
+        assert!(off < found.volumes[0].doubt + 0.01 * exact, "{n}: {volume} {exact}");
+    }
+}

@@ -158,6 +158,17 @@ impl Constraints {
         self.stage(from) == self.stage(to) && self.conditions.iter().all(still)
     }
 
+    /// By how much all prescribed rotations turn between two times, together \[rad\].
+    pub(crate) fn turn(&self, (from, to): (f64, f64)) -> f64 {
+        let of = |condition: &EssentialCondition| match condition.prescribed {
+            Prescribed::Rotation { angle, .. } => {
+                angle * (condition.amplitude.at(to) - condition.amplitude.at(from))
+            }
+            Prescribed::Displacement(_) | Prescribed::Field(_) => 0.0,
+        };
+        self.conditions.iter().map(|condition| of(condition).abs()).sum()
+    }
+
     /// Whether one component of a node is prescribed and never released.
     pub fn always_prescribes(&self, node: u32, component: usize) -> bool {
         self.last().iter().any(|set| set.component == component && set.constrains(node))

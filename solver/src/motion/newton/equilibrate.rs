@@ -17,6 +17,7 @@ use crate::motion::state::State;
 use crate::motion::step::{Buffers, external_force};
 use crate::motion::summary::{PatchPressures, Summary};
 use crate::problem::Newton;
+use std::f64::consts::FRAC_PI_2;
 
 /// Fraction of the load below which an increment is not halved again.
 const SMALLEST_INCREMENT: f64 = 1e-3;
@@ -28,6 +29,9 @@ const LARGEST_UNSTABLE: f64 = 0.1;
 /// Way of an obstacle in an increment over the mean nodal spacing \[–\]: nodes that it has passed by
 /// more may be nearer to another side of it.
 const LARGEST_WAY: f64 = 0.5;
+/// Turn of all prescribed rotations in an increment \[rad\]: beyond half a turn the end of it is
+/// nearer by the other way round.
+const LARGEST_TURN: f64 = FRAC_PI_2;
 /// Residual of the increments before the last one, unless more is allowed at the end \[–\].
 const PASSING_TOLERANCE: f64 = 1e-4;
 
@@ -96,18 +100,16 @@ impl Loading<'_, '_> {
     fn next_fraction(&mut self) -> f64 {
         let Loading { solver, state, reached, .. } = self;
         let (model, reached) = (solver.model, *reached);
-        if model.contact.has_moving() {
-            let around = model.contact.around(&model.positions, &state.displacement);
-            let way = |part: f64| {
-                let times =
-                    (solver.path.time(reached), solver.path.time((reached + part).min(1.0)));
-                model.contact.travel(times, around)
-            };
-            while way(self.increment) > LARGEST_WAY * model.contact.mean_spacing
-                && self.increment > SMALLEST_INCREMENT
-            {
-                self.increment *= 0.5;
-            }
+        let around = (model.contact.has_moving())
+            .then(|| model.contact.around(&model.positions, &state.displacement));
+        let is_far = |part: f64| {
+            let times = (solver.path.time(reached), solver.path.time((reached + part).min(1.0)));
+            let way = around.map_or(0.0, |around| model.contact.travel(times, around));
+            way > LARGEST_WAY * model.contact.mean_spacing
+                || model.constraints.turn(times) > LARGEST_TURN
+        };
+        while is_far(self.increment) && self.increment > SMALLEST_INCREMENT {
+            self.increment *= 0.5;
         }
         // No tiny last increment.
         let all = reached + 1.5 * self.increment > 1.0;

@@ -216,6 +216,19 @@ fn a_static_load_that_ends_before_its_amplitude_is_reported() {
 }
 
 #[test]
+fn a_static_rotation_that_begins_beyond_half_a_turn_is_reported() {
+    let mut problem = stretched(0.01);
+    problem.motion = Motion::Relaxed(Relaxation::default());
+    let (point, axis) = (Vector3::zeros(), Vector3::z());
+    problem.conditions[1].prescribed = Prescribed::Rotation { point, axis, angle: -4.0 };
+    problem.conditions[1].amplitude = Amplitude::Constant;
+    let sudden = |warning: &Warning| matches!(warning, Warning::SuddenTurn { .. });
+    assert!(warnings(&problem).iter().any(sudden));
+    problem.conditions[1].amplitude = Amplitude::Linear { duration: 1.0 };
+    assert!(!warnings(&problem).iter().any(sudden));
+}
+
+#[test]
 fn a_condition_that_is_released_before_a_static_load_ends_is_reported() {
     let mut problem = stretched(0.01);
     problem.motion = Motion::Relaxed(Relaxation::default());

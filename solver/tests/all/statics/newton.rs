@@ -5,12 +5,13 @@ use crate::common::statics::*;
 use crate::common::*;
 use mtled::algebra::tensor::Vector3;
 use mtled::error::Error;
-use mtled::geometry::Selector;
+use mtled::geometry::{Selector, Shape};
 use mtled::motion::observe::Unobserved;
 use mtled::motion::simulate::simulate;
 use mtled::motion::state::State;
 use mtled::motion::summary::Summary;
 use mtled::problem::*;
+use std::f64::consts::PI;
 
 #[test]
 fn newton_reaches_the_solution_of_relaxation_with_its_reactions() {
@@ -86,6 +87,25 @@ fn newton_converges_for_a_rotation_that_needs_no_force() {
     let u = &solved.state.displacement;
     let f = forces(&solved.model, u);
     assert!(largest(&f) < 1e-11 * largest(&solved.model.stiffness) * largest(u));
+}
+
+/// The end of a turn beyond half a turn is nearer by the other way round.
+#[test]
+fn a_bar_is_twisted_by_all_turns_that_its_end_makes() {
+    let length = 8.0 * EDGE;
+    let centre = Vector3::new(0.5 * EDGE, 0.5 * EDGE, length);
+    let energy = |angle: f64| {
+        let mut problem = collocated(cube(3));
+        problem.body = Shape::Box { min: Vector3::zeros(), max: Vector3::new(EDGE, EDGE, length) };
+        let mut turned = condition("end", face(2, length), [None; 3]);
+        turned.prescribed = Prescribed::Rotation { point: centre, axis: Vector3::z(), angle };
+        turned.amplitude = Amplitude::Linear { duration: 1.0 };
+        problem.conditions = vec![condition("foot", face(2, 0.0), [Some(0.0); 3]), turned];
+        solve_by(&problem, newton()).recorder.energies.last().unwrap().strain
+    };
+    let turn = 2.0 * PI;
+    let [half, whole, one_and_a_half] = [0.5, 1.0, 1.5].map(|turns| energy(turns * turn));
+    assert!(whole > 3.0 * half && one_and_a_half > 1.8 * whole, "{half} {whole} {one_and_a_half}");
 }
 
 /// A block of a law that softens in compression, under more than it can carry \[m/s²\].
