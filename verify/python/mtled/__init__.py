@@ -9,7 +9,7 @@ True
 from . import errors, problem
 from ._mtled import Discretisation, __version__, schema
 from .case import Case, bundled, load
-from .errors import CaseError, ImageError, Mistake, MtledError, SetUpError, SolveError
+from .errors import CaseError, DoubtfulWarning, ImageError, Mistake, MtledError, SetUpError, SolveError
 from .protocol import Refused, Solver, solver
 from .result import Picture, Result, WarpedImage
 from .studies import Report, Sensitivities, budget, measure_solvers, sensitivity, study, tune, verify
@@ -18,6 +18,7 @@ __all__ = [
     "Case",
     "CaseError",
     "Discretisation",
+    "DoubtfulWarning",
     "ImageError",
     "Mistake",
     "MtledError",

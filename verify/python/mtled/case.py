@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _mtled, toml
+from .errors import DoubtfulWarning
 from .result import Result
 
 Triple = tuple[float, float, float]
@@ -119,9 +121,12 @@ class Case:
 
         ``progress(fraction, step)`` is called at most 20 times a second, from this thread. What
         it raises, and Ctrl-C, end the run at once; a set-up that has begun ends in the
-        background.
+        background. A result that the run itself doubts is a :class:`mtled.DoubtfulWarning`.
         """
-        return Result(self._core.solve(error_bars, progress))
+        result = Result(self._core.solve(error_bars, progress))
+        if result.doubtful:
+            warnings.warn("; ".join(result.doubts), DoubtfulWarning, stacklevel=2)
+        return result
 
     def __repr__(self) -> str:
         return f"<mtled.Case {self.name}: {self.title}>"

@@ -10,6 +10,10 @@ class MtledError(Exception):
     """Anything that mtled refuses or fails at; the other exceptions are kinds of it."""
 
 
+class DoubtfulWarning(UserWarning):
+    """A run has come to its end, and not all of what was asked was done."""
+
+
 #: File, line, column, key and message.
 Place = tuple[str, int, int, str, str]
 

@@ -6,7 +6,7 @@ A file with a solver::
 
     @mtled.solver(name="mine", version="0.1")
     def solve(job):
-        if job["problem"]["obstacles"]:
+        if job["problem"]["obstacle"]:
             raise mtled.Refused("contact")
         return {"displacements_m": ..., "unknowns": ...}
 

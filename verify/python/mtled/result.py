@@ -124,6 +124,21 @@ class Result:
         """Reasons to doubt the result."""
         return list(self.json["warnings"])
 
+    @property
+    def doubts(self) -> list[str]:
+        """What the run has noticed by itself: what was asked that was not done, with advice."""
+        rows = [row for row in self.json.get("audit", {}).get("rows", []) if row["doubtful"]]
+        return [
+            f"{row['label']} {row['of']}: asked {row['asked']}, done {row['done']} {row['unit']}"
+            + (f"; {row['advice']}" if row.get("advice") else "")
+            for row in rows
+        ]
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether something of what was asked was not done; :attr:`doubts` says what."""
+        return bool(self.doubts)
+
     def to_pandas(self, table: Literal["history", "probes", "reactions"] = "history") -> pandas.DataFrame:
         """The histories, or the values at the end of probes or reactions, as a data frame."""
         import pandas

@@ -131,3 +131,21 @@ def test_the_program_is_part_of_the_package(here):
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert printed.strip() == f"mtled {mtled.__version__}"
     assert json.loads(mtled.schema())["title"] == "mtled case"
+
+
+def test_what_a_run_doubts_of_itself_is_a_warning(cube):
+    assert not cube.doubtful and cube.doubts == []
+    found = json.loads(json.dumps(cube.json))
+    found["audit"]["rows"][0] |= {"doubtful": True, "advice": "use a finer cloud"}
+
+    class Core:
+        """A run that has come to something else than was asked."""
+
+        def json(self):
+            return json.dumps(found)
+
+        def solve(self, error_bars, progress):
+            return self
+
+    with pytest.warns(mtled.DoubtfulWarning, match="asked .* done .* finer cloud"):
+        assert mtled.Case(Core()).solve().doubtful

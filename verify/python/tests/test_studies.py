@@ -17,7 +17,7 @@ import mtled
 @mtled.solver(name="template", version="0.1")
 def solve(job):
     \"\"\"A rigid answer: nothing moves.\"\"\"
-    if job["problem"]["obstacles"]:
+    if job["problem"]["obstacle"]:
         raise mtled.Refused("contact")
     rest = lambda probe: np.zeros((len(job["instants_s"]), len(probe.get("positions_m") or [0]), 3))
     return {
@@ -110,10 +110,10 @@ def test_a_solver_answers_and_refuses_by_the_protocol():
     names = {}
     exec(SOLVER, names)
     solve = names["solve"]
-    job = {"protocol": 1, "problem": {"obstacles": []}, "instants_s": [1.0], "level": 0,
+    job = {"protocol": 1, "problem": {"obstacle": []}, "instants_s": [1.0], "level": 0,
            "probes": [{"name": "tip", "positions_m": [[0.0, 0.0, 0.0]]}]}  # fmt: skip
     assert solve(job)["solver"] == {"name": "template", "version": "0.1"}
-    refused = solve(job | {"problem": {"obstacles": [1]}})["refused"]
+    refused = solve(job | {"problem": {"obstacle": [1]}})["refused"]
     assert refused == {"reason": "unsupported", "what": "contact"}
     with pytest.raises(ValueError, match="version 2"):
         solve(job | {"protocol": 2})
