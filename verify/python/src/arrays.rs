@@ -7,10 +7,10 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// An array of rows.
-pub type Rows<T = f64> = Py<PyArray2<T>>;
+pub(crate) type Rows<T = f64> = Py<PyArray2<T>>;
 
 /// Values one row after the other, as an array with so many columns.
-pub fn rows<T: numpy::Element>(
+pub(crate) fn rows<T: numpy::Element>(
     py: Python,
     values: Vec<T>,
     columns: usize,
@@ -20,14 +20,14 @@ pub fn rows<T: numpy::Element>(
 }
 
 /// Vectors as an array with three columns.
-pub fn vectors(py: Python, vectors: Vec<Vector3>) -> PyResult<Rows> {
+pub(crate) fn vectors(py: Python, vectors: Vec<Vector3>) -> PyResult<Rows> {
     // Collected in place.
     let flat: Vec<[f64; 3]> = vectors.into_iter().map(<[f64; 3]>::from).collect();
     rows(py, flat.into_flattened(), 3)
 }
 
 /// Positions from an array with three columns.
-pub fn positions(array: &PyReadonlyArray2<f64>) -> PyResult<Vec<Vector3>> {
+pub(crate) fn positions(array: &PyReadonlyArray2<f64>) -> PyResult<Vec<Vector3>> {
     let array = array.as_array();
     if array.ncols() != 3 {
         return Err(PyValueError::new_err(format!(

@@ -18,7 +18,7 @@ const STACK: usize = 8 << 20;
 
 /// What the work and the thread that waits for it share.
 #[derive(Debug, Default)]
-pub struct Watch {
+pub(crate) struct Watch {
     stopped: AtomicBool,
     /// Progress \[–\] and step.
     reached: Mutex<(f64, usize)>,
@@ -28,7 +28,7 @@ pub struct Watch {
 
 impl Watch {
     /// Notes how far the work has come, and says whether it goes on.
-    pub fn report(&self, progress: f64, step: usize) -> Continue {
+    pub(crate) fn report(&self, progress: f64, step: usize) -> Continue {
         if let Ok(mut reached) = self.reached.lock() {
             *reached = (progress, step);
         }
@@ -36,7 +36,7 @@ impl Watch {
     }
 
     /// Ends the work with an exception; the first one counts.
-    pub fn raise(&self, error: PyErr) {
+    pub(crate) fn raise(&self, error: PyErr) {
         self.stopped.store(true, Ordering::Relaxed);
         if let Ok(mut raised) = self.raised.lock() {
             raised.get_or_insert(error);
@@ -44,7 +44,7 @@ impl Watch {
     }
 
     /// Whether the result of the work is not wanted any more.
-    pub fn is_stopped(&self) -> bool {
+    pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
 
@@ -70,7 +70,7 @@ impl Shown<'_> {
 
 /// Does work that tells `watch` its progress, and calls `progress(fraction, step)` meanwhile.
 /// An exception there or Ctrl-C is raised at once: the work ends by itself after its step.
-pub fn in_background<T: Send + 'static>(
+pub(crate) fn in_background<T: Send + 'static>(
     py: Python,
     watch: &Arc<Watch>,
     progress: Option<&Py<PyAny>>,

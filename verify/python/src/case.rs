@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// A case without mistakes.
 #[pyclass(frozen, module = "mtled")]
-pub struct Case {
+pub(crate) struct Case {
     case: Arc<scene::Case>,
     /// Where the files are that it names relative to it; none of a bundled case.
     folder: Option<PathBuf>,

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 /// Nodes, quadrature points and supports of a case. Supports are rows as in a compressed sparse
 /// matrix: the entries of point p are `support_starts[p]:support_starts[p + 1]`.
 #[pyclass(frozen, get_all, module = "mtled")]
-pub struct Discretisation {
+pub(crate) struct Discretisation {
     /// Reference positions [m], (nodes, 3).
     nodes_m: Rows,
     /// Local distance of nodes [m], (nodes,).
@@ -45,7 +45,7 @@ pub struct Discretisation {
 
 impl Discretisation {
     /// Takes over the memory of the solver.
-    pub fn new(
+    pub(crate) fn new(
         py: Python,
         simulation: Simulation,
         warnings: Vec<String>,

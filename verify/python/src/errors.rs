@@ -31,23 +31,23 @@ fn place(mistake: &Diagnostic) -> Place {
 }
 
 /// `CaseError`: the mistakes of a case file.
-pub fn case_error(mistakes: &Mistakes) -> PyErr {
+pub(crate) fn case_error(mistakes: &Mistakes) -> PyErr {
     let places: Vec<Place> = mistakes.0.iter().map(place).collect();
     python::CaseError::new_err((mistakes.to_string(), places))
 }
 
 /// `SetUpError`: the solver refuses what a case states.
-pub fn set_up_error(mistake: &Diagnostic) -> PyErr {
+pub(crate) fn set_up_error(mistake: &Diagnostic) -> PyErr {
     python::SetUpError::new_err((mistake.to_string(), vec![place(mistake)]))
 }
 
 /// `SolveError`: a run has failed, `outcome` says how.
-pub fn solve_error(mistake: &Diagnostic, outcome: &str) -> PyErr {
+pub(crate) fn solve_error(mistake: &Diagnostic, outcome: &str) -> PyErr {
     python::SolveError::new_err((mistake.to_string(), vec![place(mistake)], outcome.to_string()))
 }
 
 /// Any other error: the exception that fits to it.
-pub fn exception(error: anyhow::Error) -> PyErr {
+pub(crate) fn exception(error: anyhow::Error) -> PyErr {
     if let Some(mistakes) = error.downcast_ref::<Mistakes>() {
         return case_error(mistakes);
     }

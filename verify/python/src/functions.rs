@@ -75,7 +75,7 @@ impl Lattice {
 }
 
 /// The solid in which `callable(x, y, z)`, a signed distance \[m\] of arrays, is negative.
-pub fn distance(
+pub(crate) fn distance(
     callable: &Bound<PyAny>,
     lower: Vector3,
     upper: Vector3,
@@ -106,7 +106,7 @@ pub fn distance(
 
 /// The displacement \[m\] that `callable(x, y, z)` returns as three numbers for one position
 /// \[m\]. What it raises ends the work of `watch`.
-pub fn displacement(callable: Py<PyAny>, watch: Arc<Watch>) -> Field {
+pub(crate) fn displacement(callable: Py<PyAny>, watch: Arc<Watch>) -> Field {
     Field::of(move |X| {
         let none = Vector3::repeat(f64::NAN);
         if watch.is_stopped() {

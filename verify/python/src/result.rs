@@ -20,7 +20,7 @@ type MeshArrays<'py> = (Rows, Rows<u32>, Py<PyArray1<u16>>, Bound<'py, PyDict>);
 
 /// What a run has come to. Displacements are those of the field, not nodal parameters.
 #[pyclass(frozen, module = "mtled")]
-pub struct Result {
+pub(crate) struct Result {
     case: Arc<Case>,
     finished: Arc<Finished>,
     /// Whether the text of the case states all of the problem.
@@ -35,7 +35,12 @@ pub struct Result {
 
 impl Result {
     /// Of a finished run; `stated` says whether the text of the case states all of the problem.
-    pub fn new(py: Python, case: Arc<Case>, finished: Finished, stated: bool) -> PyResult<Result> {
+    pub(crate) fn new(
+        py: Python,
+        case: Arc<Case>,
+        finished: Finished,
+        stated: bool,
+    ) -> PyResult<Result> {
         let simulation = &finished.solved.simulation;
         let field = py
             .detach(|| field_at_nodes(simulation, &finished.solved.simulation.state.displacement));

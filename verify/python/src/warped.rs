@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// A warped image, and where its voxels came from.
 #[pyclass(frozen, module = "mtled")]
-pub struct WarpedImage {
+pub(crate) struct WarpedImage {
     image: Image,
     sources: Vec<[f32; 3]>,
     /// The stored bytes, first index fastest.
@@ -31,7 +31,7 @@ pub struct WarpedImage {
 }
 
 /// A unit of length by its name.
-pub fn unit_of(name: &str) -> PyResult<LengthUnit> {
+pub(crate) fn unit_of(name: &str) -> PyResult<LengthUnit> {
     match name {
         "m" => Ok(LengthUnit::Metre),
         "mm" => Ok(LengthUnit::Millimetre),
@@ -42,7 +42,7 @@ pub fn unit_of(name: &str) -> PyResult<LengthUnit> {
 
 impl WarpedImage {
     /// Of an image and its deformation.
-    pub fn new(
+    pub(crate) fn new(
         py: Python,
         image: Image,
         deformed: Deformed,
